@@ -44,6 +44,8 @@ install(FILES ${PROJECT_BINARY_DIR}/latconConfig.cmake ${PROJECT_BINARY_DIR}/lat
 install(DIRECTORY examples/own-laws examples/nonlocal-crack DESTINATION share/doc/latcon-dev/examples)
 install(FILES docs/library.md cmake/copyright ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION share/doc/latcon-dev)
 
+# The program starts it for studies, whatever package is installed beside it.
+install(DIRECTORY python/latcon DESTINATION share/latcon/python COMPONENT runtime PATTERN __pycache__ EXCLUDE)
 # Module path of Debian's interpreter below /usr.
 install(DIRECTORY python/latcon DESTINATION lib/python3/dist-packages COMPONENT python PATTERN __pycache__ EXCLUDE)
 install(FILES docs/python.md cmake/copyright ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION share/doc/python3-latcon COMPONENT python)

@@ -32,9 +32,8 @@ ALLOWED = {
     "verification/claims": MODELS,
     "verification/claims/*": (*MODELS, "verification/claims"),
     "verification/elements": ("support", "verification/input", "verification/claims"),
-    "verification/study": (*MODELS, "verification/resources", "verification/claims", "verification/elements"),
     "verification/commands": (*MODELS, "verification/compare", "verification/resources", "verification/claims",
-                              "verification/elements", "verification/study"),
+                              "verification/elements"),
     # The program, and the module with the finite elements.
     "verification": ("support", "continuum", "verification/bridge", "verification/commands", "verification/elements"),
     # Tests of one side must not depend on the other either.
@@ -45,7 +44,7 @@ ALLOWED = {
 }
 # Folders that may not include a library, by the beginning of its headers' names.
 LIBRARIES = {
-    "deal.II/": ("support", "verification/input", "verification/study", "verification/compare", "verification/elements", "verification/resources",
+    "deal.II/": ("support", "verification/input", "verification/compare", "verification/elements", "verification/resources",
                  "lattice/bonds", "lattice", "verification/analysis", "tests/support", "tests/lattice", "tests/verification/analysis"),
     "vtk": [folder for folder in ALLOWED if folder not in ("verification/output", "verification/compare")],
 }
@@ -60,7 +59,7 @@ HEADERS = [
 PLANTED_IN_HEADERS = [
     ("verification/claims/claim.h", "#include <deal.II/grid/tria.h>"),
     ("verification/output/results.h", "#include <vtkPolyData.h>"),
-    ("verification/study/study_json.h", "#include <nlohmann/json.hpp>"),
+    ("verification/input/case_text.h", "#include <nlohmann/json.hpp>"),
     ("lattice/waves.h", "#include <Eigen/Eigenvalues>"),
 ]
 PLANTED = [
@@ -82,7 +81,6 @@ PLANTED = [
     ("verification/output", '#include "verification/claims/claim_outcome.h"'),
     ("verification/claims", '#include "verification/claims/energy/energy_claim.h"'),
     ("verification/claims/energy", '#include "verification/claims/prestretch/cut_study.h"'),
-    ("verification/study", '#include "verification/commands/command.h"'),
     ("tests/lattice", "#include <deal.II/base/tensor.h>"),
     ("tests/verification/analysis", '#include "tests/verification/claims/subjects.h"'),
 ]

@@ -1,8 +1,8 @@
-// libFuzzer: whatever is in a case or a study file, it is read, or refused by an InputError, and nothing else. A case
+// libFuzzer: whatever is in a case, it is read, or refused by an InputError, and nothing else. A case
 // that is good is the same case after it has been written and read again.
 //
 // The first byte of an input says what the rest is: 0 a case as .prm, 1 as .json, 2 options of --set (a line each) for
-// a good case, 3 a study.
+// a good case.
 #include <cstdint>
 #include <cstdlib>
 #include <iostream>
@@ -13,7 +13,6 @@
 #include "support/errors.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/input/case.h"
-#include "verification/study/study_file.h"
 
 using namespace latcon;
 
@@ -22,7 +21,6 @@ namespace
 
 using namespace bridge;
 using namespace input;
-using namespace study;
 
 // A good case, short; the sheet of quick.prm.
 const std::string good = R"(
@@ -110,9 +108,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, const std::size_
       break;
     case 2:
       read_case(good, "case.prm", lines_of(text));
-      break;
-    case 3:
-      (void)read_study(text, "study.json", text.size() % 2 == 0);
       break;
     default:
       return -1;

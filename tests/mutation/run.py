@@ -51,7 +51,7 @@ PLACES = {
                      "verification/output/crack_record.", "verification/output/field_units.h", "verification/output/field_writer.",
                      "verification/output/frame_series.", "verification/output/motion_writer.", "verification/output/near_tip_record.",
                      "verification/output/near_tip_writer.", "verification/output/vtk_file.", "verification/linked.cc",
-                     "verification/module.cc", "verification/elements/", "verification/study/study_output."], []),
+                     "verification/module.cc", "verification/elements/"], []),
 }
 PROGRAMS = {"support_tests": GoogleTests(), "lattice_tests": GoogleTests(), "lattice_ranks_tests": Ranks(3),
             "continuum_tests": GoogleTests(), "continuum_damage_tests": GoogleTests(), "analysis_tests": GoogleTests(),

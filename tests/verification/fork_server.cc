@@ -57,6 +57,12 @@ void redirect(int descriptor, const std::string &path)
   for (std::string &argument : arguments)
     argv.push_back(argument.data());
   argv.push_back(nullptr);
+  // A fork cannot end MPI, as they do before they become Python.
+  if (arguments.size() > 1 && (arguments[1] == "study" || arguments[1] == "batch"))
+  {
+    execv("/proc/self/exe", argv.data());
+    _exit(99);
+  }
   const auto code = commands::run_program(static_cast<int>(arguments.size()), argv.data());
   std::cout.flush();
   std::fflush(nullptr);

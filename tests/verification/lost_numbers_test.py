@@ -16,8 +16,7 @@ SOURCES = ("support/largest_error.*",
            *(f"verification/{path}" for path in (
              "bridge/anisotropy.*", "bridge/bloch.*", "bridge/equivalent_sheet.*", "bridge/homogenisation.*", "bridge/plane_waves.*",
              "bridge/slowest_wave.*", "bridge/subject.h", "claims/*", "claims/*/*", "commands/verify.cc", "compare/comparison.*",
-             "output/continuum_record.*", "output/crack_record.*", "study/seed_statistics.*", "study/statistical_tests.*",
-             "study/study_table.*")))
+             "output/continuum_record.*", "output/crack_record.*")))
 INTEGER = r"<(?:std::size_t|unsigned int|int|long|std::ptrdiff_t)>"
 LOSES = re.compile(
     rf"std::(?:max|min)\b(?!{INTEGER})|\bstd::f(?:max|min)[fl]?\b|\bstd::(?:minmax|(?:max|min|minmax)_element)\b"

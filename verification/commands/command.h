@@ -85,6 +85,13 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
 support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen);      ///< `latcon batch`
 support::ExitCode print_schema(const input::Options &options);                                 ///< `latcon schema`
 
+/// `latcon resolve`: a line of JSON with facts on the program, then one for each line on standard input, which asks for
+/// the base case to be read ("base"), for the nearest of some words, numbers in SI units, the memory of runs, or a case
+/// with some changes: its cost, values and hashes, or its text. Problems are answers.
+support::ExitCode resolve_cases(const input::Options &options);
+/// `latcon gate`: checks the claims that a crack waits for, see require_verified(). @throws ClaimFailed
+support::ExitCode verify_before_cracks(const input::Options &options);
+
 /// `latcon entries`: lists the entries of a section, or of all if it is empty. @throws InputError for an unknown
 /// section
 support::ExitCode print_entries(const std::string &section);
@@ -110,8 +117,6 @@ struct Page
   const char *script, *file; ///< names of the script and of the page
   const char *repeat;        ///< how a command is repeated that found no Python to draw it: its options
 };
-/// The page of `latcon study`.
-inline constexpr Page study_page{"study.py", "study.html", " with --resume, or with --collect after shards,"};
 /// The page of two cracks, of `latcon compare`.
 inline constexpr Page comparison_page{"comparison.py", "compare.html", ""};
 

@@ -23,13 +23,14 @@
 #include "support/ranks.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
+#include "verification/commands/python.h"
 #include "verification/commands/recorded_output.h"
 #include "verification/commands/signals.h"
 #include "verification/commands/usage_error.h"
 #include "verification/elements/elements.h"
 #include "verification/input/case_text.h"
+#include "verification/input/data_folder.h"
 #include "verification/input/shipped_cases.h"
-#include "verification/study/sweep.h"
 
 namespace latcon::commands
 {
@@ -151,6 +152,14 @@ std::string joined(const std::vector<std::string> &words)
   return text;
 }
 
+// Describes the studies that a user can give.
+std::string study_choices()
+{
+  const std::vector<std::string> names = shipped_studies();
+  return "study file (.json)" +
+         (names.empty() ? std::string() : ", or a shipped one: " + input::comma_separated(names));
+}
+
 // Default output directory of a study; of the study file that a sweep wrote beside a copy of its case, its own folder.
 std::string study_folder(const std::string &study, const SweepOptions &sweep)
 {
@@ -160,7 +169,7 @@ std::string study_folder(const std::string &study, const SweepOptions &sweep)
     std::error_code none;
     return std::filesystem::exists(folder / file, none);
   };
-  if (path.filename() == study::sweep_file_name && (has("base.prm") || has("base.json")))
+  if (path.filename() == "sweep.json" && (has("base.prm") || has("base.json")))
     return path.has_parent_path() ? path.parent_path().string() : folder.string();
   return "output/" + path.stem().string() + (sweep.sweeps.empty() ? "" : "-sweep");
 }
@@ -294,12 +303,19 @@ support::ExitCode run_program(int argc, char **argv)
   fracture_command->add_flag("--skip-verification", options.skip_verification,
                              "run the crack unverified; noted in every output");
   fracture_command->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
-  fracture_command
-    ->add_option_function<std::string>(
-      "--side", [&options](const std::string &side) { options.on_continuum = side == "continuum"; },
-      "which side breaks, the lattice or the continuum with damage; default: lattice")
-    ->check(CLI::IsMember({"lattice", "continuum"}))
-    ->type_name("SIDE");
+  CLI::App *gate_command = add_case_command("gate", "check the claims that wait before a crack, run none", "latcon gate quick",
+                                            "-gate", verify_before_cracks);
+  for (CLI::App *of_crack : {fracture_command, gate_command})
+    of_crack
+      ->add_option_function<std::string>(
+        "--side", [&options](const std::string &side) { options.on_continuum = side == "continuum"; },
+        "which side breaks, the lattice or the continuum with damage; default: lattice")
+      ->check(CLI::IsMember({"lattice", "continuum"}))
+      ->type_name("SIDE");
+  CLI::App *resolve_command = add_command("resolve", "cases as JSON, for programs", "latcon resolve <questions.jsonl");
+  resolve_command->callback([&] { command = [&] { return resolve_cases(options); }; });
+  for (CLI::App *internal : {gate_command, resolve_command})
+    internal->group(""); // not listed: `latcon study` uses them
 
   StudyOptions study;
   BatchOptions batch;
@@ -307,7 +323,7 @@ support::ExitCode run_program(int argc, char **argv)
                                      std::string &place, SweepOptions &sweep)
   {
     CLI::App *subcommand = add_command(name, help, example);
-    subcommand->add_option("STUDY", place, study::study_choices() + "; with --sweep a case")->required()->type_name("");
+    subcommand->add_option("STUDY", place, study_choices() + "; with --sweep a case")->required()->type_name("");
     subcommand
       ->add_option(
         "--sweep", sweep.sweeps,

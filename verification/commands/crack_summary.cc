@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "support/text_wrap.h"
-#include "verification/study/study_table.h"
+#include "verification/output/quantity_text.h"
 
 namespace latcon::commands
 {
@@ -30,10 +30,10 @@ std::string line_of(const std::string &name, const std::optional<analysis::Measu
   if (!measured && !reference)
     return "";
   std::string line = "  " + padded(name, 26);
-  line += measured ? study::quantity_text(measured->value, measured->uncertainty, unit) : "not measured";
+  line += measured ? output::quantity_text(measured->value, measured->uncertainty, unit) : "not measured";
   if (!reference)
     return line + "\n";
-  line = padded(line, 52) + "reference " + study::quantity_text(*reference, {}, unit);
+  line = padded(line, 52) + "reference " + output::quantity_text(*reference, {}, unit);
   if (measured)
   {
     std::array<char, 32> percent{};

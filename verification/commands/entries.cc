@@ -19,7 +19,7 @@ namespace
 namespace fs = std::filesystem;
 using Entries = std::vector<input::Declaration>;
 
-constexpr std::size_t columns = 120;
+constexpr std::size_t page_columns = 120;
 
 bool is_root()
 {
@@ -49,7 +49,7 @@ std::string unit_of(const input::Declaration &entry)
   return entry.unit == "1" ? "-" : entry.unit;
 }
 
-std::string padded(const std::string &text, std::size_t width)
+std::string padded_name(const std::string &text, std::size_t width)
 {
   return text + std::string(width - std::min(width, support::width_of(text)), ' ');
 }
@@ -68,7 +68,7 @@ std::string hanging(const std::string &before, const std::string &text)
 {
   const std::size_t indent = support::width_of(before);
   std::string lines;
-  for (const std::string &line : support::wrap_text(text, columns - indent))
+  for (const std::string &line : support::wrap_text(text, page_columns - indent))
     lines += (lines.empty() ? before : std::string(indent, ' ')) + line + "\n";
   return lines;
 }
@@ -80,8 +80,8 @@ std::string section_text(const Entries &entries, const std::string &section)
   std::string text = section + "\n";
   for (const input::Declaration &entry : entries)
     if (entry.section == section)
-      text += hanging("  " + padded(entry.name, name_width) + padded(unit_of(entry), unit_width) +
-                        padded(default_of(entry), default_width) + " ",
+      text += hanging("  " + padded_name(entry.name, name_width) + padded_name(unit_of(entry), unit_width) +
+                        padded_name(default_of(entry), default_width) + " ",
                       entry.documentation);
   return text;
 }

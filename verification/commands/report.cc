@@ -11,6 +11,7 @@
 #include "support/child_process.h"
 #include "support/ranks.h"
 #include "verification/commands/command.h"
+#include "verification/commands/python.h"
 #include "verification/input/data_folder.h"
 #include "verification/output/progress.h"
 
@@ -67,8 +68,7 @@ constexpr int packages_missing = 69;
 int run_script(const std::string &script, const std::string &directory, const std::vector<std::string> &options,
                const std::string &page, bool shows_progress = false)
 {
-  // Debian's interpreter, which finds the packages that the script needs, without packages of the user.
-  const std::string python = "/usr/bin/python3";
+  const std::string python = python_interpreter(); // without packages of the user
   const std::string file = input::data_folder() + "/report/" + script;
   if (!std::filesystem::exists(file))
     throw NoPython(directory + "/" + page, file +

@@ -12,7 +12,7 @@
 #include "support/errors.h"
 #include "verification/input/case.h"
 #include "verification/input/input_file.h"
-#include "verification/study/run_outcome.h"
+#include "verification/output/measured_crack.h"
 
 namespace latcon::commands
 {
@@ -22,7 +22,7 @@ namespace
 // Compared data of one run.
 struct CrackRun
 {
-  study::RunOutcome outcome;
+  output::MeasuredCrack crack;
   std::vector<PathPoint> path;
   std::map<std::string, std::string> entries; // as a case file would hold them
   std::map<std::string, std::string> units;   // of the entries
@@ -96,13 +96,11 @@ CrackRun read_run(const std::string &directory)
     run.units[key] = parameters.unit(key);
   }
   run.spacing = input.spacing;
-  study::PlannedRun planned;
-  planned.run = directory;
-  planned.spacing = input.spacing;
-  run.outcome = study::read_crack(planned, directory);
-  if (run.outcome.state != study::RunState::measured)
+  const std::optional<output::MeasuredCrack> measured = output::read_measured_crack(directory, input.spacing);
+  if (!measured)
     throw support::InputError(
       directory + ": its crack was not measured; crack.json or run.json is damaged, or the run " + "has not ended");
+  run.crack = *measured;
   run.path = read_path(directory + "/crack.csv");
   // Cracks of the lattice do not name their side.
   const auto crack = nlohmann::json::parse(text_of(directory + "/crack.json"), nullptr, false);
@@ -110,7 +108,7 @@ CrackRun read_run(const std::string &directory)
   return run;
 }
 
-std::optional<double> value_in(const study::Values &values, const std::string &name)
+std::optional<double> value_in(const output::Values &values, const std::string &name)
 {
   const auto found = values.find(name);
   return found == values.end() ? std::nullopt : std::optional<double>(found->second);
@@ -194,17 +192,17 @@ RunComparison compare_runs(const std::string &first, const std::string &second)
   comparison.second = second;
   comparison.first_side = one.side;
   comparison.second_side = other.side;
-  comparison.first_problem = one.outcome.problem;
-  comparison.second_problem = other.outcome.problem;
-  comparison.first_pattern = one.outcome.pattern;
-  comparison.second_pattern = other.outcome.pattern;
+  comparison.first_problem = one.crack.problem;
+  comparison.second_problem = other.crack.problem;
+  comparison.first_pattern = one.crack.pattern;
+  comparison.second_pattern = other.crack.pattern;
   comparison.spacing = one.spacing;
-  for (const study::StudyQuantity &quantity : study::quantities())
+  for (const output::CrackQuantity &quantity : output::crack_quantities())
   {
     if (is_uncertainty(quantity.name))
       continue;
     const auto of = [&](const CrackRun &run, const std::string &suffix)
-    { return value_in(run.outcome.values, quantity.name + suffix); };
+    { return value_in(run.crack.values, quantity.name + suffix); };
     const QuantityPair pair{quantity.name,           quantity.unit, of(one, ""),
                             of(one, "_uncertainty"), of(other, ""), of(other, "_uncertainty")};
     if (pair.first || pair.second)

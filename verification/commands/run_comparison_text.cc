@@ -11,7 +11,7 @@
 #include "support/text_wrap.h"
 #include "verification/commands/run_comparison.h"
 #include "verification/output/csv.h"
-#include "verification/study/study_table.h"
+#include "verification/output/quantity_text.h"
 
 namespace latcon::commands
 {
@@ -30,7 +30,7 @@ std::string number_text(double value, const char *format)
 
 std::string cell(const std::optional<double> &value, const std::optional<double> &uncertainty, const std::string &unit)
 {
-  return value ? study::quantity_text(*value, uncertainty, unit) : "-";
+  return value ? output::quantity_text(*value, uncertainty, unit) : "-";
 }
 
 // Columns two blanks apart, the first row a heading.
@@ -89,10 +89,10 @@ std::string RunComparison::text() const
   if (!paths)
     return text + "\nThe paths have no stretch of X in common.\n";
   const auto length = [this](double value)
-  { return study::quantity_text(value, {}, "m") + " (" + number_text(value / spacing, "%.3g") + " d)"; };
-  return text + "\nDistance between the paths, X from " + study::quantity_text(paths->X_begin, {}, "m") + " to " +
-         study::quantity_text(paths->X_end, {}, "m") + ": rms " + length(paths->rms) + ", largest " +
-         length(paths->largest) + " at X = " + study::quantity_text(paths->largest_X, {}, "m") + "\n";
+  { return output::quantity_text(value, {}, "m") + " (" + number_text(value / spacing, "%.3g") + " d)"; };
+  return text + "\nDistance between the paths, X from " + output::quantity_text(paths->X_begin, {}, "m") + " to " +
+         output::quantity_text(paths->X_end, {}, "m") + ": rms " + length(paths->rms) + ", largest " +
+         length(paths->largest) + " at X = " + output::quantity_text(paths->largest_X, {}, "m") + "\n";
 }
 
 std::string RunComparison::json(const std::string &output_directory) const

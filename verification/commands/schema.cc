@@ -9,7 +9,7 @@
 #include "verification/commands/command.h"
 #include "verification/input/case_text.h"
 #include "verification/input/shipped_cases.h"
-#include "verification/study/quantities.h"
+#include "verification/output/crack_quantities.h"
 
 namespace latcon::commands
 {
@@ -152,7 +152,7 @@ support::ExitCode print_schema(const input::Options &options)
   document["version"] = output::program_version();
   document["git_commit"] = output::git_commit();
   document["cases"] = shipped_case_files();
-  for (const study::StudyQuantity &quantity : study::quantities())
+  for (const output::CrackQuantity &quantity : output::crack_quantities())
     document["quantities"][quantity.name] = quantity.unit;
   const lattice::Material material = input.material();
   for (const claims::Claim &claim : claim_registry())

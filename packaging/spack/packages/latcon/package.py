@@ -33,6 +33,7 @@ class Latcon(CMakePackage):
     # of the system, with its packages.
     depends_on("python@3.11:", type=("build", "run"))
     depends_on("py-numpy", type="run")
+    depends_on("py-scipy", type="run")
     depends_on("py-pandas", type="run")
     depends_on("py-matplotlib", type="run")
 

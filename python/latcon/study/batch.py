@@ -1,0 +1,143 @@
+"""``latcon batch``: a study as a job array of Slurm."""
+from __future__ import annotations
+
+import math
+import os
+import re
+import shlex
+import subprocess
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from .folder import FolderLock, write_file
+from .output import plan_table
+from .plan import plan_runs
+from .record import Printed
+from .requested import RequestedStudy, read_requested_study, require_folder_of, require_no_refinement, verification_of
+from .program import DONE, InputError, Program, printable
+
+_MAX_DEFAULT_TASKS = 1000  # MaxArraySize of Slurm is 1001 unless configured
+
+_DIRECTIVES = """\
+#!/bin/bash
+#SBATCH --job-name={name}
+#SBATCH --ntasks=1
+#SBATCH --time={time}
+#SBATCH --output={log}
+#SBATCH --open-mode=append
+"""
+
+_ARRAY = """\
+#SBATCH --array=1-{n_tasks}
+#SBATCH --cpus-per-task={cpus_per_task}
+#SBATCH --requeue
+#SBATCH --signal=B:USR1@120
+
+# Two minutes before the time limit the runs write checkpoints, and the task is requeued to continue from them.
+requeue=no
+trap 'requeue=yes; kill -TERM "$runs"' USR1
+trap 'kill -TERM "$runs"' TERM
+{command} --shard "$SLURM_ARRAY_TASK_ID/{n_tasks}" --threads {cpus_per_task} --quiet &
+runs=$!
+# A signal ends `wait` before the program ends.
+wait "$runs"
+while kill -0 "$runs" 2>/dev/null; do
+  wait "$runs"
+done
+wait "$runs"
+code=$?
+if [ "$requeue" = yes ] && [ "$code" -eq 130 ]; then
+  scontrol requeue "${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID"
+fi
+exit "$code"
+"""
+
+
+def write_batch(program: Program, printed: Printed, options: Mapping[str, Any]) -> int:
+    """Writes the scripts of a study, and submits them if wanted. Returns the exit code."""
+    time, partition = options["time"], options["partition"]
+    if not re.fullmatch(r"([0-9]+-)?[0-9]+(:[0-9]{2}){0,2}", time):
+        raise InputError(f"--time '{printable(time)}': expected [days-]hours:minutes:seconds, for example 1-00:00:00")
+    if _seconds_of(time) < 300:
+        raise InputError(f"--time '{time}': a run writes its checkpoint two minutes before the limit; give at least 5 minutes")
+    if not re.fullmatch(r"[A-Za-z0-9_.,-]*", partition):
+        raise InputError(f"--partition '{printable(partition)}': expected a name")
+    requested = read_requested_study(program, options)
+    require_no_refinement(requested.study)
+    plan = plan_runs(program, requested.study, requested.overrides, verification_of(options))
+    n_tasks = min(len(plan), options["tasks"] or _MAX_DEFAULT_TASKS)
+    if options["dry_run"]:
+        if not options["quiet"]:
+            printed.print(plan_table(requested.study, plan, n_tasks * options["cpus_per_task"]))
+        return DONE
+    directory = options["output_dir"]
+    folder = os.path.join(os.path.abspath(directory), "batch")
+    if not re.fullmatch(r"[^\s%\\'\"]+", folder):
+        raise InputError(f"--output-dir '{printable(folder)}': sbatch does not support folders with blanks, quotes, % or \\ "
+                         "for its log files")
+    require_folder_of(requested.study, directory)
+    os.makedirs(folder, exist_ok=True)
+    if requested.kept:
+        with FolderLock(directory):
+            requested.write_sweep()
+    command = _study_command(options, requested)
+    runs, collect = os.path.join(folder, "runs.sh"), os.path.join(folder, "collect.sh")
+    write_file(runs, _directives(options, "latcon-runs", f"{folder}/runs-%a.log") + _ARRAY.format(
+        n_tasks=n_tasks, cpus_per_task=options["cpus_per_task"], command=command))
+    write_file(collect, _directives(options, "latcon-collect", f"{folder}/collect.log") + f"\nexec {command} --collect\n")
+
+    def say(text: str) -> None:
+        if not options["quiet"]:
+            printed.print(text + "\n")
+
+    counts = f"{len(plan)} runs in {n_tasks} tasks"
+    if not options["submit"]:
+        say(f"{counts}. To submit them:\n  runs=$(sbatch --parsable {shlex.quote(runs)})\n"
+            f"  sbatch --dependency=afterany:$runs {shlex.quote(collect)}")
+        return DONE
+    log = os.path.join(folder, "sbatch.log")
+    array = _submit([runs], log)
+    say(f"{counts}: job {array}")
+    say(f"then the verdict: job {_submit([f'--dependency=afterany:{array}', collect], log)}")
+    return DONE
+
+
+def _study_command(options: Mapping[str, Any], requested: RequestedStudy) -> str:
+    """Returns `latcon study` with the choices of the user, from any folder."""
+    study = requested.file if requested.kept else options["study"]
+    words = [options["program"], "study", os.path.abspath(study) if os.path.exists(study) else study]
+    for key, value in requested.overrides.items():
+        words += ["--set", f"{key}={value}"]
+    words += [f"--{name.replace('_', '-')}" for name in ("quick", "skip_verification", "yes") if options[name]]
+    return shlex.join([*words, "--output-dir", os.path.abspath(options["output_dir"])])
+
+
+def _directives(options: Mapping[str, Any], name: str, log: str) -> str:
+    partition = f"#SBATCH --partition={options['partition']}\n" if options["partition"] else ""
+    return _DIRECTIVES.format(name=name, time=options["time"], log=log) + partition
+
+
+def _submit(arguments: Sequence[str], log: str) -> str:
+    """Submits a script and returns the number of the job."""
+    try:
+        ended = subprocess.run(["sbatch", "--parsable", *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
+    except OSError:
+        raise InputError("--submit: there is no sbatch on this machine; copy the scripts to one with Slurm, or submit them "
+                         "there") from None
+    with open(log, "w", encoding="utf-8") as file:
+        file.write(ended.stdout)
+    printed = ended.stdout.strip()
+    if ended.returncode != 0:
+        raise InputError(f"--submit: sbatch ended with {ended.returncode}: {printable(printed, 300)}")
+    return printed.rpartition("\n")[2]  # warnings come first
+
+
+def _seconds_of(limit: str) -> float:
+    """Returns a time limit of Slurm: minutes[:seconds], hours:minutes:seconds, days-hours[:minutes[:seconds]]."""
+    days, dash, rest = limit.rpartition("-")
+    parts = [float(part) for part in rest.split(":")]
+    if not dash and len(parts) < 3:
+        parts.insert(0, 0.0)
+    hours, minutes, seconds = (parts + [0.0, 0.0])[:3]
+    return ((24 * float(days) if dash else 0.0) + hours) * 3600 + minutes * 60 + seconds if math.isfinite(hours) else math.inf

@@ -1,0 +1,197 @@
+"""Output files and tables of a study."""
+from __future__ import annotations
+
+import csv
+import dataclasses
+import io
+import json
+import math
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from .onset import Interval, OnsetFit
+from .outcome import RunOutcome, RunState
+from .plan import PlannedRun, Verification
+from .seeds import SeedStatistics, group_by_run, statistics
+from .program import Program
+from .study_file import Rule, Study
+from .table import ClaimOutcome, RowOutcome
+
+_WIDTH = 120
+
+
+@dataclasses.dataclass
+class StudyResults:
+    """Study, and the outcomes of its runs in the order of the plan."""
+
+    study: Study
+    plan: list[PlannedRun]
+    quick: bool
+    verification: Verification
+    outcomes: list[RunOutcome] = dataclasses.field(default_factory=list)
+    claims: list[ClaimOutcome] = dataclasses.field(default_factory=list)
+
+
+def study_json(program: Program, results: StudyResults) -> str:
+    """Returns the content of `study.json`: all data, for the page and for other programs. Equal runs give equal texts."""
+    study = results.study
+    document = {
+        "title": study.title, "version": program.facts["version"], "git_commit": program.facts["git_commit"], "quick": results.quick,
+        "verification": results.verification.value, "verified": results.verification is Verification.EVERY_RUN,
+        "settings": study.settings, "units": program.units,
+        "runs": [{"run": run.name, "about": run.about, "set": run.own, "level": run.level} for run in study.runs],
+        "swept": study.swept, "varied": _varied(program, results), "left_out": study.left_out, "pictures": study.pictures,
+        "seeds": [_seed(program, planned, outcome) for planned, outcome in zip(results.plan, results.outcomes)],
+        "claims": [{"claim": claim.claim.claim, "paper": claim.claim.paper, "note": claim.claim.note,
+                    "verdict": claim.verdict.value, "rows": [_row(row) for row in claim.rows]} for claim in results.claims]}
+    return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+
+
+def _finite(value: float | None) -> float | str | None:
+    """JSON has no number that is not finite, and null means that there is no value."""
+    return value if value is None or math.isfinite(value) else str(value)
+
+
+def _seed(program: Program, planned: PlannedRun, outcome: RunOutcome) -> dict[str, Any]:
+    return {"run": outcome.run, "seed": outcome.seed, "folder": f"runs/{planned.folder}", "state": outcome.state.value,
+            "exit_code": outcome.exit_code, "problem": outcome.problem, "pattern": outcome.pattern or None, "reason": outcome.reason,
+            "side": planned.side, "cells" if planned.on_continuum else "sites": int(planned.size),
+            "values": {name: outcome.values.get(name) for name in program.units}}
+
+
+def _row(outcome: RowOutcome) -> dict[str, Any]:
+    row = outcome.row
+    document: dict[str, Any] = {"runs": row.runs, "quantity": row.quantity, "unit": row.unit, "against": row.against or None,
+                "against_unit": row.against_unit if row.against else None, "expected": outcome.expected,
+                "measured": "; ".join(outcome.measured), "number": _finite(outcome.number)}
+    if row.rule is Rule.ONSET_EXPONENT:
+        document["onset"] = _onset(outcome.onset)
+    return document | {"note": "; ".join(outcome.note), "verdict": outcome.verdict.value,
+                       "values": [_statistics(seeds) for seeds in outcome.runs]}
+
+
+def _statistics(seeds: SeedStatistics) -> dict[str, Any]:
+    return {"run": seeds.run, "against": _finite(seeds.abscissa), "seeds": seeds.n_seeds, "n": seeds.n, "mean": _finite(seeds.mean),
+            "standard_deviation": _finite(seeds.deviation), "patterns": seeds.patterns, "undecided": seeds.n_undecided}
+
+
+def _onset(fit: OnsetFit | None) -> dict[str, Any] | None:
+    def interval(values: Interval) -> dict[str, float]:
+        return dict(zip(("value", "low", "high"), values))
+
+    return None if fit is None else {"exponent": interval(fit.exponent), "onset": interval(fit.onset), "prefactor": fit.prefactor, "p_fit": fit.p_fit}
+
+
+def _varied(program: Program, results: StudyResults) -> list[dict[str, Any]]:
+    """Entries in which the runs differ, with their value in each run: a number, or a text."""
+    runs: list[PlannedRun] = []
+    for run in results.plan:
+        if not runs or runs[-1].run != run.run:
+            runs.append(run)
+    keys = dict.fromkeys(key for run in results.study.runs for key in run.own)
+    entries = [{"entry": key, "unit": program.entries[key].unit, "values": [run.values.get(key, "") for run in runs]} for key in keys]
+    return [entry for entry in entries if any(value != entry["values"][0] for value in entry["values"])]
+
+
+def study_csv(program: Program, results: StudyResults) -> str:
+    """Returns the content of `study.csv`: a line per run and seed, empty fields for quantities that were not measured."""
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(["run", "seed", "set", "state", "pattern", *(f"{name} [{unit}]" for name, unit in program.units.items())])
+    own = {run.name: "; ".join(f"{key}={value}" for key, value in run.own.items()) for run in results.study.runs}
+    for outcome in results.outcomes:
+        table.writerow([outcome.run, outcome.seed, own[outcome.run], outcome.state.value, outcome.pattern,
+                        *(shortest(outcome.values.get(name)) for name in program.units)])
+    return text.getvalue()
+
+
+def shortest(value: float | None) -> str:
+    """Returns the shortest text that converts back to the same number, in the form of C++."""
+    if value is None:
+        return ""
+    mantissa, e, exponent = repr(float(value)).partition("e")
+    plain = mantissa.removesuffix(".0")
+    if e:
+        return f"{plain}e{exponent}"
+    digits = plain.lstrip("-").replace(".", "").lstrip("0")
+    if not digits:
+        return plain
+    # The shorter of the two forms, of equal ones the plain one.
+    power = math.floor(math.log10(abs(value)))
+    significant = digits.rstrip("0")
+    scientific = ("-" if value < 0 else "") + significant[0] + ("." + significant[1:] if significant[1:] else "") + f"e{power:+03d}"
+    return scientific if len(scientific) < len(plain) and float(scientific) == value else plain
+
+
+def plan_table(study: Study, plan: Sequence[PlannedRun], n_cores: int) -> str:
+    """Returns the runs with their sizes and estimated time on `n_cores` cores."""
+    width = max([4, *(len(run.folder) for run in plan)])
+    lines = [f"{'run':<{width}}{'size':>10}{'evaluations':>12}{'core time':>12}"]
+    lines += [f"{run.folder:<{width}}{_rounded(run.size):>10}{_rounded(run.evaluations):>12}{math.ceil(run.seconds):>10} s"
+              for run in plan]
+    total = 0.0
+    for run in plan:
+        total += run.seconds
+    lines.append(f"{len(plan)} runs, about {math.ceil(total / 60)} core minutes, {math.ceil(total / 60 / n_cores)} minutes on "
+                 f"{n_cores} cores")
+    if study.refine:
+        lines.append(f"refined {study.refine} time{'s' if study.refine > 1 else ''} where neighbours differ, at a cost that depends "
+                     "on the patterns")
+    return "\n".join(lines) + "\n"
+
+
+def _rounded(value: float) -> int:
+    return math.floor(value + 0.5)
+
+
+def result_table(program: Program, results: StudyResults) -> str:
+    """Returns the table of verdicts, at most 120 columns wide; without claims a line per run."""
+    lines: list[str] = []
+    if not results.claims:
+        lines += _run_lines(program, results)
+    for claim in results.claims:
+        lines += _wrapped(f"{claim.claim.claim}: {claim.verdict.value}", "", "")
+        for row in claim.rows:
+            text = f"{', '.join(row.row.runs)}, {row.row.quantity}: {'; '.join(row.measured)}"
+            text += (f" [{row.expected}]" if row.expected else "") + (f" - {'; '.join(row.note)}" if row.note else "")
+            lines += _wrapped(text, f"{'  ' + row.verdict.value:<17}", " " * 17)
+    for outcome in results.outcomes:
+        if outcome.state is not RunState.MEASURED:
+            problem = f": {outcome.problem}" if outcome.problem else ""
+            lines += _wrapped(f"{outcome.run}, seed {outcome.seed}: {outcome.state.value}{problem}", "", "  ")
+    return "".join(line + "\n" for line in lines)
+
+
+def _run_lines(program: Program, results: StudyResults) -> list[str]:
+    """Returns a line per run, of at most 60: patterns, speed, wavelength and amplitude over the seeds."""
+    groups = group_by_run(results.outcomes)
+    lines = []
+    for run in results.study.runs[:60]:
+        outcomes = groups.get(run.name, [])
+        line = f"{run.name}: {statistics(run.name, 'pattern', outcomes).text('')}"
+        for quantity, label in (("speed_lagrangian", ""), ("wavelength", "wavelength "), ("amplitude", "amplitude ")):
+            seeds = statistics(run.name, quantity, outcomes)
+            if seeds.n:
+                line += f", {label}{seeds.text(program.units[quantity])}"
+        lines.append(line)
+    if len(results.study.runs) > 60:
+        lines.append(f"... {len(results.study.runs)} cases in all: study.csv")
+    return lines
+
+
+def _wrapped(text: str, first: str, indent: str) -> list[str]:
+    """Wraps a text at blanks, and within words that are too long; control characters would break the table."""
+    width = _WIDTH - len(indent)
+    text = re.sub(r"[\x00-\x1f\x7f]", "?", text)
+    lines, line = [], ""
+    for word in re.findall(r"^[^ ]+| [^ ]*", text):
+        if line and len(line) + len(word) > width:
+            lines.append(line)
+            line = ""
+        line += word if line else word.removeprefix(" ")
+        while len(line) > width:
+            lines.append(line[:width])
+            line = line[width:]
+    lines.append(line)
+    return [lead + line for lead, line in zip([first] + [indent] * len(lines), lines)]

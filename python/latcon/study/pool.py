@@ -1,0 +1,108 @@
+"""Pool of child processes."""
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Callable, Sequence
+
+_POLL_INTERVAL = 0.02  # [s]
+_PATIENCE = 60.0  # [s] until a child that does not end is killed
+_NOT_STARTED = 127
+_PR_SET_PDEATHSIG = 1
+# Variables of a launcher, with which a child would be a rank of another job.
+_LAUNCHER = ("OMPI_", "PMIX_", "PMI_")
+
+
+def run_processes(n_jobs: int, limit: int, start: Callable[[int], tuple[Sequence[str], str]],
+                  ended: Callable[[int, int], None], waiting: Callable[[Sequence[int]], None],
+                  stop: Callable[[], bool]) -> bool:
+    """Runs jobs in their order, at most `limit` at a time, and waits for all of them.
+
+    Children have no standard input and no variables of MPI launchers, so that each is a separate job of MPI. They ignore SIGINT:
+    this process handles it. They get SIGTERM if this process dies. A failed job does not stop the others.
+
+    Parameters
+    ----------
+    start
+        Returns command and log file of a job, called just before it starts. The log gets standard output and error.
+    ended
+        Called when a job has ended by itself, with its exit status: 128 + the signal that killed it, or 127 if it could not start.
+    waiting
+        Called several times per second with the running jobs.
+    stop
+        Called equally often; returns True to end early. Then no more jobs start, and running jobs get SIGTERM, and SIGKILL a
+        minute later.
+
+    Returns
+    -------
+    bool
+        Whether all jobs ended by themselves.
+    """
+    running: dict[int, subprocess.Popen[bytes] | None] = {}
+    following = 0
+    try:
+        while following < n_jobs or running:
+            if stop():
+                return False
+            while following < n_jobs and len(running) < limit:
+                running[following] = _start(*start(following))
+                following += 1
+            waiting(list(running))
+            time.sleep(_POLL_INTERVAL)
+            for job, child in list(running.items()):
+                status = _NOT_STARTED if child is None else child.poll()
+                if status is None:
+                    continue
+                del running[job]
+                # A signal from a terminal goes to all processes, so a child may have received it before this process.
+                if stop():
+                    return False
+                ended(job, status if status >= 0 else 128 - status)
+        return True
+    finally:
+        _end([child for child in running.values() if child is not None])
+
+
+def environment_of_children() -> dict[str, str]:
+    """Returns the variables of this process without those that would make a child a rank of another job."""
+    return {name: value for name, value in os.environ.items()
+            if not name.startswith(_LAUNCHER) and name not in ("FLUX_JOB_ID", "PYTHONPATH")}
+
+
+def end_with_parent(number: int) -> Callable[[], None]:
+    """Returns what a child has to do before it starts, so that it gets a signal when this process dies."""
+    parent, libc = os.getpid(), ctypes.CDLL(None)
+
+    def prepare() -> None:
+        libc.prctl(_PR_SET_PDEATHSIG, number)
+        if os.getppid() != parent:
+            os._exit(_NOT_STARTED)
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    return prepare
+
+
+def _start(command: Sequence[str], log: str) -> subprocess.Popen[bytes] | None:
+    output = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW, 0o666)
+    try:
+        return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=output, env=environment_of_children(),
+                                preexec_fn=end_with_parent(signal.SIGTERM))
+    except FileNotFoundError:
+        return None
+    finally:
+        os.close(output)
+
+
+def _end(children: Sequence[subprocess.Popen[bytes]]) -> None:
+    for child in children:
+        child.terminate()
+    last = time.monotonic() + _PATIENCE
+    for child in children:
+        try:
+            child.wait(max(0.0, last - time.monotonic()))
+        except subprocess.TimeoutExpired:
+            child.kill()
+            child.wait()

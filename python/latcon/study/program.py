@@ -1,0 +1,177 @@
+"""The program, which resolves the cases of a study; exit codes, messages and signals as its own."""
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import re
+import signal
+import subprocess
+from collections.abc import Mapping, Sequence
+from types import FrameType
+from typing import Any
+
+from .pool import end_with_parent, environment_of_children
+
+DONE, INTERNAL_ERROR, BAD_INPUT, CLAIM_FAILED, SOLVER_FAILED, OUTPUT_FAILED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 130
+
+_ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2, signal.SIGALRM, signal.SIGXCPU)
+
+
+class InputError(Exception):
+    """Invalid input, with all problems that were found."""
+
+    def __init__(self, *problems: str) -> None:
+        super().__init__("\n".join(problems))
+        self.problems = problems
+
+
+class Ended(Exception):
+    """End with an exit code; what is wrong has been printed, and `message` is for the log."""
+
+    def __init__(self, exit_code: int, message: str = "") -> None:
+        super().__init__(message)
+        self.exit_code = exit_code
+        self.message = message
+
+
+class Interrupted(BaseException):
+    """A signal that ends the program."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
+
+
+class Signals:
+    """Signals that end the program: raise Interrupted, or are only recorded while they are deferred."""
+
+    def __init__(self) -> None:
+        self.deferred = False
+        self.pending: int | None = None
+        for number in _ENDING_SIGNALS:
+            if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:
+                signal.signal(number, self._receive)
+        signal.pthread_sigmask(signal.SIG_SETMASK, ())  # blocked since before the interpreter started
+
+    def resume(self) -> None:
+        """Ends the deferral."""
+        self.deferred = False
+        if self.pending is not None:
+            self._receive(self.pending, None)
+
+    def _receive(self, number: int, _frame: FrameType | None) -> None:
+        self.pending = number
+        if not self.deferred:
+            self.deferred = True  # a second signal does not interrupt the end
+            raise Interrupted(number)
+
+
+@dataclasses.dataclass(frozen=True)
+class Entry:
+    """Entry of a case; `unit` is empty for entries that are not quantities, `number_unit` then "1"."""
+
+    key: str
+    unit: str
+    number_unit: str
+    is_number: bool
+    is_whole: bool
+    is_list: bool
+
+
+@dataclasses.dataclass(frozen=True)
+class Quantity:
+    """Quantity that a study records of each run; `source` is the file without its ending, or ``derived``."""
+
+    name: str
+    unit: str
+    source: str
+
+
+def printable(text: str, longest: int = 80) -> str:
+    """Returns a text for a message: on one line, what does not show as ``\\xNN``, the middle omitted if it is longer."""
+    if len(text.encode("utf-8", "surrogateescape")) > longest:
+        text = text[:longest - 20] + " ... " + text[-20:]
+    # Control characters, a no-break space, and U+200B to U+200F and U+FEFF, which do not show.
+    return re.sub("[\0-\x1f\x7f-\xa0\u200b-\u200f\ufeff\ud800-\udfff]",
+                  lambda letter: "".join(f"\\x{byte:02x}" for byte in letter[0].encode("utf-8", "surrogateescape")), text)
+
+
+def read_input(path: str) -> tuple[bytes, str]:
+    """Returns the content of a file of the user, and why it cannot be used."""
+    largest = 1 << 24
+    if os.path.isdir(path):
+        return b"", "it is a folder"
+    try:
+        with open(path, "rb", buffering=0) as file:
+            content = b""
+            while len(content) <= largest and (part := file.read(largest + 1 - len(content))):
+                content += part
+    except OSError as error:
+        return b"", error.strerror or str(error)
+    return content, "it is larger than 16 MiB" if len(content) > largest else ""
+
+
+class Program:
+    """The program: facts about it and about the entries of a case, and ``latcon resolve``, which answers questions about cases.
+
+    Parameters
+    ----------
+    options
+        Options of the command line.
+    """
+
+    def __init__(self, options: Mapping[str, Any]) -> None:
+        self.data: str = options["data"]
+        # This program, even if its file is replaced.
+        self.executable = f"/proc/{os.getpid()}/fd/{os.open(options['program'], os.O_RDONLY)}"
+        words = ["--yes"] * options["yes"] + (["--threads", str(options["threads"])] if options["threads"] else [])
+        # A group of its own: Ctrl-C reaches this process, which decides.
+        self._resolver = subprocess.Popen([self.executable, "resolve", *words], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                          env=environment_of_children(), process_group=0,
+                                          preexec_fn=end_with_parent(signal.SIGKILL))
+        facts = self._answer()
+        self.entries = {entry["key"]: Entry(**entry) for entry in facts["entries"]}
+        self.sorted_entries = sorted(self.entries)
+        self.quantities = [Quantity(**quantity) for quantity in facts["quantities"]]
+        self.units = {quantity.name: quantity.unit for quantity in self.quantities}
+        self.cores: int = facts["cores"]
+        self.facts: dict[str, Any] = facts["record"] | {"command_line": options["arguments"]}
+
+    def ask(self, **question: Any) -> Any:
+        """Returns the answer to a question (``latcon resolve``).
+
+        Raises
+        ------
+        InputError
+            With the problems of a case, or if the machine has too little memory.
+        """
+        assert self._resolver.stdin
+        self._resolver.stdin.write(json.dumps(question).encode("ascii") + b"\n")
+        self._resolver.stdin.flush()
+        answer = self._answer()
+        if isinstance(answer, dict) and "problems" in answer:
+            raise InputError(*answer["problems"])
+        return answer
+
+    def _answer(self) -> Any:
+        assert self._resolver.stdout
+        if line := self._resolver.stdout.readline():
+            return json.loads(line)
+        raise Ended(max(self._resolver.wait(), INTERNAL_ERROR))
+
+    def close(self) -> None:
+        """Ends the process that answers."""
+        self._resolver.kill()
+        self._resolver.wait()
+
+    def hint(self, given: str, known: Sequence[str]) -> str:
+        """Returns ``; nearest: WORD`` for a mistyped word; empty if no known word is similar."""
+        nearest = self.ask(nearest=printable(given, 200), known=list(known))
+        return f"; nearest: {nearest}" if nearest else ""
+
+    def shipped(self, folder: str, ending: str) -> dict[str, str]:
+        """Returns the files of the shipped cases or studies by name."""
+        place = os.path.join(self.data, folder)
+        names = sorted(name for name in os.listdir(place) if name.endswith(ending)) if os.path.isdir(place) else []
+        return {name.removesuffix(ending): os.path.join(place, name) for name in names}

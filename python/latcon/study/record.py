@@ -1,0 +1,225 @@
+"""Record of a study in its output directory: `run.json`, `log.txt`, `results.json`, `results.csv`; what is printed."""
+from __future__ import annotations
+
+import contextlib
+import csv
+import io
+import json
+import math
+import os
+import resource
+import select
+import shutil
+import signal
+import subprocess
+import time
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from .folder import FolderLock, add_to_list, archive, is_listed, write_atomically, write_file
+from .program import CLAIM_FAILED, DONE, INTERRUPTED, Ended, Program
+from .pool import end_with_parent, environment_of_children
+from .output import shortest
+
+
+class Printed:
+    """What this process prints to standard output, of which a log keeps a copy."""
+
+    def __init__(self) -> None:
+        self.text = ""
+        self.is_complete = True
+
+    def print(self, text: str) -> None:
+        """Prints a text."""
+        self.text += text
+        data = text.encode("utf-8", "surrogateescape")
+        try:
+            while data:
+                data = data[os.write(1, data):]
+        except BrokenPipeError:
+            pass  # the reader does not want more
+        except OSError:
+            self.is_complete = False
+
+
+def json_text(document: Any, indent: int = 2) -> str:
+    """Returns a document as the program writes it, with a final line break."""
+    text = json.dumps(document, indent=indent, ensure_ascii=False) + "\n"
+    return text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")  # paths need not be UTF-8
+
+
+class Record:
+    """Locked output directory of a study; `run.json` has the exit code however the study ends.
+
+    Parameters
+    ----------
+    resume
+        Whether earlier files stay; otherwise they are moved to a subfolder.
+    """
+
+    def __init__(self, program: Program, printed: Printed, directory: str, options: Mapping[str, Any], resume: bool) -> None:
+        self.directory, self._printed, self._options = directory, printed, options
+        os.makedirs(directory, exist_ok=True)
+        self._lock = FolderLock(directory)
+        if not resume and (aside := archive(directory)) and not options["quiet"]:
+            printed.print(f"The files of an earlier run in {directory} are now in {aside}\n")
+        add_to_list(directory, [])
+        log = f"{directory}/log.txt"
+        # A log.txt that latcon did not write belongs to the user, who may have redirected the output of this program to it.
+        streams = [os.fstat(stream) for stream in (1, 2)]
+        self._keeps_log = not os.path.isfile(log) or is_listed(directory, "log.txt") and not any(
+            os.path.samestat(os.stat(log), stream) for stream in streams)
+        self._log = ""
+        if resume and os.path.isfile(log):
+            with open(log, encoding="utf-8", errors="surrogateescape") as file:
+                self._log = file.read()
+        self._log += "$ " + " ".join(options["arguments"]) + "\n"
+        self._document: dict[str, Any] = program.facts | {"wall_time_s": {}}
+        self.write(None)
+
+    def add(self, **facts: Any) -> None:
+        """Adds facts to `run.json`."""
+        self._document.update(facts)
+
+    def add_time(self, phase: str, seconds: float) -> None:
+        """Adds wall time to that of a phase."""
+        times = self._document["wall_time_s"]
+        times[phase] = times.get(phase, 0.0) + seconds
+
+    def write(self, exit_code: int | None, message: str = "") -> None:
+        """Writes `run.json` and the log, which ends with the message."""
+        usage = resource.getrusage(resource.RUSAGE_SELF)
+        self._document |= {"wall_time_total_s": time.monotonic() - BEGIN, "peak_memory_bytes": usage.ru_maxrss * 1024,
+                           "exit_code": exit_code}
+        write_file(f"{self.directory}/run.json", json_text(self._document))
+        if self._keeps_log:
+            write_file(f"{self.directory}/log.txt", self._log + self._printed.text + message)
+
+    def release(self) -> None:
+        """Releases the directory."""
+        self._lock.release()
+
+    def end(self, rows: Sequence[Mapping[str, Any]], exit_code: int) -> int:
+        """Writes the rows, and the record with the exit code, which is returned: CLAIM_FAILED instead of DONE if a row fails."""
+        claims = []
+        for row in rows:
+            claim = {"claim": row["claim"], "quantity": row["quantity"], "unit": row["unit"], "lattice": row["lattice"],
+                     "continuum": None, "theory": row["theory"], "error": row["error"], "tolerance": row["tolerance"],
+                     "verdict": _verdict(row), "reason": row["reason"], "gate": False, "kind": "claim"}
+            claims.append({key: float(value) if isinstance(value, int) and key != "gate" else value for key, value in claim.items()})
+        verdicts = {claim["verdict"] for claim in claims}
+        verdict = next((word for word in ("fails", "holds") if word in verdicts), "reported")
+        write_file(f"{self.directory}/results.json", json_text({"claims": claims, "verdict": verdict}))
+        table = io.StringIO()
+        writer = csv.writer(table, lineterminator="\n")
+        writer.writerow(["claim", "quantity", "unit", "lattice", "continuum", "theory", "error", "tolerance", "verdict", "reason",
+                         "gate", "kind"])
+        for claim in claims:
+            writer.writerow(["false" if value is False else shortest(value) if isinstance(value, float) else value
+                             for value in claim.values()])
+        write_file(f"{self.directory}/results.csv", table.getvalue())
+        if exit_code == DONE and verdict == "fails":
+            exit_code = CLAIM_FAILED
+        self.add(verdict=verdict, failed_rows={f"{claim['claim']}: {claim['quantity']}": "claim" for claim in claims
+                                               if claim["verdict"] == "fails"})
+        self.write(exit_code)
+        if exit_code == INTERRUPTED:
+            say_error(f"latcon: interrupted; --resume goes on from what is in {self.directory}\n")
+        return exit_code
+
+    def verify(self, program: Program, case: str, on_continuum: bool) -> None:
+        """Checks the claims that cracks of a case wait for, in a folder of their own, and takes over what is found.
+
+        Raises
+        ------
+        Ended
+            If one does not hold.
+        """
+        folder = f"{self.directory}/.latcon-gate"
+        shutil.rmtree(folder, ignore_errors=True)  # of a killed study
+        os.mkdir(folder)
+        write_atomically(f"{folder}/base.prm", case)
+        options = self._options
+        words = [program.executable, "gate", f"{folder}/base.prm", "--side", "continuum" if on_continuum else "lattice",
+                 "--output-dir", folder, *["--quiet"] * options["quiet"]]
+        words += ["--threads", str(options["threads"])] if options["threads"] else []
+        with subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, env=environment_of_children(),
+                              process_group=0, preexec_fn=end_with_parent(signal.SIGKILL)) as child:
+            try:
+                assert child.stdout
+                printed = child.stdout.read()
+            except BaseException:
+                child.kill()
+                child.wait()
+                shutil.rmtree(folder, ignore_errors=True)
+                raise
+        self._printed.print(printed.decode("utf-8", "surrogateescape"))
+        if child.returncode not in (DONE, CLAIM_FAILED):
+            raise Ended(max(child.returncode, 1))
+        with open(f"{folder}/run.json", encoding="utf-8") as file:
+            found = json.load(file)
+        self.add(**{key: found[key] for key in ("verification", "verification_of_program", "failed_rows", "verdict") if key in found})
+        self._document["wall_time_s"] |= found["wall_time_s"]
+        with open(f"{folder}/log.txt", encoding="utf-8") as file:
+            message = file.read().partition("\nlatcon: ")[2]
+        for name in os.listdir(folder):
+            if name not in ("run.json", "log.txt", "base.prm") and not name.startswith("."):
+                add_to_list(self.directory, [name])
+                os.replace(f"{folder}/{name}", f"{self.directory}/{name}")
+        shutil.rmtree(folder)
+        if child.returncode != DONE:
+            raise Ended(CLAIM_FAILED, "latcon: " + message)
+
+
+def _verdict(row: Mapping[str, Any]) -> str:
+    if row["tolerance"] is None:
+        return "reported"
+    # A number that is not finite is a text.
+    numbers = [row[key] for key in ("lattice", "theory", "error", "tolerance")]
+    is_lost = any(isinstance(number, str) or number is not None and not math.isfinite(number) for number in numbers)
+    return "holds" if not is_lost and row["error"] is not None and row["error"] <= row["tolerance"] else "fails"
+
+
+BEGIN = time.monotonic()
+
+
+def say_error(text: str) -> None:
+    """Prints to standard error, at once."""
+    with contextlib.suppress(OSError):
+        os.write(2, text.encode("utf-8", "surrogateescape"))
+
+
+def output_is_lost(printed: Printed) -> bool:
+    """Whether standard output is closed or full; a reader that closed its end of a pipe loses nothing."""
+    return not printed.is_complete and not any(event & select.POLLERR for _, event in _polled())
+
+
+def _polled() -> list[tuple[int, int]]:
+    poll = select.poll()
+    poll.register(1, 0)
+    return poll.poll(0)
+
+
+class Progress:
+    """Progress line on standard error: in place in a terminal, otherwise a line per minute."""
+
+    def __init__(self, is_wanted: bool) -> None:
+        self._in_place = os.isatty(2) and os.environ.get("TERM") != "dumb"
+        self._interval = (0.2 if self._in_place else 60.0) if is_wanted else math.inf
+        self._begin = self._shown = time.monotonic()
+
+    def is_due(self) -> bool:
+        """Whether it is time to show a line."""
+        return time.monotonic() - self._shown >= self._interval
+
+    def show(self, text: str, done: float) -> None:
+        """Shows a line, and the time that is left if a fraction is done."""
+        self._shown = time.monotonic()
+        if done > 0.01:
+            text += f", {round((self._shown - self._begin) * (1 / done - 1))} s left"
+        say_error(f"\r\x1b[K{text}" if self._in_place else text + "\n")
+
+    def clear(self) -> None:
+        """Removes the line."""
+        if self._in_place and self._interval < math.inf:
+            say_error("\r\x1b[K")

@@ -1,0 +1,160 @@
+"""Study files, sweeps, shards and pools of processes."""
+import json
+import os
+import sys
+import time
+
+import latcon
+import pytest
+
+from latcon.study.plan import PlannedRun
+from latcon.study.pool import run_processes
+from latcon.study.program import InputError, Program
+from latcon.study.shard import parse_shard, plan_difference, plan_text, runs_of_shard
+from latcon.study.study_file import read_study
+from latcon.study.sweep import combinations, parse_sweep, sweep_study
+
+
+@pytest.fixture(scope="module")
+def program():
+    program = Program({"program": os.fspath(latcon.find_program()), "data": "", "arguments": [], "threads": 1, "yes": False})
+    yield program
+    program.close()
+
+
+@pytest.mark.parametrize("text, values", [
+    ("Loading/strain y=1.5:1.9:5", ["1.5", "1.6", "1.7", "1.8", "1.9"]), ("Loading/strain x = -0.1 : 0.2 : 4", ["-0.1", "0", "0.1", "0.2"]),
+    ("Sheet/height=1 cm:2cm:3", ["1 cm", "1.5 cm", "2 cm"]), ("Nearest neighbours/a=1e5:+2e5:2", ["100000", "200000"]),
+    ("Sheet/orientation=rows-along-crack, rows-across-crack", ["rows-along-crack", "rows-across-crack"])])
+def test_sweeps_are_grids_or_lists(program, text, values):
+    assert parse_sweep(program, text).values == values
+
+
+@pytest.mark.parametrize("text, part", [
+    ("Loading/strain z=1:2:3", "'Loading/strain z' is not an entry of a case; nearest: Loading/strain"),
+    ("Loading/strain y", "expected Section/Name=START:STOP:COUNT"), ("Loading/strain y=1:2", "'1:2' has 2 parts"),
+    ("Loading/strain y=a:2:3", "START 'a': not a number"), ("Loading/strain y=1:2 cm:3", "STOP '2 cm': wrong unit"),
+    ("Loading/strain y=1::3", "STOP is empty"), ("Loading/strain y=1:2:1", "COUNT '1' must be a whole number from 2"),
+    ("Loading/strain y=1:2:2.5", "COUNT '2.5'"), ("Loading/strain y=2:2:3", "START and STOP must differ"),
+    ("Sheet/height=1 cm:20 mm:3", "must have the same unit"), ("Sheet/orientation=1:2:3", "Sheet/orientation is not a number"),
+    ("Loading/strain y=1,,2", "value 2 is empty"), ("Loading/strain y=-1e308:1e308:3", "are too far apart"),
+    ("Loading/strain y=1,2,1", "the value 1 is given twice"), ("Loading/strain x=0,-0", "the value -0 is given twice, also as 0"),
+    ("Sheet/height=2 cm,3 cm,0.02 m", "the value 0.02 m is given twice, also as 2 cm"),
+    ("Loading/strain y=1", "expected two values or more; for one value use --set"),
+    ("Lattice/noise seed=1,2", "seeds are set by --seeds")])
+def test_messages_name_the_wrong_part_of_a_sweep(program, text, part):
+    with pytest.raises(InputError) as error:
+        parse_sweep(program, text)
+    assert part in str(error.value)
+
+
+def test_sweeps_give_all_combinations_as_a_study_file(program):
+    text = sweep_study(program, ["Loading/strain y=1.5:1.6:2", "Sheet/height=2 cm,3 cm"], "fig1", "base.prm",
+                       {"Material/density": "900"}, 3)
+    study = read_study(program, "folder/sweep.json", False, text.encode())
+    assert (study.title, study.base) == ("Sweep of Loading/strain y, Sheet/height (fig1)", "folder/base.prm")
+    assert [run.name for run in study.runs][:2] == ["strain-y-1.5_height-2cm", "strain-y-1.5_height-3cm"]
+    assert study.runs[3].own == {"Loading/strain y": "1.6", "Sheet/height": "3 cm"} and study.runs[3].seeds == [1, 2, 3]
+
+
+def test_runs_of_a_sweep_are_limited_and_have_distinct_names(program):
+    sweep = parse_sweep(program, "Loading/strain y=1:2:1000")
+    assert len(combinations([sweep], 100)) == 1000
+    for sweeps, n_seeds in (([sweep], 101), ([sweep, sweep], 1)):
+        with pytest.raises(InputError):
+            combinations(sweeps, n_seeds)
+    long = parse_sweep(program, f"Nearest neighbours/psi=lam^2 + {'1' * 200},lam^2 + {'1' * 200} + lam")
+    names = list(combinations([long], 1))
+    assert len(set(names)) == 2 and all(len(name) == 150 and name.startswith("psi-lam-21") for name in names)
+
+
+GOOD = {"title": "t", "base": "b.prm", "seeds": [4, 5], "sweep": ["Sheet/height=2 cm:4 cm:3"], "runs": {"own": {}},
+        "quick": {"seeds": [7], "sweep": ["Sheet/height=2 cm,4 cm"]},
+        "claims": [{"claim": "c", "rows": [{"run": "height-3cm", "quantity": "pattern"}]}]}
+
+
+def test_quick_versions_of_sweeps(program):
+    study = read_study(program, "s.json", False, json.dumps(GOOD).encode())
+    assert [run.name for run in study.runs] == ["height-2cm", "height-3cm", "height-4cm", "own"] and study.left_out == []
+    quick = read_study(program, "s.json", True, json.dumps(GOOD).encode())
+    assert [run.seeds for run in quick.runs] == [[7]] * 3 and quick.left_out == ["height-3cm"]
+
+
+@pytest.mark.parametrize("change, problem", [
+    ({"titel": "x"}, "s.json: unknown key 'titel'; nearest: title; known: title, base"), ({"title": ""}, 's.json: title: must be a non-empty text, not ""'),
+    ({"set": {"Sheet/hight": 1}}, "s.json: set/Sheet/hight: not an entry of a case; nearest: Sheet/height"),
+    ({"set": {"Lattice/noise seed": 1}}, 'set/Lattice/noise seed: is set by "seeds"'), ({"seeds": [1, 1]}, "seeds/2: this seed is given twice"),
+    ({"seeds": [-1]}, "seeds/1: must be a whole number >= 0"), ({"refine": 7}, "refine: must be a whole number from 0 to 6"),
+    ({"runs": {".x": {}}}, "must not begin with '.'"), ({"runs": {"height-2cm": {}}}, "a run of the sweep has this name"),
+    ({"pictures": ["none"]}, "pictures/1: 'none' is not a known run"),
+    *[({"claims": [{"claim": "c", "rows": [{"run": "own", "quantity": "amplitude", **row}]}]}, problem) for row, problem in (
+        ({"is": "straight"}, 'this rule is only for the quantity "pattern"'), ({"rises": True}, 'this rule needs "against"'),
+        ({"above": 1, "below": 2}, 'a row can have only one rule; the second one is "below"'), ({"is near": 1}, "must be given together"),
+        ({"is near": 0, "tolerance": 1}, "must not be 0, because the tolerance is relative"), ({"above": {}}, 'must be a number or {"run": NAME}'),
+        ({"against": "Sheet"}, "must be zeta or an entry of a case"), ({"runs": ["own"]}, 'a row needs either "run" or "runs"'))]])
+def test_problems_of_study_files_name_their_place(program, change, problem):
+    with pytest.raises(InputError) as error:
+        read_study(program, "s.json", False, json.dumps(GOOD | change).encode())
+    assert problem in str(error.value)
+
+
+@pytest.mark.parametrize("text, problem", [
+    ("{", "s.json: not JSON: Expecting"), ("{\"a\": NaN}", "NaN is not a number of JSON"), ("[" * 99999, "nested deeper"), ("{}\0", "s.json:1: not a text file"), ("[]", "a study must be a JSON object"), ('{"a": {"b": 1, "b": 2}}', "the key 'b' occurs twice"),
+    ("[" * 100 + "]" * 100, "nested deeper than 64")])
+def test_files_that_are_no_json_objects(program, text, problem):
+    with pytest.raises(InputError) as error:
+        read_study(program, "s.json", False, text.encode())
+    assert problem in str(error.value)
+
+
+def planned(name, seconds):
+    return PlannedRun(name, 1, False, [], {}, "digest of " + name, 1e-3, None, 1, 1, seconds, 1)
+
+
+def test_shards_share_the_runs():
+    plan = [planned(name, seconds) for name, seconds in zip("abcde", (1, 5, 3, 5, 2))]
+    assert [runs_of_shard(plan, i, 2) for i in (1, 2)] == [[1, 2, 0], [3, 4]]
+    assert parse_shard("3/8") == (3, 8)
+    for text in ("0/8", "9/8", "1/100001", "3", "a/b", "1/2/3", "-1/2"):
+        with pytest.raises(InputError):
+            parse_shard(text)
+
+
+def test_plans_differ_in_words():
+    plan = [planned("a", 1), planned("b", 1)]
+    stored = plan_text("t", plan, False, 2)
+    assert plan_difference(stored, plan_text("t", plan, False, 0)) == ""
+    assert "another study, 't'" in plan_difference(stored, plan_text("u", plan, False, 2))
+    assert "--skip-verification" in plan_difference(stored, plan_text("t", plan, True, 2))
+    assert "begun with 2 shards" in plan_difference(stored, plan_text("t", plan, False, 3))
+    assert "the case of run c-1 differs" in plan_difference(stored, plan_text("t", [plan[0], planned("c", 1)], False, 2))
+    assert "it has 2 runs, now there are 1" in plan_difference(stored, plan_text("t", plan[:1], False, 2))
+    assert "damaged" in plan_difference("[", plan_text("t", plan, False, 2))
+
+
+def test_pool_runs_all_jobs_and_keeps_its_limit(tmp_path):
+    ended, largest = {}, 0
+
+    def waiting(running):
+        nonlocal largest
+        largest = max(largest, len(running))
+
+    commands = [["/bin/sh", "-c", text] for text in ("echo one; sleep 0.2", "exit 3", "kill -9 $$", "sleep 0.2")] + [["/nowhere/no"]]
+    assert run_processes(5, 2, lambda job: (commands[job], str(tmp_path / f"{job}.txt")), ended.__setitem__, waiting, lambda: False)
+    assert ended == {0: 0, 1: 3, 2: 137, 3: 0, 4: 127} and largest == 2
+    assert (tmp_path / "0.txt").read_text() == "one\n"
+
+
+def test_pool_ends_its_children_when_it_is_stopped_or_fails(tmp_path):
+    begin, ended = time.monotonic(), []
+
+    def waiting(running):
+        if time.monotonic() - begin > 0.3:
+            raise ValueError
+
+    command = [sys.executable, "-c", "import time; time.sleep(60)"], str(tmp_path / "log.txt")
+    assert not run_processes(2, 1, lambda job: command, lambda job, status: ended.append(job), lambda running: None,
+                             lambda: time.monotonic() - begin > 0.3)
+    with pytest.raises(ValueError):
+        run_processes(2, 1, lambda job: command, lambda job, status: ended.append(job), waiting, lambda: False)
+    assert ended == [] and time.monotonic() - begin < 30

@@ -1,0 +1,147 @@
+// Commands above one simulation are Python (python/latcon): this program replaces itself by the interpreter.
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <vector>
+
+#include <mpi.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "support/errors.h"
+#include "support/ranks.h"
+#include "verification/commands/command.h"
+#include "verification/commands/python.h"
+#include "verification/commands/signals.h"
+#include "verification/input/data_folder.h"
+
+namespace latcon::commands
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+// The folder that contains the Python package: in the data folder, or beside it in the source tree.
+fs::path package_folder()
+{
+  const fs::path data = input::data_folder();
+  for (const fs::path &folder : {data / "python", data.parent_path() / "python"})
+    if (fs::exists(folder / "latcon" / "study"))
+      return folder;
+  throw support::Error(support::ExitCode::output_failed,
+                       (data / "python").string() + " is missing: a copy of the program needs share/latcon beside its "
+                                                    "bin, a symbolic link to the program does not");
+}
+
+// The environment of the user without variables that would change the interpreter.
+std::vector<std::string> environment_of_python(const fs::path &package)
+{
+  std::vector<std::string> kept{"PYTHONPATH=" + package.string()};
+  for (char **variable = environ; *variable != nullptr; ++variable)
+  {
+    const std::string text = *variable;
+    if (text.rfind("PYTHON", 0) != 0 && text.rfind("MPLBACKEND=", 0) != 0)
+      kept.push_back(text);
+  }
+  return kept;
+}
+
+std::vector<char *> pointers(std::vector<std::string> &words)
+{
+  std::vector<char *> list;
+  for (std::string &word : words)
+    list.push_back(word.data());
+  list.push_back(nullptr);
+  return list;
+}
+
+Json json_of(const input::Options &options, const SweepOptions &sweep)
+{
+  return {{"arguments", options.arguments},
+          {"sweeps", sweep.sweeps},
+          {"seeds", sweep.seeds},
+          {"overrides", options.overrides},
+          {"threads", options.threads},
+          {"quick", options.quick},
+          {"quiet", options.quiet},
+          {"verbose", options.verbose},
+          {"dry_run", options.dry_run},
+          {"yes", options.yes},
+          {"skip_verification", options.skip_verification},
+          {"no_report", options.no_report},
+          {"resume", options.resume}};
+}
+
+// Paths are words of their own: they need not be UTF-8.
+support::ExitCode continue_in_python(const std::string &command, const std::string &study, const std::string &output_dir,
+                                     const Json &options)
+{
+  const std::string python = python_interpreter();
+  if (access(python.c_str(), X_OK) != 0)
+    throw support::Error(support::ExitCode::output_failed,
+                         "cannot start " + python + "; install python3, or set LATCON_PYTHON to its path");
+  const fs::path package = package_folder();
+  std::vector<std::string> words{python, "-sP", "-m", "latcon", "--parsed", command, study, output_dir,
+                                 fs::read_symlink("/proc/self/exe"), input::data_folder(),
+                                 options.dump(-1, ' ', false, Json::error_handler_t::replace)};
+  std::vector<std::string> environment = environment_of_python(package);
+  const std::vector<char *> arguments = pointers(words), variables = pointers(environment);
+  std::cout << std::flush;
+  disregard_signals();
+  MPI_Finalize();
+  sigset_t all; // until Python handles them
+  sigfillset(&all);
+  sigprocmask(SIG_BLOCK, &all, nullptr);
+  execve(python.c_str(), arguments.data(), variables.data());
+  std::cerr << "latcon: cannot start " << python << std::endl;
+  std::_Exit(static_cast<int>(support::ExitCode::output_failed));
+}
+
+} // namespace
+
+std::string python_interpreter()
+{
+  // Debian's interpreter, which finds the packages that the scripts need.
+  const char *const chosen = std::getenv("LATCON_PYTHON");
+  return chosen != nullptr && *chosen != '\0' ? chosen : "/usr/bin/python3";
+}
+
+std::vector<std::string> shipped_studies()
+{
+  std::vector<std::string> names;
+  std::error_code status;
+  for (const auto &file : std::filesystem::directory_iterator(input::data_folder() + "/studies", status))
+    if (file.path().extension() == ".json")
+      names.push_back(file.path().stem());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen)
+{
+  if (support::n_ranks() > 1)
+    throw support::InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
+  Json all = json_of(options, chosen.sweep);
+  all["shard"] = chosen.shard;
+  all["collect"] = chosen.collect;
+  return continue_in_python("study", chosen.study, options.output_dir, all);
+}
+
+support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen)
+{
+  if (support::n_ranks() > 1)
+    throw support::InputError("`latcon batch` writes scripts for one cluster; run it without mpirun");
+  Json all = json_of(options, chosen.sweep);
+  all["submit"] = chosen.submit;
+  all["tasks"] = chosen.tasks;
+  all["cpus_per_task"] = chosen.cpus_per_task;
+  all["time"] = chosen.time;
+  all["partition"] = chosen.partition;
+  return continue_in_python("batch", chosen.study, options.output_dir, all);
+}
+
+} // namespace latcon::commands

@@ -1,0 +1,220 @@
+// `latcon resolve` and `latcon gate`, for `latcon study` and `latcon batch`, which are Python (python/latcon/study).
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <numeric>
+
+#include <nlohmann/json.hpp>
+
+#include "support/available_cores.h"
+#include "support/machine_memory.h"
+#include "verification/bridge/lattice_sheet.h"
+#include "verification/claims/claim_inputs.h"
+#include "verification/commands/claim_registry.h"
+#include "verification/commands/command.h"
+#include "verification/commands/cost.h"
+#include "verification/elements/elements.h"
+#include "verification/input/input_file.h"
+#include "verification/input/sha256.h"
+#include "verification/input/spelling.h"
+#include "verification/input/units.h"
+#include "verification/output/crack_quantities.h"
+
+namespace latcon::commands
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+using Words = std::vector<std::string>;
+
+// zeta = (eta / a) / (d / sqrt(a / rho)) of the nearest-neighbour bonds [-]: the retardation time divided by the travel
+// time of a wave over one spacing (theory.md, eq. (L.5)). None for linear bonds, which have no a.
+Json zeta(const input::Case &input)
+{
+  const input::ShellCase &bond = input.nearest;
+  if (bond.law != input::ShellCase::Law::mooney_rivlin || !(bond.a > 0.))
+    return nullptr;
+  return bond.viscosity / bond.a * std::sqrt(bond.a / input.density) / input.spacing;
+}
+
+Json facts(const input::Options &options)
+{
+  input::Case input;
+  input::Parameters parameters;
+  input.declare(parameters);
+  Json entries = Json::array(), quantities = Json::array();
+  for (const input::Declaration &entry : parameters.declarations())
+  {
+    const std::string key = entry.section + "/" + entry.name;
+    entries.push_back({{"key", key},
+                       {"unit", parameters.unit(key)},
+                       {"number_unit", entry.unit.empty() ? "1" : entry.unit},
+                       {"is_number", entry.type == input::ValueType::number},
+                       {"is_whole", entry.type == input::ValueType::whole_number},
+                       {"is_list", entry.type == input::ValueType::numbers}});
+  }
+  constexpr const char *sources[] = {"crack", "near_tip", "derived"};
+  for (const output::CrackQuantity &quantity : output::crack_quantities())
+    quantities.push_back(
+      {{"name", quantity.name}, {"unit", quantity.unit}, {"source", sources[static_cast<int>(quantity.source)]}});
+  return {{"entries", entries},
+          {"quantities", quantities},
+          {"cores", support::available_cores()},
+          {"record", Json::parse(output::RunInfo(options.arguments).json({}))}};
+}
+
+// Answers requests; keeps the base case alone, so that an edit of its file changes no run.
+class Resolver
+{
+public:
+  explicit Resolver(const input::Options &options) : options_(options) {}
+
+  Json answer(const Json &request)
+  try
+  {
+    if (request.contains("base"))
+    {
+      base_file_.clear(); // in hexadecimal: a path may not be UTF-8
+      const std::string digits = request["base"];
+      for (std::size_t i = 0; i + 1 < digits.size(); i += 2)
+        base_file_ += static_cast<char>(std::stoi(digits.substr(i, 2), nullptr, 16));
+      base_ = input::read_input_file(base_file_);
+      return nullptr;
+    }
+    if (request.contains("nearest"))
+      return input::nearest_word(request["nearest"], request["known"].get<Words>());
+    if (request.contains("numbers"))
+    {
+      Json numbers = Json::array();
+      for (const std::string text : request["numbers"])
+      {
+        const input::ParsedNumber number = input::read_quantity(text, request["unit"]);
+        numbers.push_back({{"value", number.value}, {"wrong", number.wrong}});
+      }
+      return numbers;
+    }
+    if (request.contains("memory"))
+    {
+      // Of runs that each are a process of their own.
+      const auto needs = request["memory"].get<std::vector<double>>();
+      const double total = std::accumulate(needs.begin(), needs.end(), 0.) +
+                           static_cast<double>(needs.size()) * support::resident_memory();
+      require_memory(options_, {total, 0.});
+      return {{"text", resources::memory_text({total, 0.})}};
+    }
+    return resolved(request);
+  }
+  catch (const support::InputError &error)
+  {
+    return {{"problems", error.problems()}};
+  }
+
+private:
+  // A case for all of its seeds; one without seeds is the base case of a study, which need not be a crack.
+  Json resolved(const Json &request) const
+  {
+    input::Case input;
+    input::Parameters parameters;
+    input.declare(parameters);
+    if (base_.problem.empty())
+      parameters.read_text(base_.text, base_file_);
+    else
+      parameters.read_file(base_file_); // throws the same problems
+    auto changes = request["changes"].get<Words>();
+    const auto seeds = request["seeds"].get<std::vector<std::uint64_t>>(); // any number is allowed
+    if (!seeds.empty())
+      changes.push_back("Lattice/noise seed=" + std::to_string(seeds.front()));
+    parameters.read_overrides(changes);
+    input.check(parameters);
+    if (!seeds.empty())
+      bridge::require_fracture_case(input, parameters);
+    if (request["checks_laws"])
+      claims::check_user_laws(input, parameters);
+    parameters.finish();
+    if (request["wants_text"])
+      return parameters.resolved_text();
+    Json reply{{"spacing", input.spacing}, {"zeta", zeta(input)}};
+    Json &values = reply["values"] = Json::object();
+    for (const std::string key : request["keys"])
+      values[key] = value_of(parameters.value(key));
+    add_cost(input, parameters, request["on_continuum"], reply);
+    for (const std::uint64_t seed : seeds)
+    {
+      input.noise_seed = seed;
+      reply["sha256"].push_back(input::sha256(parameters.lines()));
+    }
+    return reply;
+  }
+
+  static Json value_of(const std::string &text)
+  {
+    char *end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    return !text.empty() && *end == '\0' && std::isfinite(value) ? Json(value) : Json(text);
+  }
+
+  static void add_cost(const input::Case &input, input::Parameters &parameters, bool on_continuum, Json &reply)
+  {
+    resources::MemoryNeed memory;
+    double size = 0., evaluations = 0., seconds = 0.;
+    if (on_continuum)
+    {
+      const elements::CrackCost cost = elements::elements().crack_cost(input, parameters); // may refuse the case
+      size = cost.cells;
+      evaluations = cost.evaluations;
+      seconds = resources::damage_seconds(size, evaluations);
+      memory = resources::damage_memory(size);
+    }
+    else
+    {
+      const lattice::TimeStepping stepping = input.fracture_time_stepping();
+      size = static_cast<double>(input.lattice().n_sites());
+      evaluations = resources::expected_steps(input, stepping) * stepping.evaluations();
+      seconds = resources::core_seconds(size * evaluations);
+      memory = resources::lattice_memory(input, resources::RunKind::fracture, true);
+    }
+    reply.update({{"size", size},
+                  {"evaluations", evaluations},
+                  {"seconds", seconds},
+                  {"memory", memory.shared + memory.first_rank}});
+  }
+
+  const input::Options &options_;
+  std::string base_file_;
+  input::InputFile base_;
+};
+
+} // namespace
+
+support::ExitCode resolve_cases(const input::Options &options)
+{
+  // Not to std::cout, of which a copy is kept for logs.
+  const auto print = [](const Json &line)
+  {
+    std::puts(line.dump(-1, ' ', false, Json::error_handler_t::replace).c_str());
+    std::fflush(stdout);
+  };
+  print(facts(options));
+  Resolver resolver(options);
+  for (std::string line; std::getline(std::cin, line);)
+    print(resolver.answer(Json::parse(line)));
+  return support::ExitCode::done;
+}
+
+support::ExitCode verify_before_cracks(const input::Options &options)
+{
+  input::Case input;
+  input::Parameters parameters;
+  read_case(options, input, parameters);
+  parameters.finish();
+  Run run(options);
+  const output::Results results =
+    options.on_continuum
+      ? require_verified(input, claims_before_continuum_fracture(input.material()), bridge::laws_of(input), run)
+      : require_verified(input, claims_before_fracture(input.material()), bridge::laws_of_lattice(), run);
+  return run.end(results, support::ExitCode::done);
+}
+
+} // namespace latcon::commands
