@@ -37,7 +37,6 @@ class ProcessorQuota : public testing::Test
 protected:
   double quota() { return processor_quota(root_.path()); }
 
-private:
   TemporaryFolder root_;
 };
 

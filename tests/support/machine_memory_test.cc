@@ -18,11 +18,11 @@ class MachineMemory : public testing::Test
 protected:
   void put_available(const std::string &kibibytes)
   {
-    root_.write("proc/meminfo", "MemTotal:       2000 kB\nMemFree:         1 kB\nMemAvailable:   " + kibibytes + " kB\n");
+    root_.write("proc/meminfo",
+                "MemTotal:       2000 kB\nMemFree:         1 kB\nMemAvailable:   " + kibibytes + " kB\n");
   }
   double available() { return available_memory(root_.path()); }
 
-private:
   TemporaryFolder root_;
 };
 
