@@ -1,8 +1,5 @@
 #include "verification/output/crack_quantities.h"
 
-#include <algorithm>
-#include <stdexcept>
-
 namespace latcon::output
 {
 namespace
@@ -81,21 +78,6 @@ const std::vector<CrackQuantity> &crack_quantities()
 {
   static const std::vector<CrackQuantity> all = all_quantities();
   return all;
-}
-
-const std::vector<std::string> &pattern_words()
-{
-  static const std::vector<std::string> words{"straight", "oscillating", "branching", "arrested"};
-  return words;
-}
-
-std::string unit_of(const std::string &quantity)
-{
-  const auto found = std::find_if(crack_quantities().begin(), crack_quantities().end(),
-                                  [&quantity](const CrackQuantity &known) { return known.name == quantity; });
-  if (found == crack_quantities().end())
-    throw std::logic_error("crack: '" + quantity + "' is not a quantity");
-  return found->unit;
 }
 
 void add_derived(Values &values, const double spacing)

@@ -12,7 +12,7 @@ namespace latcon::output
 /// Pattern and quantities of a crack.
 struct MeasuredCrack
 {
-  std::string pattern; ///< one of pattern_words() or undecided_pattern
+  std::string pattern; ///< "straight", "oscillating", "branching", "arrested" or "undecided"
   std::string problem; ///< rows that make it unfit as a measurement; empty if there are none
   Values values;
 };
