@@ -53,7 +53,7 @@ def columns(path):
 
 
 # Objects whose keys are names of parts of the program, libraries, runs, entries, or rows.
-OPEN = ("wall_time_s", "failed_rows", "libraries", "set", "settings", "units")
+OPEN = ("entries", "wall_time_s", "failed_rows", "libraries", "set", "settings", "units")
 
 
 def keys(value):

@@ -1,6 +1,7 @@
 """Tests of output directories that several processes use, that are removed, or that contain files of others."""
 import json
 import os
+import pathlib
 import shutil
 import signal
 import time
@@ -45,6 +46,8 @@ def test_second_command_is_refused_and_writes_nothing(start, out, tmp_path, stud
     owner = start(*ENDLESS, "--output-dir", out)
     assert wait_for((out / "lattice-0000.vtp").exists, owner)
     owner.send_signal(signal.SIGSTOP)
+    tasks = pathlib.Path(f"/proc/{owner.pid}/task")  # a thread that writes stops after the call
+    assert wait_for(lambda: all(") T " in (task / "stat").read_text() for task in tasks.iterdir()), owner)
     before = contents(out)
     for command in commands(study, out):
         run = latcon(*command)
