@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "lattice/bonds/bond_law.h"
+#include "support/largest_error.h"
 
 namespace lattice_stencil_test
 {
@@ -55,7 +56,7 @@ double error_of_moments(const Stencil &stencil)
                                 return std::pow(std::cos(angle), x) * std::pow(std::sin(angle), 4 - x);
                               });
       const double exact[] = {3. / 8., 0., 1. / 8., 0., 3. / 8.};
-      error = std::max(error, std::abs(mean - exact[x]));
+      error = support::largest_of({error, std::abs(mean - exact[x])});
     }
   return error;
 }

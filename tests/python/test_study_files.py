@@ -7,7 +7,7 @@ import time
 import latcon
 import pytest
 
-from latcon.study.plan import PlannedRun
+from latcon.study.plan import PlannedRun, Verification, plan_runs
 from latcon.study.pool import run_processes
 from latcon.study.program import InputError, Program
 from latcon.study.shard import parse_shard, plan_difference, plan_text, runs_of_shard
@@ -55,6 +55,17 @@ def test_sweeps_give_all_combinations_as_a_study_file(program):
     assert (study.title, study.base) == ("Sweep of Loading/strain y, Sheet/height (fig1)", "folder/base.prm")
     assert [run.name for run in study.runs][:2] == ["strain-y-1.5_height-2cm", "strain-y-1.5_height-3cm"]
     assert study.runs[3].own == {"Loading/strain y": "1.6", "Sheet/height": "3 cm"} and study.runs[3].seeds == [1, 2, 3]
+
+
+def test_a_plan_resolves_every_case(program):
+    text = sweep_study(program, ["Loading/strain y=1.5:1.6:2"], "quick", "", {}, 2)
+    study = read_study(program, "sweep.json", False, text.encode())
+    plan = plan_runs(program, study, {"Fracture/seed sites": "3"}, Verification.NONE)
+    assert [(run.seed, run.value("Loading/strain y")) for run in plan] == [(1, 1.5), (2, 1.5), (1, 1.6), (2, 1.6)]
+    # theory.md, eq. (L.5): (eta / a) / (d / sqrt(a / rho)) = 65.625 / 1e5 / (0.625e-3 / sqrt(1e5 / 944))
+    assert plan[0].value("zeta") == pytest.approx(10.80695, abs=1e-5)
+    assert plan[0].size > 1000 and plan[0].seconds > 0
+    assert len({run.case_sha256 for run in plan}) == 4
 
 
 def test_runs_of_a_sweep_are_limited_and_have_distinct_names(program):
