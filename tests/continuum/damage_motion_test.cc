@@ -1,250 +1,17 @@
 // Motion of a sheet with damage (theory-damage.md, eqs. (C.69) to (C.74)).
 #include "continuum/damage/damage_motion.h"
+#include "continuum/errors.h"
+#include "damaged_sheets.h"
 
 #include <gtest/gtest.h>
-
-#include "continuum/cauchy_born.h"
-#include "continuum/errors.h"
-#include "continuum/isotropic_network.h"
-
 #include <omp.h>
 
 #include <cmath>
-#include <complex>
-#include <random>
 
 namespace damage_motion_test
 {
 
-using namespace latcon::continuum;
-using dealii::Point;
-using dealii::Tensor;
-
-constexpr double pi = 3.14159265358979323846;
-
-Tensor<2, 2> matrix(const double xx, const double xy, const double yx, const double yy)
-{
-  Tensor<2, 2> F;
-  F[0][0] = xx;
-  F[0][1] = xy;
-  F[1][0] = yx;
-  F[1][1] = yy;
-  return F;
-}
-
-std::vector<FibreFamily> springs()
-{
-  std::vector<FibreFamily> fibres;
-  for (const double angle : {0., pi / 3., 2. * pi / 3.})
-    fibres.push_back({Tensor<1, 2>({std::cos(angle), std::sin(angle)}), 1., LinearPotential{1e6}});
-  return fibres;
-}
-
-std::vector<FibreFamily> rods()
-{
-  std::vector<FibreFamily> fibres = springs();
-  for (FibreFamily &fibre : fibres)
-    fibre.potential = RodPotential{1e5, 1.5e5};
-  return fibres;
-}
-
-std::vector<FibreDashpot> dashpots(const double viscosity)
-{
-  std::vector<FibreDashpot> fibres;
-  for (const FibreFamily &spring : springs())
-    fibres.push_back({spring.direction, 1., viscosity});
-  return fibres;
-}
-
-// Multiplies the solution of y' = z y by the factor of one step.
-template <class Number>
-Number amplification(const ViscousStages &method, const Number z)
-{
-  Number before = 1., last = 1. + method.first() * z;
-  for (const ViscousStages::Stage &c : method.stages())
-  {
-    const Number next = 1. - c.mu - c.nu + c.mu * last + c.nu * before + z * (c.now * last + c.start);
-    before = last;
-    last = next;
-  }
-  return last;
-}
-
-TEST(ViscousStages, AreOfSecondOrderAndStableToTheirLimit)
-{
-  for (const unsigned int n : {2u, 3u, 9u, 40u})
-  {
-    const ViscousStages method(n);
-    // R(z) - e^z = O(z^3): the third derivatives of R are at most 1.
-    for (const double z : {-1e-2, 1e-2})
-      EXPECT_LT(std::abs(amplification(method, z) - std::exp(z)), 0.2 * std::abs(z * z * z)) << n;
-    const double limit = ViscousStages::real_limit(n);
-    for (unsigned int k = 0; k <= 1000; ++k)
-      EXPECT_LE(std::abs(amplification(method, -limit * k / 1000.)), 1. + 1e-10) << n << ' ' << k;
-    EXPECT_GT(std::abs(amplification(method, -1.5 * limit)), 1.) << n; // damped at the limit itself
-    EXPECT_EQ(ViscousStages::required(limit * (1. - 1e-12)), n);
-    EXPECT_EQ(ViscousStages::required(limit * (1. + 1e-12)), n + 1);
-  }
-  EXPECT_THROW(ViscousStages(1), InvalidInput);
-  EXPECT_THROW(ViscousStages::required(std::nan("")), InvalidInput);
-  EXPECT_THROW(ViscousStages::required(1e12), InvalidInput);
-}
-
-struct RandomSheet
-{
-  RandomSheet() : grid(Rectangle{3., 1.6, 3, 2})
-  {
-    std::mt19937 random(7);
-    std::uniform_real_distribution<double> some(-0.1, 0.1);
-    for (const unsigned int i : {0u, 1u})
-      for (std::size_t a = 0; a < grid.n_nodes(); ++a)
-      {
-        u[i].push_back(some(random));
-        v[i].push_back(some(random));
-      }
-    for (std::size_t c = 0; c < grid.n_cells(); ++c)
-      factors.push_back(0.5 + some(random));
-  }
-  NodeGrid grid;
-  GridVector u, v;
-  std::vector<double> factors;
-};
-
-double energy(const FibreForces &forces, const RandomSheet &sheet)
-{
-  std::vector<double> cells;
-  forces.energies(sheet.u, sheet.factors, cells);
-  double sum = 0.;
-  for (std::size_t c = 0; c < cells.size(); ++c)
-    sum += sheet.factors[c] * cells[c];
-  return sum;
-}
-
-TEST(FibreForces, AreTheGradientOfTheDegradedEnergy)
-{
-  std::vector<FibreFamily> fibres = springs();
-  for (const FibreFamily &rod : rods())
-    fibres.push_back(rod);
-  RandomSheet sheet;
-  const FibreForces forces(sheet.grid, fibres, dashpots(50.), matrix(1.3, 0.1, 0., 1.5));
-  const GridVector rest{std::vector<double>(sheet.grid.n_nodes(), 0.), std::vector<double>(sheet.grid.n_nodes(), 0.)};
-  GridVector elastic, all;
-  EXPECT_EQ(forces.forces(sheet.u, rest, sheet.factors, elastic), 0.);
-  constexpr double step = 1e-5; // central differences: 1e-10 of third derivatives, 1e-16/1e-5 of round-off
-  const double scale = 1e6;     // force of a spring at a strain of 1
-  for (const unsigned int i : {0u, 1u})
-    for (std::size_t a = 0; a < sheet.grid.n_nodes(); ++a)
-    {
-      const double before = sheet.u[i][a];
-      sheet.u[i][a] = before + step;
-      const double high = energy(forces, sheet);
-      sheet.u[i][a] = before - step;
-      const double low = energy(forces, sheet);
-      sheet.u[i][a] = before;
-      EXPECT_NEAR(elastic[i][a], -(high - low) / (2. * step), 1e-8 * scale);
-    }
-  // The dissipated power is that of the viscous forces.
-  const double power = forces.forces(sheet.u, sheet.v, sheet.factors, all);
-  double work = 0.;
-  for (const unsigned int i : {0u, 1u})
-    for (std::size_t a = 0; a < sheet.grid.n_nodes(); ++a)
-      work += (all[i][a] - elastic[i][a]) * sheet.v[i][a];
-  EXPECT_GT(power, 0.);
-  EXPECT_NEAR(power, -work, 1e-12 * scale);
-}
-
-TEST(FibreForces, AgreeWithTheLawsOfOtherSheets)
-{
-  RandomSheet sheet;
-  for (std::vector<double> &component : sheet.u)
-    std::fill(component.begin(), component.end(), 0.);
-  const Tensor<2, 2> F = matrix(2.3, 0.2, -0.1, 2.8);
-  std::vector<double> cells;
-  FibreForces(sheet.grid, rods(), {}, F).energies(sheet.u, sheet.factors, cells);
-  const double W = CauchyBorn(rods()).energy(F);
-  for (const double E : cells)
-    EXPECT_NEAR(E, W * sheet.grid.area(), 1e-14 * W);
-  FibreForces(sheet.grid, in_all_directions(rods(), 12), {}, F).energies(sheet.u, sheet.factors, cells);
-  const double network = IsotropicNetwork(rods()).energy(F);
-  for (const double E : cells) // principal stretches differ by less than a tenth of their sum
-    EXPECT_NEAR(E, network * sheet.grid.area(), 1e-11 * network);
-
-  // A cell that is inverted is an error unless it is broken.
-  for (std::size_t j = 0; j < sheet.grid.rows(); ++j)
-    sheet.u[0][j * sheet.grid.columns() + 1] = -3. * 2.3;
-  const FibreForces forces(sheet.grid, rods(), {}, F);
-  std::fill(sheet.factors.begin(), sheet.factors.end(), 1.);
-  EXPECT_THROW(forces.energies(sheet.u, sheet.factors, cells), NonPhysicalState);
-  std::fill(sheet.factors.begin(), sheet.factors.end(), 1e-3);
-  EXPECT_NO_THROW(forces.energies(sheet.u, sheet.factors, cells));
-}
-
-TEST(GridDamage, MinimisesTheEnergyAndNeverHeals)
-{
-  const NodeGrid grid(Rectangle{12., 10., 12, 10});
-  const DamageLaw law{1., 2., 1e-6};
-  std::vector<char> intact(grid.n_nodes(), 0);
-  for (std::size_t i = 0; i < grid.columns(); ++i)
-    intact[i] = 1;
-  GridDamage field(grid, law, intact);
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> some(0., 4.);
-  std::vector<double> energies(grid.n_cells());
-  const auto total = [&](const GridDamage &damage)
-  {
-    double sum = damage.fracture_energy();
-    for (std::size_t c = 0; c < energies.size(); ++c)
-      sum += damage.cell_factors()[c] * energies[c];
-    return sum;
-  };
-  for (unsigned int round = 0; round < 3; ++round)
-  {
-    for (double &E : energies)
-      E = some(random) * (round == 1 ? 0.1 : 1.);
-    const std::vector<double> before = field.nodal();
-    const bool changed = field.minimize(energies);
-    EXPECT_EQ(changed, round != 1); // a tenth of the energies drives nothing
-    const double lowest = total(field);
-    // First-order conditions: no admissible change of one node lowers the energy.
-    for (std::size_t a = 0; a < grid.n_nodes(); ++a)
-    {
-      const double d = field.nodal()[a];
-      EXPECT_GE(d, before[a]);
-      EXPECT_LE(d, 1.);
-      if (intact[a])
-      {
-        EXPECT_EQ(d, 0.);
-        continue;
-      }
-      constexpr double change = 1e-3; // raises E by 1e-6 of its curvature, much more than the tolerance 1e-7 lowers it
-      for (const double sign : {-1., 1.})
-        if (const double other = d + sign * change; other >= before[a] && other <= 1.)
-        {
-          GridDamage moved(grid, law, intact);
-          std::vector<double> nodal = field.nodal();
-          nodal[a] = other;
-          moved.set(nodal);
-          EXPECT_GT(total(moved), lowest) << round << ' ' << a << ' ' << sign;
-        }
-    }
-  }
-}
-
-TEST(GridDamage, OfAHomogeneousSheetIsInClosedForm)
-{
-  // eq. (C.66): 1 - phi = W_c/W.
-  const NodeGrid grid(Rectangle{6., 5., 6, 5});
-  GridDamage field(grid, {1., 2., 1e-6});
-  EXPECT_FALSE(field.minimize(std::vector<double>(grid.n_cells(), 1. - 1e-6)));
-  EXPECT_TRUE(field.minimize(std::vector<double>(grid.n_cells(), 4.)));
-  for (const double d : field.nodal())
-    EXPECT_NEAR(d, 0.75, 1e-5); // 100 times the tolerance of the iteration
-  const double uniform = field.nodal()[0];
-  EXPECT_NEAR(field.fracture_energy(), 2. * (1. - 1e-6) * 30. * uniform, 1e-3);
-  EXPECT_THROW(field.set(std::vector<double>(grid.n_nodes(), 1.1)), InvalidInput);
-  EXPECT_THROW(field.minimize(std::vector<double>(grid.n_cells(), std::nan(""))), NonPhysicalState);
-  EXPECT_THROW(GridDamage(NodeGrid(Rectangle{6., 5., 6, 2}), {1., 2.}), InvalidInput);
-}
+using namespace damaged_sheets;
 
 // Bar between held ends, in uniaxial strain, whose fundamental mode is excited.
 DamageMotion bar(const double viscosity, const double step)
@@ -253,7 +20,7 @@ DamageMotion bar(const double viscosity, const double step)
   DamageMotionSetup setup{
     Rectangle{1., 1. / n, n, 1}, matrix(1., 0., 0., 1.), springs(), {}, 1000., {1e9, 0.1}, {}, {}, step};
   if (viscosity > 0.)
-    setup.dashpots = dashpots(viscosity);
+    setup.dashpots = dashpots(springs(), viscosity);
   setup.is_held = [](const Point<2> &X, const unsigned int i) { return i == 1 || X[0] < 1e-9 || X[0] > 1. - 1e-9; };
   DamageMotion motion(setup);
   motion.set_motion(
@@ -322,7 +89,7 @@ DamageMotion strip(const unsigned int refinement = 1)
   DamageMotionSetup setup{Rectangle{0.02, 0.0105, 40 * refinement, 21 * refinement},
                           matrix(1., 0., 0., 1.02),
                           springs(),
-                          dashpots(10.),
+                          dashpots(springs(), 10.),
                           1000.,
                           {295., 1e-3},
                           {},
@@ -409,7 +176,7 @@ TEST(DamageMotion, IsStableWhereItRelaxes)
     DamageMotionSetup setup{
       Rectangle{0.04, 0.0201, 80, 41}, matrix(2.3, 0., 0., 2.8), rods(), {}, 944., {4e7, 1e-3}, {}, {}, 1e-9};
     if (viscosity > 0.)
-      setup.dashpots = dashpots(viscosity);
+      setup.dashpots = dashpots(springs(), viscosity);
     setup.is_held = [](const Point<2> &X, unsigned int) { return std::abs(X[1]) > 0.01004; };
     setup.step = 0.5 * DamageMotion(setup).stable_step();
     DamageMotion motion(setup);

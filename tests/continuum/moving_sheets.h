@@ -60,4 +60,22 @@ inline latcon::continuum::FibreMemory network_memory(const double modulus, const
   }
   return latcon::continuum::FibreMemory(families);
 }
+// Problem with all features: a moving held edge, a traction, a weak normal gradient, a gradient law, viscosity.
+struct Problem
+{
+  latcon::continuum::CauchyBorn law = rubber_network();
+  latcon::continuum::IsotropicGradient gradient{5e5, 0.02};
+  latcon::continuum::FibreViscosity viscosity = network_viscosity(20.);
+
+  latcon::continuum::BoundaryConditions conditions() const
+  {
+    latcon::continuum::BoundaryConditions all({{latcon::continuum::edge::left, affine(matrix(1., 0., 0.3, 1.2))}});
+    all.tractions = {{latcon::continuum::edge::top, constant(0., 1e5)}};
+    all.normal_gradients = {{latcon::continuum::edge::right, constant(0.2, 0.1)}};
+    return all;
+  }
+  // Two derivatives vanish at the start; the period is 10 ms, that of the slowest mode about 25 ms.
+  static double load_factor(const double time) { return std::pow(std::sin(100. * pi * time), 4); }
+};
+
 } // namespace moving_sheets
