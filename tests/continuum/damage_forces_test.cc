@@ -15,20 +15,6 @@ namespace damage_forces_test
 
 using namespace damaged_sheets;
 
-// Multiplies the solution of y' = z y by the factor of one step.
-template <class Number>
-Number amplification(const ViscousStages &method, const Number z)
-{
-  Number before = 1., last = 1. + method.first() * z;
-  for (const ViscousStages::Stage &c : method.stages())
-  {
-    const Number next = 1. - c.mu - c.nu + c.mu * last + c.nu * before + z * (c.now * last + c.start);
-    before = last;
-    last = next;
-  }
-  return last;
-}
-
 TEST(ViscousStages, AreOfSecondOrderAndStableToTheirLimit)
 {
   for (const unsigned int n : {2u, 3u, 9u, 40u})

@@ -97,7 +97,7 @@ DamageMotionLedger wave_ledger(const double viscosity, const double step, const 
   DamageMotionSetup setup = sheet(matrix(2.3, 0., 0., 2.8), {5., 4., 10, 8}, step);
   setup.is_held = [](const Point<2> &X, unsigned int)
   { return X[0] < 1e-9 || X[0] > 5. - 1e-9 || std::abs(X[1]) > 2. - 1e-9; };
-  setup.dashpots = viscosity > 0. ? dashpots(viscosity) : std::vector<FibreDashpot>();
+  setup.dashpots = viscosity > 0. ? dashpots(fibres(lattice()), viscosity) : std::vector<FibreDashpot>();
   DamageMotion motion(setup);
   motion.set_damage([](const Point<2> &X) { return 0.1 * X[0]; });
   motion.set_motion(
@@ -185,7 +185,7 @@ TEST(DamageMotion, HasTheSameBitsWithGradientEnergyOnAnyNumberOfThreads)
   {
     omp_set_num_threads(n + 1);
     DamageMotionSetup setup = sheet(matrix(1.3, 0., 0., 1.5), {36.5, 35., 73, 70}, 1e-3); // large enough for threads
-    setup.dashpots = dashpots(300.);
+    setup.dashpots = dashpots(fibres(lattice()), 300.);
     DamageMotion motion(setup);
     motion.set_damage([](const Point<2> &X) { return std::abs(X[1]) < 0.6 && X[0] < 10. ? 1. : 0.; });
     for (unsigned int step = 0; step < 2; ++step)

@@ -84,4 +84,36 @@ inline GridVector random_field(const NodeGrid &grid, const double amplitude)
                });
 }
 
+// rho omega^2 of a wave along X_J with polarisation along x_i, at k^2 = K, eqs. (C.47) and (C.82).
+inline double stiffness_of_waves(const Tensor<2, 2> &F, const unsigned int J, const unsigned int i, const double K,
+                                 const double l_d, const double inertia)
+{
+  double A_2 = 0., A_4 = 0.;
+  for (const BondFamily &bond : lattice())
+  {
+    const Tensor<1, 2> &N = bond.fibre.direction;
+    const Tensor<1, 2> f = F * N;
+    const double l = f.norm(), n = f[i] / l;
+    const PotentialDerivatives psi = derivatives(bond.fibre.potential, l);
+    const double h = bond.fibre.weight * (psi.second * n * n + psi.first / l * (1. - n * n));
+    A_2 += h * N[J] * N[J];
+    A_4 += h * std::pow(bond.length, 2) * std::pow(N[J], 4) / 12.;
+  }
+  return (A_2 * K + (l_d * l_d * A_2 - A_4) * K * K) / (1. + inertia * inertia * K);
+}
+
+// Multiplies the solution of y' = z y by the factor of one step.
+template <class Number>
+Number amplification(const ViscousStages &method, const Number z)
+{
+  Number before = 1., last = 1. + method.first() * z;
+  for (const ViscousStages::Stage &c : method.stages())
+  {
+    const Number next = 1. - c.mu - c.nu + c.mu * last + c.nu * before + z * (c.now * last + c.start);
+    before = last;
+    last = next;
+  }
+  return last;
+}
+
 } // namespace damaged_sheets

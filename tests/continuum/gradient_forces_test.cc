@@ -174,24 +174,6 @@ TEST(MassOperator, InvertsTheMassOfDamagedSheets)
   EXPECT_THROW(MassOperator(grid, 950., 1e6, held), InvalidInput);
 }
 
-// rho omega^2 of a wave along X_J with polarisation along x_i, at k^2 = K, eqs. (C.47) and (C.82).
-double stiffness_of_waves(const Tensor<2, 2> &F, const unsigned int J, const unsigned int i, const double K,
-                          const double l_d, const double inertia)
-{
-  double A_2 = 0., A_4 = 0.;
-  for (const BondFamily &bond : lattice())
-  {
-    const Tensor<1, 2> &N = bond.fibre.direction;
-    const Tensor<1, 2> f = F * N;
-    const double l = f.norm(), n = f[i] / l;
-    const PotentialDerivatives psi = derivatives(bond.fibre.potential, l);
-    const double h = bond.fibre.weight * (psi.second * n * n + psi.first / l * (1. - n * n));
-    A_2 += h * N[J] * N[J];
-    A_4 += h * std::pow(bond.length, 2) * std::pow(N[J], 4) / 12.;
-  }
-  return (A_2 * K + (l_d * l_d * A_2 - A_4) * K * K) / (1. + inertia * inertia * K);
-}
-
 TEST(GradientForces, HaveTheDispersionOfTheLatticeOnAGrid)
 {
   // Plane waves of the semi-discrete sheet: k^2 becomes (2 sin(k h/2) / h)^2, exactly. Forces and masses are compared,

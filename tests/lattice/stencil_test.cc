@@ -56,7 +56,7 @@ double error_of_moments(const Stencil &stencil)
                                 return std::pow(std::cos(angle), x) * std::pow(std::sin(angle), 4 - x);
                               });
       const double exact[] = {3. / 8., 0., 1. / 8., 0., 3. / 8.};
-      error = support::largest_of({error, std::abs(mean - exact[x])});
+      error = latcon::support::largest_of({error, std::abs(mean - exact[x])});
     }
   return error;
 }

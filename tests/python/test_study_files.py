@@ -57,9 +57,11 @@ def test_sweeps_give_all_combinations_as_a_study_file(program):
     assert study.runs[3].own == {"Loading/strain y": "1.6", "Sheet/height": "3 cm"} and study.runs[3].seeds == [1, 2, 3]
 
 
-def test_a_plan_resolves_every_case(program):
-    text = sweep_study(program, ["Loading/strain y=1.5:1.6:2"], "quick", "", {}, 2)
-    study = read_study(program, "sweep.json", False, text.encode())
+def test_a_plan_resolves_every_case(program, tmp_path):
+    (tmp_path / "base.prm").write_text(latcon.Case("quick").text())
+    text = sweep_study(program, ["Loading/strain y=1.5:1.6:2"], "quick", "base.prm", {}, 2)
+    study = read_study(program, os.fspath(tmp_path / "sweep.json"), False, text.encode())
+    program.ask(base=os.fsencode(study.base).hex())
     plan = plan_runs(program, study, {"Fracture/seed sites": "3"}, Verification.NONE)
     assert [(run.seed, run.value("Loading/strain y")) for run in plan] == [(1, 1.5), (2, 1.5), (1, 1.6), (2, 1.6)]
     # theory.md, eq. (L.5): (eta / a) / (d / sqrt(a / rho)) = 65.625 / 1e5 / (0.625e-3 / sqrt(1e5 / 944))
