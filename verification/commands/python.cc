@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "support/child_process.h"
 #include "support/errors.h"
 #include "support/ranks.h"
 #include "verification/commands/command.h"
@@ -50,15 +51,6 @@ std::vector<std::string> environment_of_python(const fs::path &package)
   return kept;
 }
 
-std::vector<char *> pointers(std::vector<std::string> &words)
-{
-  std::vector<char *> list;
-  for (std::string &word : words)
-    list.push_back(word.data());
-  list.push_back(nullptr);
-  return list;
-}
-
 Json json_of(const input::Options &options, const SweepOptions &sweep)
 {
   return {{"arguments", options.arguments},
@@ -77,19 +69,27 @@ Json json_of(const input::Options &options, const SweepOptions &sweep)
 }
 
 // Paths are words of their own: they need not be UTF-8.
-support::ExitCode continue_in_python(const std::string &command, const std::string &study, const std::string &output_dir,
-                                     const Json &options)
+support::ExitCode continue_in_python(const std::string &command, const std::string &study,
+                                     const std::string &output_dir, const Json &options)
 {
   const std::string python = python_interpreter();
   if (access(python.c_str(), X_OK) != 0)
     throw support::Error(support::ExitCode::output_failed,
                          "cannot start " + python + "; install python3, or set LATCON_PYTHON to its path");
   const fs::path package = package_folder();
-  std::vector<std::string> words{python, "-sP", "-m", "latcon", "--parsed", command, study, output_dir,
-                                 fs::read_symlink("/proc/self/exe"), input::data_folder(),
+  std::vector<std::string> words{python,
+                                 "-sP",
+                                 "-m",
+                                 "latcon",
+                                 "--parsed",
+                                 command,
+                                 study,
+                                 output_dir,
+                                 fs::read_symlink("/proc/self/exe"),
+                                 input::data_folder(),
                                  options.dump(-1, ' ', false, Json::error_handler_t::replace)};
   std::vector<std::string> environment = environment_of_python(package);
-  const std::vector<char *> arguments = pointers(words), variables = pointers(environment);
+  const std::vector<char *> arguments = support::pointers(words), variables = support::pointers(environment);
   std::cout << std::flush;
   disregard_signals();
   MPI_Finalize();

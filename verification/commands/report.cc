@@ -76,7 +76,7 @@ int run_script(const std::string &script, const std::string &directory, const st
                                              "a symbolic link to the program does not");
   std::vector<std::string> command{python, "-s", file, directory};
   command.insert(command.end(), options.begin(), options.end());
-  const pid_t child = support::start_child({command, environment_of_scripts(), ""});
+  const pid_t child = support::start_child({command, environment_of_scripts()});
   const int status = shows_progress ? wait_with_progress(child, "drawing " + page) : support::wait_for_child(child);
   if (status == support::not_started)
     throw NoPython(directory + "/" + page, "cannot start " + python);
