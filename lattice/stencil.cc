@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <Eigen/QR>
+#include "support/dense.h"
 
 namespace latcon::lattice
 {
@@ -64,7 +64,7 @@ void correct(std::vector<HalfBond> &bonds)
     scaled.col(i) = root[i] * harmonics(bonds[i].vector);
   }
   const Eigen::VectorXd missing = Eigen::VectorXd::Unit(5, 0) - scaled * root;
-  const Eigen::VectorXd z = scaled.completeOrthogonalDecomposition().solve(missing);
+  const Eigen::VectorXd z = support::shortest_least_squares(scaled, missing);
   require((scaled * z - missing).norm() < 1e-12 && (root + z).minCoeff() > 0.,
           "a ring has too few bonds in its arcs for isotropic fourth moments with positive weights: a finer grid or "
           "wider arcs are needed");

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <Eigen/QR>
+#include "support/dense.h"
 
 namespace latcon::lattice
 {
@@ -31,14 +31,12 @@ const StrainGradientFit::Entry &StrainGradientFit::entry(unsigned int bonds)
     equations.row(i) << R.x(), R.y(), 0.5 * R.x() * R.x(), R.x() * R.y(), 0.5 * R.y() * R.y();
   }
   // Neighbours stand at distances of the order of d, so that a set either fixes all five well or not at all.
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(equations);
-  solver.setThreshold(1e-6);
-  if (solver.rank() < unknowns)
+  const std::optional<Eigen::MatrixXd> inverse = support::left_inverse(equations, 1e-6);
+  if (!inverse)
     return *entry;
-  const Eigen::MatrixXd inverse = solver.solve(Eigen::MatrixXd::Identity(n_equations, n_equations));
   for (Eigen::Index i = 0; i < n_equations; ++i)
     entry->weights.col(static_cast<Eigen::Index>(neighbours[static_cast<std::size_t>(i)])) =
-      inverse.col(i).tail<3>() / (d * d);
+      inverse->col(i).tail<3>() / (d * d);
   entry->fixed = true;
   return *entry;
 }

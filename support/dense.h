@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 /// Decompositions of small dense matrices, without units. Every source that instantiates one of Eigen's takes seconds
@@ -38,7 +40,20 @@ double largest_eigenvalue(const Eigen::Ref<const Eigen::MatrixXd> &K, const Eige
 ComplexModes complex_modes(const Eigen::Ref<const Eigen::MatrixXd> &matrix);
 
 /// Vector x with the smallest |A x - b|, by Householder reflections with pivots.
-Eigen::VectorXd least_squares(const Eigen::Ref<const Eigen::MatrixXd> &A, const Eigen::Ref<const Eigen::VectorXd> &b);
+/// @param log_gram set to log det(A^T A) unless null
+Eigen::VectorXd least_squares(const Eigen::Ref<const Eigen::MatrixXd> &A, const Eigen::Ref<const Eigen::VectorXd> &b,
+                              double *log_gram = nullptr);
+
+/// Matrix X of which A X b is, for every b, nearest to b; none if a column of A is a sum of others but for the fraction
+/// `threshold` of the largest.
+std::optional<Eigen::MatrixXd> left_inverse(const Eigen::Ref<const Eigen::MatrixXd> &A, double threshold);
+
+/// Shortest of the vectors x with the smallest |A x - b|.
+Eigen::VectorXd shortest_least_squares(const Eigen::Ref<const Eigen::MatrixXd> &A,
+                                       const Eigen::Ref<const Eigen::VectorXd> &b);
+
+/// Matrix X of A X = B with symmetric positive definite A.
+Eigen::MatrixXd solve_positive(const Eigen::Ref<const Eigen::MatrixXd> &A, const Eigen::Ref<const Eigen::MatrixXd> &B);
 
 /// Singular values in descending order: of a deformation gradient, the principal stretches.
 Eigen::Vector2d singular_values(const Eigen::Matrix2d &matrix);

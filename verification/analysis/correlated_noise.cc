@@ -4,8 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include "support/dense.h"
 
 namespace latcon::analysis
 {
@@ -71,11 +70,11 @@ NoiseFit fit_noise(const Eigen::VectorXd &position, const Eigen::MatrixXd &desig
     Eigen::MatrixXd rows(n, n_coefficients + 1);
     rows << (design.array().rowwise() / scale.array()).matrix(), samples;
     const double log_determinant = whiten(rows, position, fraction, length);
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(rows.leftCols(n_coefficients));
-    const Eigen::VectorXd coefficients = qr.solve(rows.col(n_coefficients));
+    double log_information = 0.;
+    const Eigen::VectorXd coefficients =
+      support::least_squares(rows.leftCols(n_coefficients), rows.col(n_coefficients), &log_information);
     const double sum_of_squares =
       (rows.col(n_coefficients) - rows.leftCols(n_coefficients) * coefficients).squaredNorm() + floor;
-    const double log_information = 2. * qr.matrixQR().diagonal().array().abs().log().sum();
     const double freedom = static_cast<double>(n - n_coefficients);
     const double variance = sum_of_squares / freedom;
     const double log_evidence =
@@ -113,7 +112,7 @@ Eigen::MatrixXd least_squares_covariance(const CorrelatedNoise &noise, const Eig
 {
   const Eigen::RowVectorXd scale = design.colwise().norm();
   const Eigen::MatrixXd scaled = design.array().rowwise() / scale.array();
-  Eigen::MatrixXd solve = (scaled.transpose() * scaled).ldlt().solve(scaled.transpose());
+  Eigen::MatrixXd solve = support::solve_positive(scaled.transpose() * scaled, scaled.transpose());
   solve.array().colwise() /= scale.transpose().array();
   return solve * covariance(noise, position) * solve.transpose();
 }
