@@ -1,8 +1,9 @@
 """Web site of the documentation: `cmake --build BUILD --target docs`, then BUILD/docs/html/index.html.
 
 Pages are Markdown as a git host shows it, read by MyST. References to equations, "(L.2)", are links, in pages and in docstrings;
-a reference without its target is a warning, and the target `docs` makes warnings errors.
+a reference without its target is a warning, and the target `docs` makes warnings errors. A paragraph that is a link to a .csv file becomes its table.
 """
+import csv
 import pathlib
 import re
 import shutil
@@ -103,6 +104,28 @@ class Equations(SphinxTransform):
         return [piece if i % 2 else nodes.Text(piece) for i, piece in enumerate(pieces) if piece]
 
 
+class Tables(SphinxTransform):
+    """Shows the tables of .csv files to which a paragraph of its own links."""
+    default_priority = 400
+
+    def apply(self):
+        for paragraph in list(self.document.findall(nodes.paragraph)):
+            link = paragraph.children[0] if len(paragraph.children) == 1 else None
+            if isinstance(link, addnodes.download_reference) and link["reftarget"].endswith(".csv"):
+                path = pathlib.Path(self.env.doc2path(self.env.docname)).parent / link["reftarget"]
+                self.env.note_dependency(str(path))
+                with path.open(encoding="utf-8", newline="") as file:
+                    paragraph.parent.insert(paragraph.parent.index(paragraph) + 1, self.table(*csv.reader(file)))
+
+    @staticmethod
+    def table(header, *lines):
+        def row(cells):
+            return nodes.row("", *(nodes.entry("", nodes.paragraph("", cell)) for cell in cells))
+        group = nodes.tgroup("", *(nodes.colspec(colwidth=1) for _ in header), nodes.thead("", row(header)),
+                             nodes.tbody("", *map(row, lines)), cols=len(header))
+        return nodes.table("", group)
+
+
 # Pages that include a file of the root folder.
 INCLUDED = {"README.md": "index", "CONTRIBUTING.md": "contributing", "CHANGELOG.md": "changelog"}
 
@@ -121,6 +144,7 @@ def copy_mathjax(app, error):
 
 def setup(app):
     app.add_transform(Equations)
+    app.add_transform(Tables)
     app.add_lexer("prm", BashLexer)  # `set` and # comments
     app.connect("missing-reference", link_included)
     app.connect("build-finished", copy_mathjax)
