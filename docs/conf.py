@@ -43,6 +43,7 @@ html_title = f"latcon {release}"
 html_static_path = ["static"]
 html_css_files = ["style.css"]
 html_copy_source = False
+html_show_copyright = False
 
 # MathJax beside the pages: nothing comes from the network.
 mathjax_path = "mathjax/MathJax.js"
