@@ -37,7 +37,7 @@ class Frame:
     stretch : ndarray, shape (bonds,)
         Current over undeformed length λ.
     fields : dict of ndarray
-        Fields at the sites, with the names of docs/reference.md. Vectors have shape (sites, 2), tensors (sites, 2, 2)
+        Fields at the sites, with the names of docs/reference-files.md. Vectors have shape (sites, 2), tensors (sites, 2, 2)
         with the current index first: the in-plane components.
     bond_fields : dict of ndarray
         Fields of the bonds, likewise.

@@ -100,7 +100,7 @@ class Run:
         """`energy.csv`: energies per unit sheet thickness [J/m] against ``t`` [s] or ``load_factor``.
 
         Columns of a lattice: ``elastic``, ``kinetic``, ``viscous``, ``broken``, ``boundary_work``, ``contact``, ``imbalance``;
-        for those of Maxwell branches and of finite elements see docs/reference.md. Units in ``attrs["units"]``.
+        for those of Maxwell branches and of finite elements see docs/reference-files.md. Units in ``attrs["units"]``.
         """
         return read_table(self.directory / "energy.csv", _ENERGY_UNITS)
 

@@ -1,11 +1,9 @@
-"""Tables of measurements, for the terminal and for docs/performance.md."""
+"""Tables of measurements, for the terminal and for docs/performance.txt."""
 import dataclasses
 
 import summary
 from cost_model import Machine, efficiency, message_times
 from measure import best, spread
-
-BEGIN, END = "<!-- measured -->", "<!-- end of measured -->"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -23,11 +21,6 @@ class Table:
                  for line in lines]
         return "\n".join([self.title, "", cells[0], "-" * max(map(len, cells)), *cells[1:],
                           *(["", self.note] if self.note else [])]) + "\n"
-
-    def markdown(self):
-        lines = [self.header, [":--"] + ["--:"] * (len(self.header) - 1), *self.rows]
-        parts = [f"### {self.title}", "\n".join("| " + " | ".join(line) + " |" for line in lines)]
-        return "\n\n".join(parts + ([self.note] if self.note else [])) + "\n"
 
 
 def number(value):
@@ -199,20 +192,3 @@ def text(document):
     """Text for the terminal."""
     notes = [f"{name}: not measured, {reason}" for name, reason in not_measured(document)]
     return "\n".join([machine_text(document) + "\n", *(table.text() for table in tables(document)), *notes])
-
-
-def markdown(document):
-    """The generated part of docs/performance.md."""
-    notes = [f"Not measured: `{name}`, {reason}.\n" for name, reason in not_measured(document)]
-    intro = ("Made by `tests/benchmarks/run --write-docs`; do not edit. Each time is the shortest of several, measured "
-             "alternately with the other side of the comparison; the spread is the median over the shortest, minus one.\n")
-    return "\n".join([intro, machine_text(document) + "\n", *(table.markdown() for table in tables(document)), *notes])
-
-
-def write_docs(path, document):
-    """Replaces the generated part of a page."""
-    page = path.read_text(encoding="utf-8")
-    if page.count(BEGIN) != 1 or page.count(END) != 1 or page.index(BEGIN) > page.index(END):
-        raise ValueError(f"{path}: needs one line {BEGIN} and one line {END} below it")
-    head, tail = page[:page.index(BEGIN)], page[page.index(END):]
-    path.write_text(f"{head}{BEGIN}\n\n{markdown(document)}\n{tail}", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Checks that docs/reference.md documents the contents of an output directory: files, columns, keys, fields."""
+"""Checks that docs/reference-*.md document the contents of an output directory: files, columns, keys, fields."""
 import csv
 import json
 import pathlib
@@ -6,7 +6,7 @@ import re
 
 import vtk
 
-REFERENCE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "reference.md"
+REFERENCE = sorted((pathlib.Path(__file__).resolve().parents[2] / "docs").glob("reference*.md"))
 READERS = {".vtp": vtk.vtkXMLPolyDataReader, ".vtu": vtk.vtkXMLUnstructuredGridReader, ".vti": vtk.vtkXMLImageDataReader}
 
 
@@ -26,7 +26,7 @@ def rows_of_tables(text):
 
 class Reference:
     def __init__(self, text=None):
-        self.text = text if text is not None else REFERENCE.read_text(encoding="utf-8")
+        self.text = text if text is not None else "\n\n".join(path.read_text(encoding="utf-8") for path in REFERENCE)
         self.rows = rows_of_tables(self.text)
 
     def about(self, name):

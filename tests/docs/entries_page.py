@@ -1,21 +1,17 @@
 #!/usr/bin/python3
-"""Writes docs/reference-entries.md: every entry of a case, as `latcon schema` lists it.
+"""Writes docs/entries.csv: every entry of a case, as `latcon schema` lists it.
 
-Usage: entries_page.py PATH_OF_LATCON FOLDER_OF_THE_PAGE
+Usage: entries_page.py PATH_OF_LATCON FOLDER_OF_THE_TABLE
 """
+import csv
+import io
 import json
 import pathlib
 import re
 import subprocess
 import sys
 
-HEAD = """# Entries of a case
-
-Made by `cmake --build build/release --target entries_page` from what the program declares; do not edit. How cases are
-written: [reference.md](reference.md#cases). An entry without a unit is a pure number or a word; where a default is `auto`, the
-program derives the value. `latcon ... --dry-run` prints the entries of a case with their values, `latcon schema` all of this as
-JSON.
-"""
+HEADER = ["section", "name", "unit", "allowed", "default", "meaning"]
 
 
 def schema(latcon):
@@ -28,31 +24,32 @@ def default_of(entry):
     if entry["required"]:
         return "required"
     value = entry["default"]
-    text = "auto" if value is None else value if isinstance(value, str) else json.dumps(value).removesuffix(".0")
-    return f"`{text}`" if text else ""
+    return "auto" if value is None else value if isinstance(value, str) else json.dumps(value).removesuffix(".0")
 
 
 def row(entry):
-    """Row of the table of a section."""
-    name, unit, rule, meaning = (cell.replace("|", r"\|").replace("*", r"\*") for cell in
-                                 (entry["name"], entry["unit"] or "", entry["allowed"], entry["documentation"]))
-    rule = re.sub(r"^one of ", "", rule)
-    return f"| `{name}` | {unit if unit != '1' else '-'} | {rule} | {default_of(entry)} | {meaning} |\n"
+    """Cells of an entry, without its section."""
+    unit = entry["unit"] or ""
+    return (entry["name"], "-" if unit == "1" else unit, re.sub(r"^one of ", "", entry["allowed"]), default_of(entry),
+            entry["documentation"])
 
 
-def page(document):
+def table(document):
+    """Contents of the file."""
     sections = {}
     for entry in document["entries"]:
         sections.setdefault(entry["section"], []).append(row(entry))
-    tables = {}  # sections with the same entries, as the edges have, share a table
+    shared = {}  # sections with the same entries, as the edges have, share rows
     for section, rows in sections.items():
-        tables.setdefault("".join(rows), []).append(section)
-    return HEAD + "".join(f"\n## {', '.join(names)}\n\n| name | unit | allowed | default | meaning |\n"
-                          f"| --- | --- | --- | --- | --- |\n{rows}" for rows, names in tables.items())
+        shared.setdefault(tuple(rows), []).append(section)
+    file = io.StringIO()
+    csv.writer(file, lineterminator="\n").writerows(
+        [HEADER, *((", ".join(names), *cells) for rows, names in shared.items() for cells in rows)])
+    return file.getvalue()
 
 
 def main(latcon, docs):
-    (pathlib.Path(docs) / "reference-entries.md").write_text(page(schema(latcon)), encoding="utf-8")
+    (pathlib.Path(docs) / "entries.csv").write_text(table(schema(latcon)), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Checks that docs/reference.md documents every output file of a run and its contents; see documented.py."""
+"""Checks that docs/reference-*.md document every output file of a run and its contents; see documented.py."""
 import json
 import os
 import pathlib

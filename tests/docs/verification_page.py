@@ -1,8 +1,10 @@
 #!/usr/bin/python3
-"""Writes the tables of docs/verification.md from the results of `latcon verify --quick`; the text around them is unchanged.
+"""Writes docs/verification.csv, the results of `latcon verify --quick`.
 
-Usage: verification_page.py PATH_OF_LATCON FOLDER_OF_THE_PAGE
+Usage: verification_page.py PATH_OF_LATCON FOLDER_OF_THE_TABLE
 """
+import csv
+import io
 import json
 import math
 import pathlib
@@ -46,51 +48,50 @@ def number(value):
     return "" if value is None else "0" if value == 0 else f"{value:.2g}"
 
 
-def table(results, claim):
-    lines = ["| quantity | rows | error | tolerance | verdict |", "| --- | --: | --: | --: | --- |"]
-    for name, (count, row) in worst_rows(results, claim).items():
-        error = "round-off" if row["error"] is not None and 0 < abs(row["error"]) < ROUND_OFF else number(row["error"])
-        name = name.replace("|", r"\|").replace("*", r"\*")
-        lines.append(f"| {name} | {count} | {error} | {number(row['tolerance'])} | {row['verdict']} |")
-    return "\n".join(lines)
+HEADER = ["claim", "quantity", "rows", "error", "tolerance", "verdict"]
 
 
-PLACE = re.compile(r"(<!-- table: ([\w-]+) -->\n)(.*?)(<!-- end of table -->)", re.DOTALL)
+def table(results):
+    """Lines of the table, without its header."""
+    lines = []
+    for claim in dict.fromkeys(row["claim"] for row in results["claims"]):
+        for name, (count, row) in worst_rows(results, claim).items():
+            error = "round-off" if row["error"] is not None and 0 < abs(row["error"]) < ROUND_OFF else number(row["error"])
+            lines.append([claim, name, str(count), error, number(row["tolerance"]), row["verdict"]])
+    return lines
 
 
-def filled(text, results):
-    """The page with regenerated tables."""
-    return PLACE.sub(lambda place: f"{place[1]}\n{table(results, place[2])}\n\n{place[4]}", text)
+def text(results):
+    """Contents of the file."""
+    file = io.StringIO()
+    csv.writer(file, lineterminator="\n").writerows([HEADER, *table(results)])
+    return file.getvalue()
 
 
-def cells(text):
-    return [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line]
-
-
-def differences(text, results, relative=0.1):
-    """Rows of the page that differ from these results in name, count or verdict, in a tolerance by value, or in an error by more than
+def differences(written, results, relative=0.1):
+    """Rows of the file that differ from these results in name, count or verdict, in a tolerance by value, or in an error by more than
     `relative` (two digits are shown) and round-off."""
-    shown_claims = {place[2] for place in PLACE.finditer(text)}
-    wrong = [f"{claim}: no table" for claim in sorted({row["claim"] for row in results["claims"]} - shown_claims)]
-    for place in PLACE.finditer(text):
-        shown, known = cells(place[3]), cells(table(results, place[2]))
-        if len(shown) != len(known):
-            wrong.append(f"{place[2]}: {len(shown) - 2} rows, not {len(known) - 2}")
-        for old, new in zip(shown[2:], known[2:]):
-            both = [cell.replace("round-off", "0") for cell in (old[2], new[2])]
+    header, *shown = csv.reader(io.StringIO(written))
+    known = table(results)
+    wrong = [] if header == HEADER else [f"header: {header}"]
+    for claim in dict.fromkeys(line[0] for line in shown + known):
+        old_lines, new_lines = ([line for line in lines if line[0] == claim] for lines in (shown, known))
+        if len(old_lines) != len(new_lines):
+            wrong.append(f"{claim}: {len(old_lines)} rows, not {len(new_lines)}")
+        for old, new in zip(old_lines, new_lines):
+            both = [line[3].replace("round-off", "0") for line in (old, new)]
             errors = both[0] == both[1] or ("" not in both and
                                             math.isclose(*map(float, both), rel_tol=relative, abs_tol=10 * ROUND_OFF))
-            if old[:2] + old[4:] != new[:2] + new[4:] or not agrees(old[3], new[3]) or not errors:
-                wrong.append(f"{place[2]}: {' | '.join(old)}: now {' | '.join(new)}")
+            if old[:3] + old[5:] != new[:3] + new[5:] or not agrees(old[4], new[4]) or not errors:
+                wrong.append(f"{' | '.join(old)}: now {' | '.join(new[1:])}")
     return wrong
 
 
 def main(latcon, docs):
-    page = pathlib.Path(docs) / "verification.md"
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([latcon, "verify", "--quick", "--quiet", "--output-dir", folder], check=True)
         results = json.loads((pathlib.Path(folder) / "results.json").read_text())
-    page.write_text(filled(page.read_text(encoding="utf-8"), results), encoding="utf-8")
+    (pathlib.Path(docs) / "verification.csv").write_text(text(results), encoding="utf-8")
 
 
 if __name__ == "__main__":

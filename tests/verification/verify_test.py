@@ -16,7 +16,7 @@ from program import CASES, FULL, claims_where, latcon
 VERSION = [] if FULL else ["--quick"]
 quick_only = pytest.mark.skipif(FULL, reason="the quick versions are enough")
 
-PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "verification.md"
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "verification.csv"
 
 # Quantities that the rows of each claim must mention.
 SUBJECTS = {

@@ -24,7 +24,6 @@ from motion import read_motion
 from pictures import draw_sheet, shrink
 from runs import has_rows, read_run
 from study import draw_run
-from study_page import RUN_PICTURES
 from study_plots import draw_sweep, pattern_text
 from study_quantities import asked_quantities, sweeps_of
 from study_runs import mean_of, read_study, value_text
@@ -46,22 +45,17 @@ EXTRA_RUNS = {
                  "Output/frame interval=0", "Output/motion frames=0"],
 }
 RUN_FAILED = 4  # exit code of latcon
-# Pictures of a run in their order: caption, and the numbers in it: quantity, name, scale, unit.
-CAPTIONS = {
-    "sheet": (RUN_PICTURES["sheet"], (("speed_lagrangian", "speed", 1, " m/s"),
-                                      ("speed_over_shear", "speed over shear wave speed", 1, ""),
-                                      ("bridged_length", "bridged length", 100, " cm"),
-                                      ("detached_sites", "detached sites", 1, ""))),
-    "path": ("Above: path of the tip in the undeformed sheet. Below: where bonds broke, coloured by time.",
-             (("wavelength", "wavelength", 100, " cm"), ("amplitude", "amplitude", 100, " cm"),
-              ("crest_amplitude", "crest amplitude", 100, " cm"))),
-    "velocity": (RUN_PICTURES["velocity"], (("negative_zone_area", "area of the negative-velocity zone", 1e6, " mm²"),
-                                            ("negative_zone_depth", "most negative velocity ahead of the tip", 1, " m/s"),
-                                            ("velocity_asymmetry", "asymmetry", 1, ""),
-                                            ("process_zone_length", "process-zone length", 1e3, " mm"))),
-    "stress": (RUN_PICTURES["stress"], (("opening_stress_ratio_4d", "peak at 4 d over the value straight ahead", 1, ""),
-                                        ("opening_stress_angle_4d", "angle of this peak", 1, "°"),
-                                        ("wedge_angle", "wedge angle", 1, "°"))),
+# Pictures of a run in their order, with the numbers that they show: quantity, name, scale, unit.
+NUMBERS = {
+    "sheet": (("speed_lagrangian", "speed", 1, " m/s"), ("speed_over_shear", "speed over shear wave speed", 1, ""),
+              ("bridged_length", "bridged length", 100, " cm"), ("detached_sites", "detached sites", 1, "")),
+    "path": (("wavelength", "wavelength", 100, " cm"), ("amplitude", "amplitude", 100, " cm"),
+             ("crest_amplitude", "crest amplitude", 100, " cm")),
+    "velocity": (("negative_zone_area", "area of the negative-velocity zone", 1e6, " mm²"),
+                 ("negative_zone_depth", "most negative velocity ahead of the tip", 1, " m/s"),
+                 ("velocity_asymmetry", "asymmetry", 1, ""), ("process_zone_length", "process-zone length", 1e3, " mm")),
+    "stress": (("opening_stress_ratio_4d", "peak of the opening stress at 4 d over the value straight ahead", 1, ""),
+               ("opening_stress_angle_4d", "angle of this peak", 1, "°"), ("wedge_angle", "wedge angle", 1, "°")),
 }
 
 
@@ -82,7 +76,7 @@ def cases_of(study):
 
 
 def draw_case(seed, kinds, folder):
-    """Draws the pictures of a run for which it has data: {kind of CAPTIONS: PNG}."""
+    """Draws the pictures of a run for which it has data: {kind of NUMBERS: PNG}."""
     drawn = draw_run(seed, folder, LARGEST_PICTURE, kinds)
     run = read_run(seed.folder)
     if has_rows(run.tip, 2):
@@ -92,31 +86,28 @@ def draw_case(seed, kinds, folder):
     return drawn
 
 
-def numbers_text(seed, seeds, numbers):
+def numbers_text(seed, seeds, kinds):
     """Numbers of one seed, and their means over all seeds of the run if there are several."""
     words = []
-    for quantity, name, scale, unit in numbers:
+    for quantity, name, scale, unit in (number for kind in kinds for number in NUMBERS[kind]):
         value, mean = seed.values[quantity], mean_of(seeds, quantity)
         here = "none" if value is None else f"{scale * value:.4g}{unit}"
         if mean is not None:
-            over = f" (over {mean.n} seeds {value_text(mean, scale).rpartition(' (')[0]}{unit})" if mean.n > 1 else ""
+            over = f" ({value_text(mean, scale).rpartition(' (')[0]}{unit})" if mean.n > 1 else ""
             words.append(f"{name} {here}{over}")
     return "; ".join(words)
 
 
 def case_section(study, heading, seed, drawn):
-    """Section of a crack: description, pictures with their numbers."""
+    """Section of a crack: description, numbers, pictures."""
     about, changed, seeds = study.runs[seed.run]
     changes = ", ".join(f"{entry} = {value}" for entry, value in changed.items())
-    lines = [f"## {heading}: `{seed.run}`", "", f"{about[:1].upper()}{about[1:]}{'. ' if about else ''}"
-             f"{'Changed: ' + changes + '. ' if changes else ''}Patterns over its seeds: {pattern_text(seeds)}. "
-             f"Pictures of seed {seed.seed}: {seed.pattern}."]
-    for kind, (text, numbers) in CAPTIONS.items():
-        if kind in drawn:
-            found = numbers_text(seed, seeds, numbers)
-            caption = f"{text}{f' Measured: {found}.' if found else ''}"
-            lines += ["", f"![{kind} of {seed.run}](pictures/{drawn[kind].name})", "", caption]
-    return lines
+    kinds = [kind for kind in NUMBERS if kind in drawn]
+    found = numbers_text(seed, seeds, kinds)
+    return [f"## {heading}: `{seed.run}`", "", f"{about[:1].upper()}{about[1:]}{'. ' if about else ''}"
+            f"{'Changed: ' + changes + '. ' if changes else ''}Patterns over its seeds: {pattern_text(seeds)}. "
+            f"Pictures of seed {seed.seed}: {seed.pattern}.{f' Measured: {found}.' if found else ''}", "",
+            *[f"![{kind} of {seed.run}](pictures/{drawn[kind].name})" for kind in kinds]]
 
 
 def sweep_sections(study, folder):
@@ -129,10 +120,7 @@ def sweep_sections(study, folder):
             if key in known or not draw_sweep(study, rows[0], asked_quantities(rows), png):
                 continue
             known.add(key)
-            words = [f"- {r['quantity']}, {r['expected'] or 'for information'}: **{r['verdict']}**. {brief(r['measured'])}"
-                     for r in rows]
-            sections.append(([f"## {claim['claim']}", "", f"![sweep](pictures/{png.name})", "", "Means and standard "
-                              "deviations over the seeds; open symbols at 0: not defined for this crack.", "", *words], png))
+            sections.append(([f"## {claim['claim']}", "", f"![sweep](pictures/{png.name})"], png))
     return sections
 
 
@@ -198,18 +186,7 @@ def arrested_section(run, folder):
     return ["", f"## {run.crack['pattern'].capitalize()}: `arrested`", "",
             f"Bonds too tough for the loading. Changed with respect to Fig. 1: {changes}. "
             f"Measured: {run.crack['pattern']}, {run.crack['reason']}.", "",
-            f"![sheet of arrested](pictures/{png.name})", "", RUN_PICTURES["sheet"]], [png]
-
-
-def comparison_section(folder):
-    """Section with ParaView's picture of `latcon compare`: ([line, ...], [picture, ...]), empty if there is no picture."""
-    png = folder / "paraview-side-by-side.png"
-    if not png.exists():
-        return [], []
-    return ["", "## Lattice and continuum", "", f"![lattice, continuum and difference](pictures/{png.name})", "",
-            "A sheet with a hole, stretched along y, in ParaView: sites of the lattice, finite elements of its continuum "
-            "with gradient energy, and the difference. Made with the last commands of "
-            "[how-to/paraview.md](how-to/paraview.md)."], [png]
+            f"![sheet of arrested](pictures/{png.name})"], [png]
 
 
 def run_missing(latcon, folder):
@@ -239,7 +216,12 @@ def gallery(study, docs):
     lines = ["# Gallery", "", "Made by `cmake --build build/release --target gallery` from the study "
              f"\"{document['title']}\" (latcon {document['version']}, commit {document['git_commit'][:12]}, "
              f"{len(study.seeds)} runs{', quick version' if document['quick'] else ''}); do not edit. The numbers are "
-             "from its `study.json`: values of the seed shown, and mean ± standard deviation over all seeds."]
+             "from its `study.json`: values of the seed shown, and mean ± standard deviation over all seeds.", "",
+             "Pictures, as far as a crack has them: the deformed sheet in its last frame; above, path of the tip in the undeformed "
+             "sheet, below, where bonds broke, coloured by time; velocity of the material around the tip (cross), mean over "
+             "samples, mirrored where the path descends, blue: motion against the direction of the crack; opening stress, "
+             "averaged in the same way. Plots of sweeps have means and standard deviations over the seeds; open symbols at 0: "
+             "not defined for this crack."]
     pictures = set()
     extra = {name: read_run(study.folder / "gallery" / name) for name in EXTRA_RUNS}
     section, drawn = film_section(extra["fig1"], folder)
@@ -249,9 +231,9 @@ def gallery(study, docs):
         drawn = draw_case(seed, kinds, folder)
         pictures |= set(drawn.values())
         lines += ["", *case_section(study, heading, seed, drawn)]
-    for section, drawn in (arrested_section(extra["arrested"], folder), comparison_section(folder)):
-        lines += section
-        pictures |= set(drawn)
+    section, drawn = arrested_section(extra["arrested"], folder)
+    lines += section
+    pictures |= set(drawn)
     for section, png in sweep_sections(study, folder):
         pictures.add(png)
         lines += ["", *section]

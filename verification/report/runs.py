@@ -162,7 +162,7 @@ def read_run(folder):
 
 def read_energy(path):
     """Reads energy.csv of a motion of the lattice, or of a crack of the continuum, which also has the column "shed". None if
-    there is none, or for the two other forms written by the continuum (docs/reference.md), which have other columns."""
+    there is none, or for the two other forms written by the continuum (docs/reference-files.md), which have other columns."""
     text = read_text(path)
     if text is None or text.startswith(CONTINUUM_ENERGIES):
         return None

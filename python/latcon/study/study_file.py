@@ -1,4 +1,4 @@
-"""Reader of study files: runs of a parameter sweep, and claims about them (docs/reference.md, "Studies")."""
+"""Reader of study files: runs of a parameter sweep, and claims about them (docs/reference-studies.md)."""
 from __future__ import annotations
 
 import dataclasses

@@ -142,7 +142,7 @@ class ClaimOutcome:
 
 
 def judge_study(study: Study, plan: Sequence[PlannedRun], outcomes: Sequence[RunOutcome]) -> list[ClaimOutcome]:
-    """Judges all rows of a study (docs/reference.md, "Studies").
+    """Judges all rows of a study (docs/reference-studies.md).
 
     Parameters
     ----------

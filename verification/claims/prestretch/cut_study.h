@@ -63,8 +63,8 @@ struct CutResult
 std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F);
 
 /// The part of the claim `prestretch` on inhomogeneous fields: rows for each state, and a table named after
-/// the study with a row for each size and law (reference.md). Rows fail where a lattice does not relax, or a judged
-/// law has no equilibrium. Collective.
+/// the study with a row for each size and law (reference-files.md). Rows fail where a lattice does not relax, or a
+/// judged law has no equilibrium. Collective.
 ClaimOutcome cut_claim(const bridge::Subject &subject, const CutStudy &study);
 
 } // namespace latcon::claims
