@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "verification/claims/rows.h"
+
 namespace latcon::claims
 {
 
@@ -64,5 +66,14 @@ public:
 private:
   std::vector<double> sizes_, squares_;
 };
+
+/// Adds the row of an order that a continuum should have.
+inline void add_order(const Rows &rows, const std::string &quantity, const CommonOrder &found, double claimed,
+                      bool is_judged = true)
+{
+  const double order = found.order();
+  rows.add(quantity, "1", of_continuum(order, claimed), std::abs(order - claimed), {order_tolerance, reason_of_order},
+           is_judged);
+}
 
 } // namespace latcon::claims

@@ -11,6 +11,7 @@
 #include "verification/bridge/homogenised_memory.h"
 #include "verification/bridge/memory_waves.h"
 #include "verification/claims/continuum_waves.h"
+#include "verification/claims/rows.h"
 #include "verification/claims/state_name.h"
 #include "verification/claims/viscoelastic_waves/element_waves.h"
 #include "verification/claims/viscoelastic_waves/mode_run.h"
@@ -56,7 +57,8 @@ class WaveComparison
 public:
   WaveComparison(const bridge::Subject &subject, const Eigen::Matrix2d &F, const ViscoelasticWavesOptions &options,
                  ClaimOutcome &outcome)
-    : subject_(subject), F_(F), options_(options), outcome_(outcome),
+    : rows(outcome.results, "viscoelastic-waves", subject.name + ", " + state_name(F) + ": "), subject_(subject), F_(F),
+      options_(options),
       table_(outcome.table("viscoelastic_waves",
                            {"shells", "F_xx", "F_yy", "part", "wave", "k d", "w tau", "rubbery [rad/s]",
                             "glassy [rad/s]", "theory_frequency [rad/s]", "theory_decay [1/s]",
@@ -76,9 +78,8 @@ public:
     const lattice::Material planted = options_.planted ? options_.planted(material) : material;
     Oscillation run{nothing, nothing, 0.};
     std::ostringstream where;
-    where << subject_.name << ", " << state_name(F_) << ": " << part << ", wave " << wave_names[w]
-          << ", w tau = " << scaled_time;
-    outcome_.results.attempt("viscoelastic-waves", where.str(), [&] { run = run_wave(cell, planted, F_, wave); });
+    where << part << ", wave " << wave_names[w] << ", w tau = " << scaled_time;
+    rows.attempt(where.str(), [&] { run = run_wave(cell, planted, F_, wave); });
     const auto [rubbery, glassy] = limits(cell, material, w);
     frequency_.add_relative(run.frequency, wave.frequency());
     decay_.add(std::abs(run.decay - wave.decay()) / wave.frequency(), run.decay, wave.decay());
@@ -98,15 +99,13 @@ public:
     const bridge::MemoryWave wave = continuum_memory_waves(right.waves, F_, cell.K)[w];
     ElementWave run{{nothing, nothing, 0.}, nothing, nothing};
     std::ostringstream where;
-    where << subject_.name << ", " << state_name(F_) << ": " << part << ", finite elements, wave " << wave_names[w]
-          << ", w tau = " << scaled_time;
-    outcome_.results.attempt("viscoelastic-waves", where.str(),
-                             [&]
-                             {
-                               const Medium planted(subject_, cell,
-                                                    options_.planted ? options_.planted(material) : material);
-                               run = run_element_wave(planted.waves, F_, cell.K, wave, element_mesh);
-                             });
+    where << part << ", finite elements, wave " << wave_names[w] << ", w tau = " << scaled_time;
+    rows.attempt(where.str(),
+                 [&]
+                 {
+                   const Medium planted(subject_, cell, options_.planted ? options_.planted(material) : material);
+                   run = run_element_wave(planted.waves, F_, cell.K, wave, element_mesh);
+                 });
     const auto [rubbery, glassy] = limits(right.waves, cell.K, w);
     frequency_.add_relative(run.oscillation.frequency, wave.frequency());
     decay_.add(std::abs(run.oscillation.decay - wave.decay()) / wave.frequency(), run.oscillation.decay, wave.decay());
@@ -141,34 +140,28 @@ public:
     return {rubbery, bridge::plane_waves(matrices, normal)[w].frequency};
   }
 
-  void add(const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
-           std::optional<double> continuum_value, std::optional<double> theory, double error,
-           const output::Tolerance &tolerance)
-  {
-    outcome_.results.add({"viscoelastic-waves", subject_.name + ", " + state_name(F_) + ": " + quantity, unit,
-                          lattice_value, continuum_value, theory, error, tolerance});
-  }
-
   // Rows on all waves since the last call.
   void add_rows(const std::string &part)
   {
-    add(part + ", frequency, lattice run against complex modulus, worst of all waves", "rad/s", frequency_.value(), {},
-        frequency_.reference(), frequency_.error(), frequency_tolerance);
-    add(part + ", decay, lattice run against complex modulus, worst of all waves, error over the frequency", "1/s",
-        decay_.value(), {}, decay_.reference(), decay_.error(), decay_tolerance);
+    rows.add(part + ", frequency, lattice run against complex modulus, worst of all waves", "rad/s",
+             of_lattice(frequency_), frequency_, frequency_tolerance);
+    rows.add(part + ", decay, lattice run against complex modulus, worst of all waves, error over the frequency", "1/s",
+             of_lattice(decay_), decay_, decay_tolerance);
     frequency_ = decay_ = support::LargestError();
   }
-  double outside() const { return outside_.error(); }
+  const support::LargestError &outside() const { return outside_; }
+
+  const Rows rows;
 
   // Rows on all waves of finite elements since the last call.
   void add_element_rows(const std::string &part)
   {
-    add(part + ", frequency, finite elements against complex modulus, worst of all waves", "rad/s", {},
-        frequency_.value(), frequency_.reference(), frequency_.error(), element_tolerance);
-    add(part + ", decay, finite elements against complex modulus, worst of all waves, error over the frequency", "1/s",
-        {}, decay_.value(), decay_.reference(), decay_.error(), element_tolerance);
-    add(part + ", energy imbalance of finite elements over its bound, worst of all waves", "1", {}, {}, {},
-        imbalance_.error(), {1., "the bound (V.8)"});
+    rows.add(part + ", frequency, finite elements against complex modulus, worst of all waves", "rad/s",
+             of_continuum(frequency_), frequency_, element_tolerance);
+    rows.add(part + ", decay, finite elements against complex modulus, worst of all waves, error over the frequency",
+             "1/s", of_continuum(decay_), decay_, element_tolerance);
+    rows.add(part + ", energy imbalance of finite elements over its bound, worst of all waves", "1", {}, imbalance_,
+             {1., "the bound (V.8)"});
     frequency_ = decay_ = imbalance_ = support::LargestError();
   }
 
@@ -176,7 +169,6 @@ private:
   const bridge::Subject &subject_;
   Eigen::Matrix2d F_;
   const ViscoelasticWavesOptions &options_;
-  ClaimOutcome &outcome_;
   output::Table &table_, &element_table_;
   support::LargestError frequency_, decay_, outside_, imbalance_;
 };
@@ -217,15 +209,15 @@ void sweep_elements(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
     peaks.add_relative(std::exp(peak(logarithms, decays)), std::exp(peak(logarithms, in_theory)));
   }
   comparison.add_element_rows(part);
-  comparison.add(part +
-                   ", frequency of finite elements below the rubbery or above the glassy limit, worst of all waves",
-                 "1", {}, {}, {}, comparison.outside(), element_tolerance);
+  comparison.rows.add(
+    part + ", frequency of finite elements below the rubbery or above the glassy limit, worst of all waves", "1", {},
+    comparison.outside(), element_tolerance);
   // Decays a factor of three beside the peak are smaller by 0.05 of the frequency, which makes the error of the vertex
   // 45 times that of the decays.
-  comparison.add(part + ", w tau at the largest decay of finite elements, worst of both waves", "1", {}, peaks.value(),
-                 peaks.reference(), peaks.error(),
-                 {1e-3, "vertex of a parabola through decays that differ by 0.05 of the frequency, known to 2e-5: 45 "
-                        "times their error"});
+  comparison.rows.add(
+    part + ", w tau at the largest decay of finite elements, worst of both waves", "1", of_continuum(peaks), peaks,
+    {1e-3, "vertex of a parabola through decays that differ by 0.05 of the frequency, known to 2e-5: 45 "
+           "times their error"});
 }
 
 // One branch per bond whose relaxation time is swept at a fixed wavelength.
@@ -251,13 +243,12 @@ void sweep(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Visco
     peaks.add_relative(std::exp(peak(logarithms, decays)), std::exp(peak(logarithms, in_theory)));
   }
   comparison.add_rows(part);
-  comparison.add(part + ", frequency below the rubbery or above the glassy limit, worst of all waves", "1", {}, {}, {},
-                 comparison.outside(), frequency_tolerance);
+  comparison.rows.add(part + ", frequency below the rubbery or above the glassy limit, worst of all waves", "1", {},
+                      comparison.outside(), frequency_tolerance);
   // Decays near the peak, which differ by a few percent, are known to 1e-6.
-  comparison.add(part + ", w tau at the largest decay, worst of both waves", "1", peaks.value(), {}, peaks.reference(),
-                 peaks.error(),
-                 {1e-3, "vertex of a parabola through decays that differ by a few percent, known to "
-                        "1e-6"});
+  comparison.rows.add(part + ", w tau at the largest decay, worst of both waves", "1", of_lattice(peaks), peaks,
+                      {1e-3, "vertex of a parabola through decays that differ by a few percent, known to "
+                             "1e-6"});
   if (has_elements)
     sweep_elements(subject, F, options, cell, outcome);
   // w^2 = c^2 k^2 (1 - alpha (kd)^2 + ...) with alpha <= 1/4 for bonds up to sqrt3 d long, 1/3 for those of 2 d.
@@ -268,10 +259,10 @@ void sweep(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Visco
   support::LargestError rubbery;
   for (std::size_t w = 0; w < 2; ++w)
     rubbery.add_relative(comparison.limits(cell, elastic, w)[0], continuum[w].frequency);
-  comparison.add("frequency in the rubbery limit, lattice against local continuum, worst of both waves", "rad/s",
-                 rubbery.value(), rubbery.reference(), {}, rubbery.error(),
-                 {half_alpha * std::pow(cell.K.norm() * subject.spacing, 2),
-                  "alpha (kd)^2 / 2 with alpha <= 1/4, with third-nearest neighbours 1/3"});
+  comparison.rows.add("frequency in the rubbery limit, lattice against local continuum, worst of both waves", "rad/s",
+                      of_both(rubbery.value(), rubbery.reference()), rubbery,
+                      {half_alpha * std::pow(cell.K.norm() * subject.spacing, 2),
+                       "alpha (kd)^2 / 2 with alpha <= 1/4, with third-nearest neighbours 1/3"});
 }
 
 // The branches of the material, with its dashpots.
@@ -307,15 +298,14 @@ void own_branches(const bridge::Subject &subject, const Eigen::Matrix2d &F, cons
 ClaimOutcome viscoelastic_waves_claim(const bridge::Subject &subject, const ViscoelasticWavesOptions &options)
 {
   ClaimOutcome outcome;
-  const auto attempt = [&](const Eigen::Matrix2d &F, const std::string &part, const std::function<void()> &compute)
-  { outcome.results.attempt("viscoelastic-waves", subject.name + ", " + state_name(F) + ": " + part, compute); };
   for (std::size_t state = 0; state < options.states.size(); ++state)
   {
     const Eigen::Matrix2d &F = options.states[state];
     const bool has_elements = state < options.element_states && !options.element_frequencies.empty();
-    attempt(F, "one branch", [&] { sweep(subject, F, options, has_elements, outcome); });
+    const Rows rows(outcome.results, "viscoelastic-waves", subject.name + ", " + state_name(F) + ": ");
+    rows.attempt("one branch", [&] { sweep(subject, F, options, has_elements, outcome); });
     if (has_branches(subject.material))
-      attempt(F, "own branches", [&] { own_branches(subject, F, options, has_elements, outcome); });
+      rows.attempt("own branches", [&] { own_branches(subject, F, options, has_elements, outcome); });
   }
   return outcome;
 }
