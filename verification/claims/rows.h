@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -9,6 +10,9 @@
 
 namespace latcon::claims
 {
+
+/// A number that could not be computed; a row that is given it fails.
+inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// What a row compares; what does not apply is empty.
 struct Sides

@@ -5,6 +5,9 @@
 
 #include "continuum/rectangle.h"
 #include "support/largest_error.h"
+#include "verification/bridge/damaged_sheet.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/damage/damage_motion_rows.h"
 #include "verification/claims/damage/damaged_bar.h"
 #include "verification/claims/rows.h"
@@ -261,6 +264,13 @@ ClaimOutcome damage_claim(const bridge::Subject &subject, const DamageLaw &law, 
   if (options.has_motion)
     add_damage_motion_rows(subject, law, options, outcome);
   return outcome;
+}
+
+ClaimOutcome check_damage(const ClaimInput &input)
+{
+  DamageOptions options;
+  options.finest = input.quick ? 4 : 8;
+  return damage_claim(input.subject, bridge::damage_law(input.entries, input.subject), options);
 }
 
 } // namespace latcon::claims

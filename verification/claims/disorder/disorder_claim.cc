@@ -9,6 +9,8 @@
 #include "lattice/energy.h"
 #include "lattice/relaxation.h"
 #include "support/largest_error.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/disorder/effective_medium.h"
 #include "verification/claims/rows.h"
 
@@ -224,6 +226,18 @@ ClaimOutcome disorder_claim(const bridge::Subject &subject, const DisorderOption
     .attempt("sheets with disorder of the stiffness",
              [&] { DisorderedSheets(subject, options, disorder).run(outcome); });
   return outcome;
+}
+
+ClaimOutcome check_disorder(const ClaimInput &input)
+{
+  DisorderOptions options;
+  options.disorder = input.entries.disorder.disorder();
+  if (!input.quick)
+  {
+    options.n_sheets = 64;
+    options.columns = 48;
+  }
+  return disorder_claim(input.subject, options);
 }
 
 } // namespace latcon::claims

@@ -43,14 +43,12 @@ double lattice_stiffness(const WaveCell &cell, const lattice::Material &material
   const auto energy = [&](double amplitude)
   {
     lattice::State state = at_rest;
-    for (std::size_t row = 0; row < sheet.rows(); ++row)
-      for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-      {
-        const std::size_t place = sheet.index(row, column);
-        const double shape = amplitude * std::cos(cell.K.dot(sheet.reference(place)));
-        state.x[place] += shape * p.x();
-        state.y[place] += shape * p.y();
-      }
+    for_each_site(cell,
+                  [&](std::size_t place, double phase)
+                  {
+                    state.x[place] += amplitude * std::cos(phase) * p.x();
+                    state.y[place] += amplitude * std::cos(phase) * p.y();
+                  });
     lattice::update_images(state, sheet);
     return lattice::elastic_energy(state, sheet, material);
   };
@@ -102,8 +100,7 @@ void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
       const WaveCell cell = wave_cell(d, subject.orientation, direction, kd);
       const double inertia = 1. + std::pow(l_d, 2) * cell.K.squaredNorm();
       // One field for all: polarised as the waves of the local continuum.
-      const auto waves =
-        bridge::plane_waves(continuum_matrices(media.local, F, cell.K), bridge::wave_normal(F, cell.K));
+      const auto waves = continuum_waves(media.local, F, cell.K);
       for (std::size_t w = 0; w < 2; ++w)
       {
         const Eigen::Vector2d &p = waves[w].polarisation;
@@ -126,8 +123,7 @@ void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
       for (const double kd : order_kd)
       {
         const Eigen::Vector2d K = kd / d * N;
-        const Eigen::Vector2d p =
-          bridge::plane_waves(continuum_matrices(media.local, F, K), bridge::wave_normal(F, K))[w].polarisation;
+        const Eigen::Vector2d p = continuum_waves(media.local, F, K)[w].polarisation;
         const double exact = bloch_stiffness(sheet, material, F, K, p),
                      gradient = closed_stiffness(media.gradient, F, K, p);
         local_errors.push_back(std::abs(closed_stiffness(media.local, F, K, p) / exact - 1.));
@@ -177,18 +173,16 @@ Densities travelling_lattice(const WaveCell &cell, const lattice::Material &mate
   const lattice::TriangularLattice &sheet = cell.sheet;
   lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
   const double at_rest = lattice::elastic_energy(state, sheet, material);
-  for (std::size_t row = 0; row < sheet.rows(); ++row)
-    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-    {
-      const std::size_t place = sheet.index(row, column);
-      const double phase = cell.K.dot(sheet.reference(place));
-      const Eigen::Vector2d u = amplitude * std::cos(phase) * wave.polarisation,
-                            v = amplitude * wave.frequency * std::sin(phase) * wave.polarisation;
-      state.x[place] += u.x();
-      state.y[place] += u.y();
-      state.vx[place] = v.x();
-      state.vy[place] = v.y();
-    }
+  for_each_site(cell,
+                [&](std::size_t place, double phase)
+                {
+                  const Eigen::Vector2d u = amplitude * std::cos(phase) * wave.polarisation,
+                                        v = amplitude * wave.frequency * std::sin(phase) * wave.polarisation;
+                  state.x[place] += u.x();
+                  state.y[place] += u.y();
+                  state.vx[place] = v.x();
+                  state.vy[place] = v.y();
+                });
   // The wave itself shortens bonds a little more.
   const double limit = lattice::time_step_limits(sheet, material, 0.99 * smallest_stretch(sheet, F)).combined;
   const double eighth = 0.25 * M_PI / wave.frequency;
@@ -213,8 +207,7 @@ void travelling(const bridge::Subject &subject, const Eigen::Matrix2d &F, double
   const double kd = cell.K.norm() * d, amplitude = travelling_strain / cell.K.norm();
   const double inertia = 1. + std::pow(subject.lengths.lattice / d * kd, 2);
   const auto bloch = bridge::bloch_waves(cell.sheet, material, F, cell.K),
-             closed =
-               bridge::plane_waves(continuum_matrices(media.gradient, F, cell.K), bridge::wave_normal(F, cell.K));
+             closed = continuum_waves(media.gradient, F, cell.K);
   // Both sides are followed for an eighth of a period, if the wave has one.
   for (const auto &waves : {bloch, closed})
     static_cast<void>(bridge::fastest_frequency(waves));

@@ -1,9 +1,10 @@
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 
 #include <cmath>
-#include <limits>
 
 #include "support/largest_error.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/intrinsic_length/dispersion.h"
 #include "verification/claims/intrinsic_length/edge_layer.h"
 #include "verification/claims/intrinsic_length/gradient_positivity.h"
@@ -29,8 +30,6 @@ output::Tolerance run_tolerance(const bridge::Subject &subject)
           "fourth term of the series of w(k), left out of the fit to four waves: 2.4e-6, with third-nearest neighbours "
           "7.6e-6; errors of the waves, 2e-7, times twenty; half of both for a margin"};
 }
-
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 Rows length_rows(const bridge::Subject &subject, ClaimOutcome &outcome)
 {
@@ -93,7 +92,7 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
     const Eigen::Vector2d N = unit_vector(direction, subject.orientation);
     const double degrees = angle(direction, subject.orientation);
     const std::string at = " at " + std::to_string(std::lround(degrees)) + " degrees";
-    Alpha run{nothing, nothing}; // if no wave oscillates, the rows fail
+    Alpha run{unknown, unknown}; // if no wave oscillates, the rows fail
     rows.attempt("lattice run, waves" + at,
                  [&] { run = running_alpha(d, subject.orientation, direction, material, I); });
     runs.add({subject.name, degrees, run[0], run[1]});
@@ -194,7 +193,7 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
   const Rows rows = length_rows(subject, outcome);
   const lattice::Material material = lattice::without_dashpots(subject.material);
   // Without an equilibrium the rows fail.
-  EdgeLayer layer{nothing, std::vector<double>(options.edge_rows, nothing), nothing};
+  EdgeLayer layer{unknown, std::vector<double>(options.edge_rows, unknown), unknown};
   rows.attempt("edge layer, relaxed strip",
                [&] { layer = relaxed_edge(subject.spacing, material, options.edge_stretch, options.edge_rows); });
   const double root = edge_decay(subject.spacing, material, options.edge_stretch, layer.stretch_across);
@@ -252,6 +251,13 @@ ClaimOutcome intrinsic_length_claim(const bridge::Subject &subject, const Intrin
   rows.attempt("positive gradient energy", [&] { positivity(subject, outcome); });
   rows.attempt("edge layer", [&] { edge_layer(subject, options, outcome); });
   return outcome;
+}
+
+ClaimOutcome check_intrinsic_length(const ClaimInput &input)
+{
+  IntrinsicLengthOptions options;
+  options.angle_step = input.quick ? 15. : 3.;
+  return intrinsic_length_claim(input.subject, options);
 }
 
 } // namespace latcon::claims

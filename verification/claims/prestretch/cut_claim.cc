@@ -1,6 +1,5 @@
 #include <array>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include <Eigen/LU>
@@ -16,8 +15,6 @@ namespace latcon::claims
 {
 namespace
 {
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 // Least squares with the standard errors of its parameters.
 struct Fit

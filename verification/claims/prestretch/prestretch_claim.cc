@@ -12,7 +12,10 @@
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/network_comparison.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/prestretch/cut_comparison.h"
+#include "verification/claims/prestretch/cut_study.h"
 #include "verification/claims/rows.h"
 #include "verification/claims/stability_row.h"
 
@@ -217,6 +220,33 @@ output::Results prestretch_claim(const bridge::Subject &subject, const Prestretc
   rows.attempt("equilibrium, plane-stress Mooney-Rivlin",
                [&] { mooney_rivlin_rows(subject, *sheet, side, options, rows); });
   return results;
+}
+
+ClaimOutcome check_prestretch(const ClaimInput &input)
+{
+  const bridge::Subject &subject = input.subject;
+  const bool quick = input.quick;
+  PrestretchOptions options;
+  if (!quick)
+  {
+    options.length = 120.;
+    options.height = 80.;
+    options.cells_x = 24;
+    options.cells_y = 16;
+  }
+  ClaimOutcome outcome{prestretch_claim(subject, options), {}};
+  if (subject.material.coordination() == 6)
+  {
+    outcome.add(cut_claim(subject, nearest_hole_study(quick)));
+    if (!quick)
+      outcome.add(cut_claim(subject, notch_study(false)));
+    return outcome;
+  }
+  outcome.add(cut_claim(subject, hole_study(quick)));
+  outcome.add(cut_claim(subject, notch_study(quick)));
+  if (!quick && subject.is_stable() && (subject.deformation - Eigen::Matrix2d::Identity()).norm() > 0.01)
+    outcome.add(cut_claim(subject, loaded_hole_study(subject.deformation)));
+  return outcome;
 }
 
 } // namespace latcon::claims

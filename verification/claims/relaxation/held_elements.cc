@@ -47,10 +47,7 @@ void add_held_elements(const bridge::Subject &subject, const lattice::Triangular
   constexpr unsigned int cells = 2;
   continuum::Sheet::Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, {extent, extent, cells, cells, false, false});
-  continuum::BoundaryConditions conditions;
-  const auto held = std::make_shared<bridge::AffineDisplacement>(F);
-  for (const auto id : {continuum::edge::left, continuum::edge::right, continuum::edge::bottom, continuum::edge::top})
-    conditions.displacements.push_back({id, held});
+  const continuum::BoundaryConditions conditions(bridge::affine_boundary(F));
   continuum::DynamicSettings settings{time_step};
   settings.degree = 2;
   const auto viscosity = bridge::homogenised_viscosity(sheet, planted);
@@ -58,7 +55,7 @@ void add_held_elements(const bridge::Subject &subject, const lattice::Triangular
   continuum::DynamicSolver solver(mesh, {subject.cauchy_born}, conditions, {subject.material.density}, settings,
                                   viscosity.get(), {}, memory.get());
   const continuum::Sheet::Vector at_rest = solver.sheet().make_owned();
-  solver.start(interpolated(solver.sheet(), *held), at_rest, 0.,
+  solver.start(interpolated(solver.sheet(), bridge::AffineDisplacement(F)), at_rest, 0.,
                std::vector<continuum::Sheet::Vector>(memory ? memory->n_numbers() : 0, at_rest));
 
   std::array<double, lattice::n_bond_kinds> n_bonds;

@@ -11,6 +11,8 @@
 #include "support/dense.h"
 #include "support/largest_error.h"
 #include "verification/bridge/homogeneous_response.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/lattice_waves.h"
 #include "verification/claims/relaxation/branch_theory.h"
 #include "verification/claims/relaxation/held_elements.h"
@@ -253,6 +255,14 @@ ClaimOutcome relaxation_claim(const bridge::Subject &subject, const RelaxationOp
   if (is_damped(subject.material))
     rows.attempt(chebyshev, [&] { relax(chebyshev, true); });
   return outcome;
+}
+
+ClaimOutcome check_relaxation(const ClaimInput &input)
+{
+  RelaxationOptions options;
+  if (!input.quick)
+    options.max_steps = 100000;
+  return relaxation_claim(input.subject, options);
 }
 
 } // namespace latcon::claims

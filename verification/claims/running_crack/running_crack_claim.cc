@@ -4,8 +4,11 @@
 #include <functional>
 #include <sstream>
 
+#include "support/fits.h"
 #include "support/largest_error.h"
 #include "verification/bridge/equivalent_sheet.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/continuum_waves.h"
 #include "verification/claims/rows.h"
 #include "verification/claims/stability_row.h"
@@ -81,28 +84,12 @@ private:
   double from_, to_, pitch_;
 };
 
-// Shift of the tip of the first field ahead of its nominal position [d] at which the second field is closest to it, by
-// golden section search to a thousandth.
+// Shift of the tip of the first field ahead of its nominal position [d] at which the second field is closest to it, to
+// a thousandth.
 double effective_tip(const TipField &first, const TipField &second, const Region &region, double d)
 {
-  const Quantity &velocity = quantities().front();
-  const auto at = [&](double shift) { return region.distance(first, second, velocity, shift * d); };
-  constexpr double ratio = 0.6180339887498949;
-  double low = -1.5, high = 1.5;
-  double a = high - ratio * (high - low), b = low + ratio * (high - low), f_a = at(a), f_b = at(b);
-  while (high - low > 1e-3)
-  {
-    if (!std::isfinite(f_a) || !std::isfinite(f_b))
-      return std::nan("");
-    const bool left = f_a < f_b;
-    (left ? high : low) = left ? b : a;
-    (left ? b : a) = left ? a : b;
-    (left ? f_b : f_a) = left ? f_a : f_b;
-    double &point = left ? a : b;
-    point = left ? high - ratio * (high - low) : low + ratio * (high - low);
-    (left ? f_a : f_b) = at(point);
-  }
-  return 0.5 * (low + high);
+  const auto distance = [&](double shift) { return region.distance(first, second, quantities().front(), shift * d); };
+  return support::golden_section(distance, -1.5, 1.5, 1e-3);
 }
 
 // Cells of about `size` spacings, in strides: a power of two, as the path of the tip is divided.
@@ -280,8 +267,7 @@ CrackSides crack_sides(const bridge::Subject &subject, const RunningCrackOptions
   drive.n_strides = static_cast<unsigned int>(std::lround(options.advance * d / drive.stride()));
   const Eigen::Vector2d K(1. / d, 0.);
   const WaveContinuum medium{{subject.network}, {subject.material.density}};
-  const auto waves = bridge::plane_waves(continuum_matrices(medium, subject.deformation, K),
-                                         bridge::wave_normal(subject.deformation, K));
+  const auto waves = continuum_waves(medium, subject.deformation, K);
   drive.speed = 0.5 * support::smallest_of({waves[0].frequency, waves[1].frequency}) / K.norm();
 
   const lattice::TriangularLattice sheet(d, drive.length, drive.height, drive.orientation);
@@ -324,6 +310,13 @@ ClaimOutcome running_crack_claim(const bridge::Subject &subject, const CrackSide
   if (!failure.attempt("running-crack", "gradient continuum", [&] { comparison.compare("gradient", sides.gradient); }))
     comparison.rows.add(failure.rows().front().quantity, "1", {});
   return comparison.outcome;
+}
+
+ClaimOutcome check_running_crack(const ClaimInput &input)
+{
+  RunningCrackOptions options = input.quick ? RunningCrackOptions() : full_running_crack();
+  options.frames = input.frames;
+  return running_crack_claim(input.subject, options);
 }
 
 } // namespace latcon::claims

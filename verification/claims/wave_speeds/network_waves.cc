@@ -66,7 +66,7 @@ void network_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, con
     from_mean.add((network - mean.mean).norm() / mean.mean.norm());
     share.add((network - lattice_matrices.col(0)).norm() / (mean.bound + largest * mean.mean.norm()));
 
-    const auto closed = bridge::plane_waves(continuum_matrices(gradient, F, K), bridge::wave_normal(F, K));
+    const auto closed = continuum_waves(gradient, F, K);
     const auto elements = discrete_frequencies(gradient, F, K, mesh);
     for (std::size_t w = 0; w < 2; ++w)
       elements_error.add_relative(elements[w], closed[w].frequency);

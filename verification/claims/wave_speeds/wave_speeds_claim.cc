@@ -1,18 +1,22 @@
 #include "verification/claims/wave_speeds/wave_speeds_claim.h"
 
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 
 #include "support/largest_error.h"
 #include "verification/bridge/bloch.h"
 #include "verification/claims/absolute_modulus.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/gradient_remainder.h"
 #include "verification/claims/lattice_waves.h"
 #include "verification/claims/order_fit.h"
+#include "verification/claims/stability_row.h"
 #include "verification/claims/state_name.h"
+#include "verification/claims/wave_speeds/absorbing_end.h"
 #include "verification/claims/wave_speeds/network_waves.h"
+#include "verification/claims/wave_states.h"
 
 namespace latcon::claims
 {
@@ -25,8 +29,6 @@ const output::Tolerance lattice_tolerance{
 // to 1.8e-4).
 constexpr double compared_kd = 0.25;
 constexpr double gradient_tolerance = 1e-4;
-
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 std::array<double, 2> frequencies(const std::array<bridge::PlaneWave, 2> &waves)
 {
@@ -71,7 +73,7 @@ public:
 private:
   std::array<double, 2> closed(const WaveContinuum &medium, const Eigen::Vector2d &K) const
   {
-    return frequencies(bridge::plane_waves(continuum_matrices(medium, F_, K), bridge::wave_normal(F_, K)));
+    return frequencies(continuum_waves(medium, F_, K));
   }
 
   Eigen::Matrix2d F_;
@@ -104,7 +106,7 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
       const auto local = waves.local(cell.K), bloch = waves.bloch(cell.K), gradient = waves.gradient(cell.K),
                  isotropic = waves.isotropic(cell.K);
       // If a wave does not oscillate, its rows fail.
-      std::array<double, 2> run{nothing, nothing}, elements = run;
+      std::array<double, 2> run{unknown, unknown}, elements = run;
       const auto attempt = [&](const std::string &side, const std::function<void()> &compute)
       {
         std::ostringstream where;
@@ -211,14 +213,12 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
   const WaveContinuum medium{{subject.cauchy_born, *subject.lattice_gradient},
                              {subject.material.density, subject.lengths.lattice},
                              viscosity.get()};
-  const std::array<bridge::PlaneWave, 2> theory = damped(cell.K),
-                                         kelvin = bridge::plane_waves(continuum_matrices(medium, F, cell.K),
-                                                                      bridge::wave_normal(F, cell.K));
+  const std::array<bridge::PlaneWave, 2> theory = damped(cell.K), kelvin = continuum_waves(medium, F, cell.K);
   std::ostringstream where;
   where << subject.name << ", " << state_name(F) << ", kd = " << std::round(1e4 * k * subject.spacing) / 1e4 << ": ";
   const Rows rows(outcome.results, "wave-speeds", where.str());
   // If a wave does not oscillate, its rows fail.
-  std::array<Oscillation, 2> run{{{nothing, nothing, 0.}, {nothing, nothing, 0.}}}, elements = run;
+  std::array<Oscillation, 2> run{{{unknown, unknown, 0.}, {unknown, unknown, 0.}}}, elements = run;
   rows.attempt(
     "lattice run, damped waves",
     [&] { run = lattice_waves(cell, options.planted ? options.planted(material) : material, F, options.integrator); });
@@ -234,12 +234,11 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
   for (double fraction = 0.1; fraction < 0.95; fraction *= std::pow(10., 0.1))
   {
     const Eigen::Vector2d K = fraction * cell.K;
-    const auto exact = damped(K),
-               closed = bridge::plane_waves(continuum_matrices(medium, F, K), bridge::wave_normal(F, K));
+    const auto exact = damped(K), closed = continuum_waves(medium, F, K);
     for (std::size_t w = 0; w < 2; ++w)
       table.add({subject.name, F(0, 0), F(1, 1), 0., std::string(wave_names[w]), fraction * k * subject.spacing,
-                 exact[w].frequency, exact[w].decay, nothing, nothing, closed[w].frequency, closed[w].decay, nothing,
-                 nothing});
+                 exact[w].frequency, exact[w].decay, unknown, unknown, closed[w].frequency, closed[w].decay, unknown,
+                 unknown});
   }
   const bool chebyshev = options.integrator == input::Case::Integrator::runge_kutta_chebyshev;
   const output::Tolerance tolerance{1e-4, "average acceleration with 28 steps a period, extrapolated: (w h)^4 / 300, "
@@ -265,8 +264,7 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
     add("decay", "1/s", run[w].decay, elements[w].decay, theory[w].decay, kelvin[w].decay);
     // Of a wave so long that the tolerance cannot hide an error of 1 %, whatever the dashpots.
     const Eigen::Vector2d K = cell.K * support::smallest_of({1., 0.15 / (k * subject.spacing)});
-    const double closed = bridge::plane_waves(continuum_matrices(medium, F, K), bridge::wave_normal(F, K))[w].decay,
-                 exact = damped(K)[w].decay;
+    const double closed = continuum_waves(medium, F, K)[w].decay, exact = damped(K)[w].decay;
     of_wave.add(std::string("decay, Kelvin continuum against Bloch") + (K.norm() < k ? ", at kd = 0.15" : ""), "1/s",
                 of_continuum(closed, exact), support::relative_error(closed, exact),
                 {std::pow(subject.lengths.lattice * K.norm(), 2),
@@ -293,6 +291,29 @@ ClaimOutcome wave_speeds_claim(const bridge::Subject &subject, const WaveSpeedsO
   if (has_dashpots)
     for (const Eigen::Matrix2d &F : options.damped_states)
       rows.attempt(state_name(F) + ": damped waves", [&] { attenuation_at(subject, F, options, outcome); });
+  return outcome;
+}
+
+ClaimOutcome check_wave_speeds(const ClaimInput &input)
+{
+  const bridge::Subject &subject = input.subject;
+  WaveSpeedsOptions options;
+  options.states = wave_states(subject, input.quick);
+  options.damped_states = wave_states(subject, true);
+  options.integrator = input.entries.integrator;
+  if (input.quick)
+  {
+    options.kd = {0.1, 0.5};
+    options.mesh.cells = 4;
+    options.damped_states = {options.states.back()};
+  }
+  ClaimOutcome outcome = wave_speeds_claim(subject, options);
+  if (!subject.is_stable())
+    outcome.results.add(stability_row(subject, "wave-speeds"));
+  else if (input.entries.left_end == input::Case::End::absorbing ||
+           input.entries.right_end == input::Case::End::absorbing)
+    outcome.results.attempt("wave-speeds", subject.name + ": absorbing end",
+                            [&] { outcome.results.add(absorbing_end_rows(subject)); });
   return outcome;
 }
 
