@@ -8,6 +8,8 @@
 
 #include <Eigen/LU>
 
+#include "support/fits.h"
+
 namespace latcon::analysis
 {
 namespace
@@ -84,16 +86,13 @@ Eigen::Matrix2d cell_derivatives(const std::array<Eigen::Vector2d, 4> &corners)
 
 double slope_of(const std::vector<Eigen::Vector2d> &points)
 {
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d &point : points)
-    mean += point / static_cast<double>(points.size());
-  double xx = 0., xy = 0.;
+  std::vector<double> x, y;
   for (const Eigen::Vector2d &point : points)
   {
-    xx += (point.x() - mean.x()) * (point.x() - mean.x());
-    xy += (point.x() - mean.x()) * (point.y() - mean.y());
+    x.push_back(point.x());
+    y.push_back(point.y());
   }
-  return xy / xx;
+  return support::slope(x, y);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "support/dense.h"
+#include "support/fits.h"
 
 namespace latcon::analysis
 {
@@ -45,37 +46,6 @@ Projection project(const Eigen::MatrixXd &columns, const Eigen::VectorXd &values
   result.coefficients = support::least_squares(columns, values);
   result.residual = values - columns * result.coefficients;
   return result;
-}
-
-/// Returns the minimiser of a function with one minimum between a and b, to within `tolerance`.
-template <typename Function>
-double golden_section(const Function &function, double a, double b, double tolerance)
-{
-  const double ratio = 0.5 * (std::sqrt(5.) - 1.);
-  double left = b - ratio * (b - a);
-  double right = a + ratio * (b - a);
-  double at_left = function(left);
-  double at_right = function(right);
-  while (b - a > tolerance)
-  {
-    if (at_left < at_right)
-    {
-      b = right;
-      right = left;
-      at_right = at_left;
-      left = b - ratio * (b - a);
-      at_left = function(left);
-    }
-    else
-    {
-      a = left;
-      left = right;
-      at_left = at_right;
-      right = a + ratio * (b - a);
-      at_right = function(right);
-    }
-  }
-  return 0.5 * (a + b);
 }
 
 } // namespace
@@ -137,7 +107,7 @@ std::optional<SinusoidFit> fit_sinusoid(const ColumnMeans &path, double shortest
       best_wave_number = wave_number;
     }
   }
-  const double wave_number = golden_section(unexplained, std::max(lowest, best_wave_number - step),
+  const double wave_number = support::golden_section(unexplained, std::max(lowest, best_wave_number - step),
                                             std::min(highest, best_wave_number + step), 1e-7 * best_wave_number);
 
   const Eigen::MatrixXd columns = linear_columns(path, stretch, wave_number);

@@ -10,22 +10,22 @@
 namespace latcon::bridge
 {
 
-std::optional<double> Subject::gradient_tolerance(const Eigen::Matrix2d &F, double value) const
+bool Subject::judges_gradient(const Eigen::Matrix2d &F) const
 {
   for (const continuum::FibreFamily &family : cauchy_born.families())
   {
     const double stretch = (to_continuum(F) * family.direction).norm();
     if (stretch < continuum::LatticeGradient::full_stretch && std::abs(stretch - 1.) > 1e-12) // no force at 1
-      return {};
+      return false;
   }
-  return tolerance(Law::lattice_gradient, value);
+  return judges(Law::lattice_gradient);
 }
 
-std::optional<double> Subject::network_gradient_tolerance(const Eigen::Matrix2d &F, double value) const
+bool Subject::judges_network_gradient(const Eigen::Matrix2d &F) const
 {
-  if (!F.isIdentity(1e-12) && support::singular_values(F)(1) < continuum::LatticeGradient::full_stretch)
-    return {};
-  return tolerance(Law::mooney_rivlin_network, value);
+  const bool is_stretched =
+    F.isIdentity(1e-12) || !(support::singular_values(F)(1) < continuum::LatticeGradient::full_stretch);
+  return is_stretched && judges(Law::mooney_rivlin_network);
 }
 
 Subject subject(const input::Case &input, const lattice::Material &material, const Laws &laws)

@@ -38,19 +38,22 @@ struct Subject
   /// compare.
   bool is_stable() const { return slowest_wave.squared_speed > 0.; }
 
-  /// Returns the tolerance of a row about a law; none, which makes the row informational, if the law is not judged.
-  std::optional<double> tolerance(Law law, double value) const
+  /// Returns whether rows about a law are judged; otherwise they are reported.
+  bool judges(Law law) const { return laws.count(law) > 0; }
+
+  /// Returns whether a row is judged that compares the next order in kd of the gradient continuum and the lattice at F:
+  /// not where bonds are below full_stretch. There the gradient energy omits the negative contribution of bonds in
+  /// compression, to remain positive (theory-continuum.md, eq. (C.27)).
+  bool judges_gradient(const Eigen::Matrix2d &F) const;
+
+  /// Returns the same for the network, which has fibres in every direction.
+  bool judges_network_gradient(const Eigen::Matrix2d &F) const;
+
+  /// Returns a sheet of the lattice, for its bonds and periods. @param extent in spacings
+  lattice::TriangularLattice sheet(double extent = 10.) const
   {
-    return laws.count(law) > 0 ? std::optional(value) : std::nullopt;
+    return {spacing, extent * spacing, extent * spacing, orientation};
   }
-
-  /// Returns the tolerance of a row that compares the next order in kd of the gradient continuum and the lattice at F.
-  /// None, which makes the row informational, where bonds are below full_stretch: there the gradient energy omits the
-  /// negative contribution of bonds in compression, to remain positive (theory-continuum.md, eq. (C.27)).
-  std::optional<double> gradient_tolerance(const Eigen::Matrix2d &F, double value) const;
-
-  /// Returns the tolerance as gradient_tolerance() for the network, which has fibres in every direction.
-  std::optional<double> network_gradient_tolerance(const Eigen::Matrix2d &F, double value) const;
 };
 
 /// Creates the subject of a case with another `material`.

@@ -1,6 +1,7 @@
 /// Descriptor of a claim.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,8 @@
 namespace latcon::claims
 {
 
-/// Everything that the program and the report know of a claim. The folder of a claim has its name, with `_` for `-`,
-/// and may hold a `plots.py` with the plots of its tables in the report.
+/// Everything that the program and the report know of a claim, given in claim_table.inc. The folder of a claim may hold
+/// a `plots.py` with the plots of its tables in the report.
 struct Claim
 {
   std::string name;      ///< on the command line and in results: "wave-speeds"
@@ -58,5 +59,12 @@ struct Claim
     return gate && !is_about_damage && (!is_about_memory || material.has_memory());
   }
 };
+
+/// Returns the name of the claim of a folder: "wave-speeds" of "wave_speeds".
+inline std::string claim_name(std::string folder)
+{
+  std::replace(folder.begin(), folder.end(), '_', '-');
+  return folder;
+}
 
 } // namespace latcon::claims

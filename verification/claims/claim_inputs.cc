@@ -4,18 +4,16 @@
 #include <array>
 #include <set>
 #include <stdexcept>
-#include <variant>
 
 #include "support/full_precision.h"
 #include "support/largest_error.h"
-#include "verification/input/case_text.h"
 
 namespace latcon::claims
 {
 namespace
 {
 
-// Entries of which a Subject is made. Further ones are in the descriptors of claims.
+// Entries of which a Subject is made. Further ones are in the table of claims.
 constexpr std::array entries_of_subject{
   "Sheet/spacing",    "Sheet/orientation", "Material/density", "Loading/strain x",
   "Loading/strain y", "Loading/shear",     "Continuum/ratio",
@@ -57,17 +55,15 @@ std::vector<std::string> assignments(const input::Case &input, const std::vector
   copy.declare(parameters);
   std::vector<std::string> lines;
   std::set<std::string> declared;
-  for (const auto &item : input::read_prm(parameters.resolved_text(), "case"))
-    if (const auto *entry = std::get_if<input::Assignment>(&item))
-    {
-      const std::string key = entry->section + "/" + entry->name;
-      if (allowed.count(key) > 0)
-        lines.push_back(key + "=" + entry->value);
-      declared.insert(key);
-    }
+  for (const auto &[key, value] : parameters.values())
+  {
+    if (allowed.count(key) > 0)
+      lines.push_back(key + "=" + value);
+    declared.insert(key);
+  }
   for (const std::string &key : further)
     if (declared.count(key) == 0)
-      throw std::logic_error("the descriptor of a claim names `" + key + "`, which is no entry of a case");
+      throw std::logic_error("the table of claims names `" + key + "`, which is no entry of a case");
   return lines;
 }
 

@@ -28,9 +28,6 @@ struct ClaimOutcome
     for (const auto &[name, rows] : other.tables)
       table(name, rows.columns()).add(rows);
   }
-
-  /// Writes NAME.csv for each table into `folder`, which must exist. @throws OutputError
-  void write_tables(const std::string &folder) const;
 };
 
 } // namespace latcon::claims

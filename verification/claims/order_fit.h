@@ -5,6 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "support/fits.h"
+#include "verification/claims/rows.h"
+
 namespace latcon::claims
 {
 
@@ -23,19 +26,13 @@ inline double fitted_order(const std::vector<double> &h, const std::vector<doubl
 {
   if (h.size() != errors.size() || h.size() < 2)
     throw std::invalid_argument("an order is fitted to two errors or more, each with its size");
-  double mean_x = 0., mean_y = 0.;
+  std::vector<double> log_h, log_errors;
   for (std::size_t i = 0; i < h.size(); ++i)
   {
-    mean_x += std::log(h[i]) / static_cast<double>(h.size());
-    mean_y += std::log(errors[i]) / static_cast<double>(h.size());
+    log_h.push_back(std::log(h[i]));
+    log_errors.push_back(std::log(errors[i]));
   }
-  double xx = 0., xy = 0.;
-  for (std::size_t i = 0; i < h.size(); ++i)
-  {
-    xx += std::pow(std::log(h[i]) - mean_x, 2);
-    xy += (std::log(h[i]) - mean_x) * (std::log(errors[i]) - mean_y);
-  }
-  return std::isfinite(mean_y) ? xy / xx : std::nan("");
+  return support::slope(log_h, log_errors);
 }
 
 /// Order of the errors of many waves, each at the same sizes: order of their root mean square. A wave whose leading
@@ -64,5 +61,14 @@ public:
 private:
   std::vector<double> sizes_, squares_;
 };
+
+/// Adds the row of an order that a continuum should have.
+inline void add_order(const Rows &rows, const std::string &quantity, const CommonOrder &found, double claimed,
+                      bool is_judged = true)
+{
+  const double order = found.order();
+  rows.add(quantity, "1", of_continuum(order, claimed), std::abs(order - claimed), {order_tolerance, reason_of_order},
+           is_judged);
+}
 
 } // namespace latcon::claims

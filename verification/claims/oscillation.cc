@@ -1,5 +1,6 @@
 #include "verification/claims/oscillation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <stdexcept>
@@ -38,6 +39,59 @@ std::complex<double> recurrence(const std::vector<double> &values, double step, 
 }
 
 } // namespace
+
+Oscillation extrapolated(const Oscillation &whole, const Oscillation &half)
+{
+  return {half.frequency + (half.frequency - whole.frequency) / 3., half.decay + (half.decay - whole.decay) / 3.,
+          half.residual};
+}
+
+void WaveRecord::add(std::size_t wave, double value)
+{
+  if (!std::isfinite(value))
+    throw std::runtime_error("a wave has an amplitude that is not finite");
+  std::vector<double> &values = amplitudes_[wave];
+  if (!values.empty() && value * values.back() < 0.)
+    ++turns_[wave];
+  values.push_back(value);
+}
+
+bool WaveRecord::have_turned() const
+{
+  return *std::min_element(turns_.begin(), turns_.end()) >= 2;
+}
+
+std::vector<Oscillation> WaveRecord::fit(double step) const
+{
+  std::vector<Oscillation> fits;
+  for (const std::vector<double> &values : amplitudes_)
+    fits.push_back(fit_oscillation(values, step));
+  return fits;
+}
+
+std::size_t sampling_stride(double frequency, double decay, double time_step, double samples_per_period)
+{
+  if (!(frequency > 0.) || !std::isfinite(frequency) || !std::isfinite(decay))
+    throw std::runtime_error("a wave does not oscillate: it is overdamped, or the sheet is unstable");
+  return std::max<std::size_t>(1, static_cast<std::size_t>(2. * M_PI / frequency / time_step / samples_per_period));
+}
+
+Oscillation followed(double frequency, double time_step, std::size_t stride, const std::function<double()> &amplitude,
+                     const std::function<void()> &advance)
+{
+  WaveRecord record(1);
+  const double sampling = static_cast<double>(stride) * time_step;
+  const auto samples = static_cast<std::size_t>(
+    std::ceil(followed_periods * 2. * M_PI / frequency / time_step / static_cast<double>(stride)));
+  record.add(0, amplitude());
+  for (std::size_t sample = 0; sample < samples; ++sample)
+  {
+    for (std::size_t step = 0; step < stride; ++step)
+      advance();
+    record.add(0, amplitude());
+  }
+  return record.fit(sampling)[0];
+}
 
 Oscillation fit_oscillation(const std::vector<double> &values, double step)
 {

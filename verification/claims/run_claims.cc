@@ -6,7 +6,6 @@
 
 #include "support/one_thread.h"
 #include "verification/bridge/subject.h"
-#include "verification/claims/claim_input.h"
 #include "verification/claims/claim_inputs.h"
 #include "verification/claims/claim_list.h"
 
@@ -18,9 +17,11 @@ namespace
 // Functions that check the claims, by name.
 const std::map<std::string, std::function<ClaimOutcome(const ClaimInput &)>> &checks()
 {
-#define LATCON_CHECK(claim_) {claim_##_descriptor().name, check_##claim_},
-  static const std::map<std::string, std::function<ClaimOutcome(const ClaimInput &)>> map{LATCON_CLAIMS(LATCON_CHECK)};
-#undef LATCON_CHECK
+  static const std::map<std::string, std::function<ClaimOutcome(const ClaimInput &)>> map{
+#define LATCON_CLAIM(name, ...) {claim_name(#name), check_##name},
+#include "verification/claims/claim_table.inc"
+#undef LATCON_CLAIM
+  };
   return map;
 }
 
@@ -54,7 +55,9 @@ ClaimOutcome run_claims(const input::Case &input, const std::vector<Claim> &clai
     for (const bridge::Subject &one : subjects)
       if (&one == &subjects.front() || (!claim.is_about_program && (!quick || !claim.quick_on_own_shells_only)))
         found.results.attempt(claim.name, one.name,
-                              [&] { found.add(check_claim(claim.name, {one, entries, quick, frames})); });
+                              [&] {
+                                found.add(check_claim(claim.name, {one, entries, quick, frames}));
+                              });
     if (claim.gate)
       found.results.mark_gate();
     outcome.add(found);

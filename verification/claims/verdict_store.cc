@@ -302,15 +302,7 @@ std::unique_ptr<VerdictStore::Turn> VerdictStore::wait_for_turn(const VerdictKey
   {
     return std::make_unique<Turn>(folder_ + "/" + key.hash + ".checking");
   }
-  catch (const support::FolderInUse &)
-  {
-    return nullptr;
-  }
-  catch (const support::OutputError &)
-  {
-    return nullptr;
-  }
-  catch (const std::filesystem::filesystem_error &)
+  catch (const std::runtime_error &) // FolderInUse, OutputError, std::filesystem::filesystem_error
   {
     return nullptr;
   }

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "verification/claims/claim_list.h"
+#include "verification/claims/claim.h"
 #include "verification/input/case_text.h"
 #include "verification/input/spelling.h"
 #include "verification/output/output_file.h"
@@ -39,9 +39,16 @@ std::vector<std::string> names()
 
 const std::vector<Claim> &claim_registry()
 {
-#define LATCON_DESCRIPTOR(name) claims::name##_descriptor(),
-  static const std::vector<Claim> claims{LATCON_CLAIMS(LATCON_DESCRIPTOR)};
-#undef LATCON_DESCRIPTOR
+  static const std::vector<Claim> claims{
+#define LATCON_CLAIM(name_, title_, statement_, ...)                                                                   \
+  []                                                                                                                   \
+  {                                                                                                                    \
+    Claim claim{claims::claim_name(#name_), title_, statement_};                                                       \
+    __VA_ARGS__ return claim;                                                                                          \
+  }(),
+#include "verification/claims/claim_table.inc"
+#undef LATCON_CLAIM
+  };
   return claims;
 }
 

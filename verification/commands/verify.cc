@@ -1,4 +1,5 @@
 #include "verification/claims/claim_inputs.h"
+#include "verification/claims/verdict_store.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/elements/elements.h"
@@ -43,7 +44,7 @@ support::ExitCode verify(const input::Options &options)
       // Kept if a signal ends one of the following claims.
       if (run.is_root())
       {
-        outcome.write_tables(run.directory());
+        claims::Verdicts(outcome).write_tables(run.directory());
         outcome.results.write(run.directory());
       }
     }

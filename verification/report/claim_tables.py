@@ -4,6 +4,8 @@ from typing import Callable
 
 import numpy as np
 
+from pictures import save
+
 # Errors below this are round-off and have no order.
 ROUND_OFF = 1e-12
 
@@ -17,9 +19,16 @@ class Plot:
     """Picture NAME.png of the table NAME.csv."""
 
     name: str
-    draw: Callable  # (tables, PNG file) -> error metrics as text
+    draw: Callable  # tables -> (grid of panels, error metrics as text)
     claimed: str  # statement of the claim where it wrote this table
     caption: str  # content of the picture
+    few_colours: bool = True
+
+    def write(self, tables, path):
+        """Draws the picture into a PNG file. Returns the error metrics."""
+        grid, metrics = self.draw(tables)
+        save(grid.page.figure, path, self.few_colours)
+        return metrics
 
 
 def groups(table, *columns):

@@ -42,6 +42,12 @@ class Grid:
         """Axes of one panel."""
         return self.page.axes(LEFT + column * (self.width + self.gap), self.row_top(row), self.width, HEIGHT, **options)
 
+    def each(self, rows, titles, xlabel):
+        """Rows of the grid with a panel for each title: (name, part, [axes, ...]) of each (name, part)."""
+        for number, (name, part) in enumerate(rows):
+            yield name, part, [self.axes(number, column, title=title, xlabel=xlabel)
+                               for column, title in enumerate(titles)]
+
 
 def entry(label, style, color=BLACK, marker=None, filled=False):
     """Entry of a legend."""

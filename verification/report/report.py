@@ -71,7 +71,7 @@ def draw_plots(run, folder):
     for plot in all_plots():
         if plot.name in run.tables:
             path = folder / f"{plot.name}.png"
-            made[plot.name] = (path, plot.draw(run.tables, path))
+            made[plot.name] = (path, plot.write(run.tables, path))
     return made
 
 

@@ -3,7 +3,6 @@
 
 #include "support/errors.h"
 #include "verification/bridge/subject.h"
-#include "verification/input/case_text.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +24,7 @@ using input::Case;
 using input::Parameters;
 
 // Entries that no claim reads: they may change without a new check. A new entry of a case must be put either here or
-// into the list of claim_inputs.cc, or into the descriptor of the claim that reads it.
+// into the list of claim_inputs.cc, or into the table of claims.
 const std::set<std::string> no_claim_reads{
   "Sheet/length",
   "Sheet/height",
@@ -94,11 +93,8 @@ std::map<std::string, std::string> entries(Case input)
 {
   Parameters parameters;
   input.declare(parameters);
-  std::map<std::string, std::string> values;
-  for (const auto &item : input::read_prm(parameters.resolved_text(), "case"))
-    if (const auto *entry = std::get_if<input::Assignment>(&item))
-      values[entry->section + "/" + entry->name] = entry->value;
-  return values;
+  const auto values = parameters.values();
+  return {values.begin(), values.end()};
 }
 
 // The case with one entry changed as little as it can be; none if nothing that is tried is another good value.

@@ -9,9 +9,9 @@
 
 #include "lattice/bond_factors.h"
 #include "tests/verification/claims/subjects.h"
-#include "verification/claims/claim_list.h"
 #include "verification/claims/disorder/disorder_claim.h"
 #include "verification/claims/disorder/effective_medium.h"
+#include "verification/commands/claim_registry.h"
 
 namespace disorder_claim_test
 {
@@ -160,10 +160,11 @@ TEST(DisorderClaim, FailsForBondsThatAreNotIndependent)
 TEST(DisorderClaim, IsForMaterialsWithDisorder)
 {
   input::Case input = subjects::paper_case();
-  EXPECT_FALSE(disorder_descriptor().is_default_for(input.material()));
-  EXPECT_FALSE(disorder_descriptor().is_before_fracture(input.material()));
+  const Claim claim = latcon::commands::selected_claims({"disorder"}, input.material()).front();
+  EXPECT_FALSE(claim.is_default_for(input.material()));
+  EXPECT_FALSE(claim.is_before_fracture(input.material()));
   input.disorder.strength.kind = Kind::weibull;
-  EXPECT_TRUE(disorder_descriptor().is_default_for(input.material()));
+  EXPECT_TRUE(claim.is_default_for(input.material()));
 }
 
 } // namespace disorder_claim_test

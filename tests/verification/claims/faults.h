@@ -36,28 +36,32 @@ public:
   }
   double form(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
   {
-    return a_ * first_->form(F, G, Z) + b_ * second_->form(F, G, Z);
+    return factor(F) * (a_ * first_->form(F, G, Z) + b_ * second_->form(F, G, Z));
   }
   dealii::Tensor<2, 2> form_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
   {
-    return a_ * first_->form_by_F(F, G, Z) + b_ * second_->form_by_F(F, G, Z);
+    return factor(F) * (a_ * first_->form_by_F(F, G, Z) + b_ * second_->form_by_F(F, G, Z));
   }
   dealii::Tensor<4, 2> form_by_FF(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
   {
-    return a_ * first_->form_by_FF(F, G, Z) + b_ * second_->form_by_FF(F, G, Z);
+    return factor(F) * (a_ * first_->form_by_FF(F, G, Z) + b_ * second_->form_by_FF(F, G, Z));
   }
   Gradient double_stress(const dealii::Tensor<2, 2> &F, const Gradient &G) const override
   {
-    return a_ * first_->double_stress(F, G) + b_ * second_->double_stress(F, G);
+    return factor(F) * (a_ * first_->double_stress(F, G) + b_ * second_->double_stress(F, G));
   }
   dealii::Tensor<5, 2> double_stress_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G) const override
   {
-    return a_ * first_->double_stress_by_F(F, G) + b_ * second_->double_stress_by_F(F, G);
+    return factor(F) * (a_ * first_->double_stress_by_F(F, G) + b_ * second_->double_stress_by_F(F, G));
   }
   dealii::Tensor<6, 2> double_stress_by_G(const dealii::Tensor<2, 2> &F) const override
   {
-    return a_ * first_->double_stress_by_G(F) + b_ * second_->double_stress_by_G(F);
+    return factor(F) * (a_ * first_->double_stress_by_G(F) + b_ * second_->double_stress_by_G(F));
   }
+
+protected:
+  /// Factor of all of it, for other faults.
+  virtual double factor(const dealii::Tensor<2, 2> &) const { return 1.; }
 
 private:
   double a_, b_;
@@ -67,8 +71,7 @@ private:
 /// The gradient energy l_d^2 A - B of the lattice with its k^4 term the wrong way round, l_d^2 A + B.
 inline void turn_sign_of_fourth_order(latcon::bridge::Subject &subject)
 {
-  const latcon::lattice::TriangularLattice sheet(subject.spacing, 10. * subject.spacing, 10. * subject.spacing,
-                                                 subject.orientation);
+  const latcon::lattice::TriangularLattice sheet = subject.sheet();
   // With twice the square of the length it is 2 l_d^2 A - B, and twice that less three times the right one is wanted.
   const auto longer = std::make_shared<latcon::continuum::LatticeGradient>(
     latcon::bridge::bond_families(sheet, subject.material), std::sqrt(2.) * subject.lengths.lattice);
@@ -116,8 +119,8 @@ inline void turn_sign_of_network_gradient(latcon::bridge::Subject &subject)
   subject.network_gradient = std::make_shared<Combination>(-1., subject.network_gradient, 0., subject.network_gradient);
 }
 
-/// Rows of an outcome with a verdict and whose name contains a text; any text: "". There must be judged rows with that text:
-/// the test fails where they have other names.
+/// Rows of an outcome with a verdict and whose name contains a text; any text: "". There must be judged rows with that
+/// text: the test fails where they have other names.
 inline std::size_t with_verdict(const latcon::output::Results &results, latcon::output::Verdict verdict,
                                 const std::string &text)
 {
@@ -142,6 +145,24 @@ inline std::size_t failing(const latcon::output::Results &results, const std::st
 inline std::size_t holding(const latcon::output::Results &results, const std::string &text = "")
 {
   return with_verdict(results, latcon::output::Verdict::holds, text);
+}
+
+/// Expects that no row of a claim fails and some hold, with both sets of shells in both orientations.
+/// @param check results of the claim for a case and its subject
+inline void expect_holds(
+  const std::function<latcon::output::Results(const latcon::input::Case &, const latcon::bridge::Subject &)> &check)
+{
+  using latcon::lattice::Orientation;
+  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
+  {
+    latcon::input::Case input = subjects::paper_case();
+    input.orientation = orientation;
+    for (const latcon::lattice::Material &material : {input.material(), subjects::nearest_only(input)})
+    {
+      const latcon::output::Results results = check(input, latcon::bridge::subject(input, material));
+      EXPECT_TRUE(results.all_hold()) << results.verdict_text(8);
+    }
+  }
 }
 
 } // namespace faults

@@ -13,9 +13,9 @@
 #include "tests/verification/claims/subjects.h"
 #include "verification/bridge/bloch.h"
 #include "verification/bridge/memory_waves.h"
-#include "verification/claims/claim_list.h"
 #include "verification/claims/relaxation/relaxation_claim.h"
 #include "verification/claims/viscoelastic_waves/viscoelastic_waves_claim.h"
+#include "verification/commands/claim_registry.h"
 
 namespace memory_claims_test
 {
@@ -301,7 +301,7 @@ TEST(ViscoelasticWaves, FailForWrongBranches)
 TEST(MemoryClaims, AreForMaterialsWithAMemory)
 {
   const Material with = case_with_branches().material(), without = subjects::paper_case().material();
-  for (const Claim &claim : {relaxation_descriptor(), viscoelastic_waves_descriptor()})
+  for (const Claim &claim : latcon::commands::selected_claims({"relaxation", "viscoelastic-waves"}, with))
   {
     EXPECT_TRUE(claim.is_before_fracture(with));
     EXPECT_TRUE(claim.is_default_for(with));

@@ -81,33 +81,8 @@ public:
   };
   GradientWithoutValues(Law law, Kind kind) : Combination(1., law, 0., law), kind_(kind) {}
 
-  double form(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
-  {
-    return factor(F) * Combination::form(F, G, Z);
-  }
-  dealii::Tensor<2, 2> form_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
-  {
-    return factor(F) * Combination::form_by_F(F, G, Z);
-  }
-  dealii::Tensor<4, 2> form_by_FF(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
-  {
-    return factor(F) * Combination::form_by_FF(F, G, Z);
-  }
-  Gradient double_stress(const dealii::Tensor<2, 2> &F, const Gradient &G) const override
-  {
-    return factor(F) * Combination::double_stress(F, G);
-  }
-  dealii::Tensor<5, 2> double_stress_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G) const override
-  {
-    return factor(F) * Combination::double_stress_by_F(F, G);
-  }
-  dealii::Tensor<6, 2> double_stress_by_G(const dealii::Tensor<2, 2> &F) const override
-  {
-    return factor(F) * Combination::double_stress_by_G(F);
-  }
-
 private:
-  double factor(const dealii::Tensor<2, 2> &F) const
+  double factor(const dealii::Tensor<2, 2> &F) const override
   {
     if (kind_ == Kind::throws)
       throw std::domain_error("planted: no gradient energy");
@@ -123,20 +98,24 @@ private:
 
 using Kind = GradientWithoutValues::Kind;
 
+std::function<void(Subject &)> without_values(faults::Combination::Law Subject::*law, Kind kind)
+{
+  return [law, kind](Subject &s) { s.*law = std::make_shared<GradientWithoutValues>(s.*law, kind); };
+}
+
 std::function<void(Subject &)> lattice_gradient(Kind kind)
 {
-  return [kind](Subject &s) { s.lattice_gradient = std::make_shared<GradientWithoutValues>(s.lattice_gradient, kind); };
+  return without_values(&Subject::lattice_gradient, kind);
 }
 
 std::function<void(Subject &)> isotropic_gradient(Kind kind)
 {
-  return [kind](Subject &s)
-  { s.isotropic_gradient = std::make_shared<GradientWithoutValues>(s.isotropic_gradient, kind); };
+  return without_values(&Subject::isotropic_gradient, kind);
 }
 
 std::function<void(Subject &)> network_gradient(Kind kind)
 {
-  return [kind](Subject &s) { s.network_gradient = std::make_shared<GradientWithoutValues>(s.network_gradient, kind); };
+  return without_values(&Subject::network_gradient, kind);
 }
 
 // A fibre network whose energy is beyond all numbers: infinite, and its stresses not numbers.
@@ -282,13 +261,11 @@ std::vector<Plant> every_claim_and_side()
   const std::string inverted = "not computed: ";
 
   std::vector<Plant> plants;
-  for (const ClaimPart &claim :
+  std::vector<ClaimPart> all = claims_without_parts();
+  for (const ClaimPart &part :
        {energy, wave_energy, wave_speeds, damped_waves, intrinsic_length, prestretch, hole, notch})
-  {
-    plants.push_back({claim, "lattice", all_bonds});
-    plants.push_back({claim, "Cauchy-Born", overflow_cauchy_born});
-  }
-  for (const ClaimPart &claim : claims_without_parts())
+    all.push_back(part);
+  for (const ClaimPart &claim : all)
   {
     plants.push_back({claim, "lattice", all_bonds});
     plants.push_back({claim, "Cauchy-Born", overflow_cauchy_born});

@@ -29,18 +29,13 @@ WaveEnergyOptions small_version(const Case &input)
 // theory-comparison.md, eqs. (W.4) and (W.5).
 TEST(WaveEnergy, HoldsForBothShellSetsAndOrientations)
 {
-  for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
-  {
-    Case input = subjects::paper_case();
-    input.orientation = orientation;
-    for (const lattice::Material &material : {input.material(), subjects::nearest_only(input)})
+  faults::expect_holds(
+    [](const Case &input, const Subject &subject)
     {
-      const ClaimOutcome outcome = wave_energy_claim(subject(input, material), small_version(input));
-      EXPECT_TRUE(outcome.results.all_hold());
-      for (const Result &row : outcome.results.rows())
-        EXPECT_EQ(row.verdict(), Verdict::holds) << row.quantity << " " << row.error.value_or(-1.);
-    }
-  }
+      const Results results = wave_energy_claim(subject, small_version(input)).results;
+      EXPECT_EQ(results.count(Verdict::reported), 0u);
+      return results;
+    });
 }
 
 // The excess is there, with its sign: the gradient continuum holds more energy than the local one, the lattice less.

@@ -5,8 +5,12 @@
 
 #include "continuum/rectangle.h"
 #include "support/largest_error.h"
+#include "verification/bridge/damaged_sheet.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/damage/damage_motion_rows.h"
 #include "verification/claims/damage/damaged_bar.h"
+#include "verification/claims/rows.h"
 
 namespace latcon::claims
 {
@@ -42,31 +46,12 @@ struct Problem
   double damage(double stretch) const { return 1. - law.threshold / energy(stretch); }
 };
 
-class BarRows
+// A value against theory, with a relative error.
+void compare(const Rows &rows, const std::string &quantity, const std::string &unit, double value, double theory,
+             const output::Tolerance &tolerance)
 {
-public:
-  BarRows(const bridge::Subject &subject, ClaimOutcome &outcome) : name_(subject.name), outcome_(outcome) {}
-
-  // A value against theory, with a relative error.
-  void compare(const std::string &quantity, const std::string &unit, double value, double theory,
-               const output::Tolerance &tolerance)
-  {
-    add(quantity, unit, value, theory, support::relative_error(value, theory), tolerance);
-  }
-  void add(const std::string &quantity, const std::string &unit, double value, std::optional<double> theory,
-           std::optional<double> error, const output::Tolerance &tolerance)
-  {
-    outcome_.results.add({"damage", name_ + ": " + quantity, unit, {}, value, theory, error, tolerance});
-  }
-  void attempt(const std::string &part, const std::function<void()> &compute)
-  {
-    outcome_.results.attempt("damage", name_ + ": " + part, compute);
-  }
-
-private:
-  std::string name_;
-  ClaimOutcome &outcome_;
-};
+  rows.add(quantity, unit, of_continuum(value, theory), support::relative_error(value, theory), tolerance);
+}
 
 // Two elements of a quarter of xi, too short for a crack: damage is homogeneous.
 DamagedBar &emplace_short_bar(const Problem &problem, std::optional<DamagedBar> &bar)
@@ -74,7 +59,7 @@ DamagedBar &emplace_short_bar(const Problem &problem, std::optional<DamagedBar> 
   return bar.emplace(problem.material(), problem.planted, 0.25 * problem.law.length, 2u, problem.stretch(2.));
 }
 
-void homogeneous_bar(const Problem &problem, bool heals, BarRows &rows)
+void homogeneous_bar(const Problem &problem, bool heals, const Rows &rows)
 {
   std::optional<DamagedBar> bar;
   const auto load = [&](double stretch)
@@ -88,36 +73,36 @@ void homogeneous_bar(const Problem &problem, bool heals, BarRows &rows)
   constexpr double below = 1e-6;
   const double first = problem.stretch(1. - below);
   load(first);
-  rows.add("damage below the threshold", "1", largest(), 0., std::abs(largest()), exact);
+  rows.add("damage below the threshold", "1", of_continuum(largest(), 0.), std::abs(largest()), exact);
   // The stress at the threshold is the peak; the bar is a millionth of the strain below it.
   const double modulus = problem.material().tangent(uniaxial(first))[0][0][0][0];
   const double peak = problem.stress(problem.critical);
-  rows.compare("peak stress", "Pa", bar->stress(), peak,
-               {2. * below * modulus * (problem.critical - 1.) / peak + *bar_solver_tolerance,
-                "twice what a millionth of the strain changes"});
+  compare(rows, "peak stress", "Pa", bar->stress(), peak,
+          {2. * below * modulus * (problem.critical - 1.) / peak + *bar_solver_tolerance,
+           "twice what a millionth of the strain changes"});
 
   const double high = problem.stretch(1.5), higher = problem.stretch(1.6);
   load(high);
   const double reached = problem.damage(high);
-  rows.compare("damage of a homogeneous bar at 1.5 of the critical strain", "1", largest(), reached,
-               bar_solver_tolerance);
-  rows.compare("stress of this bar", "Pa", bar->stress(), problem.law.degradation(reached) * problem.stress(high),
-               bar_solver_tolerance);
+  compare(rows, "damage of a homogeneous bar at 1.5 of the critical strain", "1", largest(), reached,
+          bar_solver_tolerance);
+  compare(rows, "stress of this bar", "Pa", bar->stress(), problem.law.degradation(reached) * problem.stress(high),
+          bar_solver_tolerance);
   // Irreversible: damage stays while the load falls to half of the critical strain and returns.
   for (const double strains : {0.5, 1.4})
   {
     const double stretch = problem.stretch(strains);
     load(stretch);
-    rows.compare("stress after unloading to " + std::string(strains < 1. ? "0.5" : "1.4") + " of the critical strain",
-                 "Pa", bar->stress(), problem.law.degradation(reached) * problem.stress(stretch), bar_solver_tolerance);
+    compare(rows, "stress after unloading to " + std::string(strains < 1. ? "0.5" : "1.4") + " of the critical strain",
+            "Pa", bar->stress(), problem.law.degradation(reached) * problem.stress(stretch), bar_solver_tolerance);
   }
   load(higher);
-  rows.compare("damage after loading again, to 1.6", "1", largest(), problem.damage(higher), bar_solver_tolerance);
+  compare(rows, "damage after loading again, to 1.6", "1", largest(), problem.damage(higher), bar_solver_tolerance);
 }
 
 // Order in the load step of the remainder of the ledger, eq. (C.65), while the bar softens. Over both stages their
 // leading terms, of opposite signs, may cancel.
-void ledger(const Problem &problem, BarRows &rows)
+void ledger(const Problem &problem, const Rows &rows)
 {
   constexpr unsigned int coarse = 8;
   double remainder[2] = {};
@@ -138,15 +123,15 @@ void ledger(const Problem &problem, BarRows &rows)
     if (i == 1)
     {
       const double d = problem.damage(problem.stretch(2.));
-      rows.compare("energy dissipated in a homogeneous bar", "J/m", ledger.fracture,
-                   2. * (1. - problem.law.residual_stiffness) * problem.law.threshold * d * bar.length() * bar.height(),
-                   bar_solver_tolerance);
+      compare(rows, "energy dissipated in a homogeneous bar", "J/m", ledger.fracture,
+              2. * (1. - problem.law.residual_stiffness) * problem.law.threshold * d * bar.length() * bar.height(),
+              bar_solver_tolerance);
     }
   }
   const double order = std::log2(std::abs(remainder[0] / remainder[1]));
-  rows.add("remainder of the ledger: order in the load step", "1", order, 2., std::abs(order - 2.),
+  rows.add("remainder of the ledger: order in the load step", "1", of_continuum(order, 2.), std::abs(order - 2.),
            {0.2, "chosen: with eight steps the term of fourth order is below a sixth of that of second order"});
-  rows.add("remainder of the ledger over the work, 16 load steps", "1", remainder[1], {}, {}, {});
+  rows.add("remainder of the ledger over the work, 16 load steps", "1", of_continuum(remainder[1]));
 }
 
 // Energy of a bar over that of a crack, and the bound of its error.
@@ -157,7 +142,7 @@ struct BrokenEnergy
 
 // Energy of the crack, profile and symmetry of a bar of 8 xi that breaks, eqs. (C.67), (C.68).
 BrokenEnergy broken_bar_rows(const Problem &problem, const Constitution &laws, unsigned int per_length,
-                             const std::string &name, BarRows &rows, ClaimOutcome &outcome)
+                             const std::string &name, const Rows &rows, ClaimOutcome &outcome)
 {
   const double xi = problem.law.length, h = xi / per_length;
   const std::string at = name + ", h = xi/" + std::to_string(per_length);
@@ -183,9 +168,9 @@ BrokenEnergy broken_bar_rows(const Problem &problem, const Constitution &laws, u
   const double modulus = problem.material().tangent(uniaxial(1.))[0][0][0][0];
   const double driven = std::pow(k * problem.stress(open), 2) / (2. * modulus * problem.law.threshold) *
                         (1. + std::log(s * s / k)) / std::pow(s, 3) * slope * slope / 2.;
-  rows.compare("energy of a crack over G_c, " + at, "1", ratio, 1. + 0.375 * slope + slope * slope / 32.,
-               output::limited(tolerance, 1e-6, 5e-3,
-                               "twice what is missing of d = 1 beside the open column, (W_c/W) (2 + 4 xi/h)"));
+  compare(rows, "energy of a crack over G_c, " + at, "1", ratio, 1. + 0.375 * slope + slope * slope / 32.,
+          output::limited(tolerance, 1e-6, 5e-3,
+                          "twice what is missing of d = 1 beside the open column, (W_c/W) (2 + 4 xi/h)"));
 
   const std::vector<double> damage = bar.profile();
   support::LargestError off, asymmetry;
@@ -201,15 +186,16 @@ BrokenEnergy broken_bar_rows(const Problem &problem, const Constitution &laws, u
   }
   // A change of d at the crack changes the others by less.
   rows.add(
-    "damage at the nodes, largest error, " + at, "1", off.error(), {}, off.error(),
+    "damage at the nodes, largest error, " + at, "1", of_continuum(off.error()), off,
     output::limited(2. * missing + driven + *iteration_tolerance, 1e-5, 5e-3,
                     "what is missing of d = 1 beside the open column, twice; what the residual stiffness drives; "
                     "last change of the iteration"));
-  rows.add("mirror symmetry of the damage, " + at, "1", asymmetry.error(), {}, asymmetry.error(), iteration_tolerance);
+  rows.add("mirror symmetry of the damage, " + at, "1", of_continuum(asymmetry.error()), asymmetry,
+           iteration_tolerance);
   return {ratio, tolerance};
 }
 
-void broken_bars(const Problem &problem, const DamageOptions &options, BarRows &rows, ClaimOutcome &outcome)
+void broken_bars(const Problem &problem, const DamageOptions &options, const Rows &rows, ClaimOutcome &outcome)
 {
   std::vector<BrokenEnergy> energies;
   for (unsigned int n = 2; n <= options.finest; n *= 2)
@@ -217,16 +203,16 @@ void broken_bars(const Problem &problem, const DamageOptions &options, BarRows &
   // Second-order remainder of (C.68): (h/xi)^2 / 16 with h of the finer mesh. The errors of both meshes may add up.
   const BrokenEnergy &fine = energies.back(), &coarse = energies[energies.size() - 2];
   const double remainder = std::pow(1. / options.finest, 2) / 16.;
-  rows.compare("energy of a crack over G_c, extrapolated in h", "1", 2. * fine.ratio - coarse.ratio, 1. - remainder,
-               output::limited((2. * fine.tolerance + coarse.tolerance) / (1. - remainder), 1e-6, 5e-3,
-                               "twice the tolerance of the finer mesh and that of the coarser one"));
+  compare(rows, "energy of a crack over G_c, extrapolated in h", "1", 2. * fine.ratio - coarse.ratio, 1. - remainder,
+          output::limited((2. * fine.tolerance + coarse.tolerance) / (1. - remainder), 1e-6, 5e-3,
+                          "twice the tolerance of the finer mesh and that of the coarser one"));
   // Gradient energies that depend on F may lose convexity where a crack opens (docs/limits.md).
   const Constitution gradient(problem.material(), *problem.subject.isotropic_gradient);
   broken_bar_rows(problem, gradient, 4, "gradient", rows, outcome);
 }
 
 // A sheet with uniform damage has g times the energy, that of the gradient included.
-void degraded_energy(const Problem &problem, bool leaves_gradient, BarRows &rows)
+void degraded_energy(const Problem &problem, bool leaves_gradient, const Rows &rows)
 {
   dealii::parallel::distributed::Triangulation<2> mesh(MPI_COMM_WORLD);
   const double size = 4. * problem.subject.spacing;
@@ -252,9 +238,9 @@ void degraded_energy(const Problem &problem, bool leaves_gradient, BarRows &rows
   };
   const double own = energy(whole) - energy(local);
   const double remaining = leaves_gradient ? own : energy(damaged) - energy(damaged_local);
-  rows.compare("gradient energy with damage 0.5 over that without", "1", remaining / own, problem.law.degradation(d),
-               output::limited(1e-12 * energy(whole) / std::abs(own), 1e-12, 1e-6,
-                               "round-off of the difference from which it follows"));
+  compare(rows, "gradient energy with damage 0.5 over that without", "1", remaining / own, problem.law.degradation(d),
+          output::limited(1e-12 * energy(whole) / std::abs(own), 1e-12, 1e-6,
+                          "round-off of the difference from which it follows"));
 }
 
 } // namespace
@@ -262,7 +248,7 @@ void degraded_energy(const Problem &problem, bool leaves_gradient, BarRows &rows
 ClaimOutcome damage_claim(const bridge::Subject &subject, const DamageLaw &law, const DamageOptions &options)
 {
   ClaimOutcome outcome;
-  BarRows rows(subject, outcome);
+  const Rows rows(outcome.results, "damage", subject.name + ": ");
   DamageLaw planted = law;
   planted.threshold *= options.planted_toughness;
   rows.attempt("bars in tension",
@@ -278,6 +264,13 @@ ClaimOutcome damage_claim(const bridge::Subject &subject, const DamageLaw &law, 
   if (options.has_motion)
     add_damage_motion_rows(subject, law, options, outcome);
   return outcome;
+}
+
+ClaimOutcome check_damage(const ClaimInput &input)
+{
+  DamageOptions options;
+  options.finest = input.quick ? 4 : 8;
+  return damage_claim(input.subject, bridge::damage_law(input.entries, input.subject), options);
 }
 
 } // namespace latcon::claims

@@ -7,6 +7,7 @@
 #include "support/largest_error.h"
 #include "verification/claims/damage/damaged_bar.h"
 #include "verification/claims/damage/smooth_motion_rows.h"
+#include "verification/claims/rows.h"
 
 namespace latcon::claims
 {
@@ -131,28 +132,8 @@ Crack growth(const Strip &problem, double drive, unsigned int per_length, double
           now.asymmetry};
 }
 
-class MotionRows
-{
-public:
-  MotionRows(const bridge::Subject &subject, ClaimOutcome &outcome) : name_(subject.name), results_(outcome.results) {}
-
-  void add(const std::string &quantity, const std::string &unit, double value, std::optional<double> theory,
-           std::optional<double> error, const output::Tolerance &tolerance)
-  {
-    results_.add({"damage", name_ + ": in motion, " + quantity, unit, {}, value, theory, error, tolerance});
-  }
-  void attempt(const std::string &part, const std::function<void()> &compute)
-  {
-    results_.attempt("damage", name_ + ": in motion, " + part, compute);
-  }
-
-private:
-  std::string name_;
-  output::Results &results_;
-};
-
 // Fundamental mode of a bar in uniaxial strain with uniform damage, without viscosity.
-void waves(const Strip &problem, MotionRows &rows)
+void waves(const Strip &problem, const Rows &rows)
 {
   constexpr unsigned int n = 16;
   constexpr double pi = 3.14159265358979323846, amplitude = 1e-7;
@@ -174,7 +155,7 @@ void waves(const Strip &problem, MotionRows &rows)
   // Velocity Verlet is exact for a frequency that is known.
   const double theory = std::cos(15. * 2. * std::asin(0.05));
   const double value = motion.displacement()[0][n / 2] / amplitude;
-  rows.add("wave in a bar with damage 0.5, displacement after 1.5 radians", "1", value, theory,
+  rows.add("wave in a bar with damage 0.5, displacement after 1.5 radians", "1", of_continuum(value, theory),
            std::abs(value - theory), {1e-5, "non-linear terms: the strain 3e-7 times up to 30"});
 }
 
@@ -184,7 +165,7 @@ struct Toughness
 };
 
 // Energy of a steady crack, its symmetry and its ledger.
-Toughness steady_crack(const Strip &problem, unsigned int n, MotionRows &rows)
+Toughness steady_crack(const Strip &problem, unsigned int n, const Rows &rows)
 {
   constexpr double drive = 1.3, courant = 0.3;
   const std::string at = ", h = xi/" + std::to_string(n);
@@ -200,11 +181,11 @@ Toughness steady_crack(const Strip &problem, unsigned int n, MotionRows &rows)
   const double open = strip_strain * height * n;
   const double missing = law.threshold / problem.energy(open) * (2. + 4. * n);
   const double tolerance = 2. * missing * (1.5 + 0.375 * slope) + 0.6 * slope * problem.xi() / advance * theory;
-  rows.add("energy of a steady crack over G_c" + at, "1", ratio, theory, std::abs(ratio - theory),
+  rows.add("energy of a steady crack over G_c" + at, "1", of_continuum(ratio, theory), std::abs(ratio - theory),
            output::limited(tolerance, 0., 0.2 * theory,
                            "twice that of the broken bars, and 0.3 of a cell at both ends of the path: the tip is "
                            "interpolated between nodes"));
-  rows.add("mirror symmetry of the damage" + at, "1", crack.asymmetry, {}, crack.asymmetry,
+  rows.add("mirror symmetry of the damage" + at, "1", of_continuum(crack.asymmetry), crack.asymmetry,
            {100. * continuum::GridDamage::tolerance,
             "chosen: a hundred times the change at which the iteration for the damage ends, whose sweeps are not "
             "symmetric"});
@@ -214,11 +195,11 @@ Toughness steady_crack(const Strip &problem, unsigned int n, MotionRows &rows)
     const double remainder[] = {crack.imbalance / crack.fracture, half.imbalance / half.fracture};
     const double order = std::log2(std::abs(remainder[0] / remainder[1]));
     // Damage follows the displacement at the ends of steps: first order.
-    rows.add("remainder of the ledger: order in the time step", "1", order, 1., std::abs(order - 1.), {0.4, "chosen"});
-    rows.add("remainder of the ledger over the energy of the crack, " + std::string("step 0.15 h/c"), "1", remainder[1],
-             {}, {}, {});
-    rows.add("advance of the crack with half the time step over that with the whole", "1", half.advance / crack.advance,
-             {}, {}, {});
+    rows.add("remainder of the ledger: order in the time step", "1", of_continuum(order, 1.), std::abs(order - 1.),
+             {0.4, "chosen"});
+    rows.add("remainder of the ledger over the energy of the crack, step 0.15 h/c", "1", of_continuum(remainder[1]));
+    rows.add("advance of the crack with half the time step over that with the whole", "1",
+             of_continuum(half.advance / crack.advance));
   }
   return {ratio, tolerance};
 }
@@ -228,34 +209,28 @@ Toughness steady_crack(const Strip &problem, unsigned int n, MotionRows &rows)
 void add_damage_motion_rows(const bridge::Subject &subject, const DamageLaw &law, const DamageOptions &options,
                             ClaimOutcome &outcome)
 {
-  MotionRows rows(subject, outcome);
+  const Rows rows(outcome.results, "damage", subject.name + ": in motion, ");
   const Strip problem{subject, law, options.planted_toughness};
   rows.attempt("waves", [&] { waves(problem, rows); });
-  rows.attempt("smooth deformations",
-               [&]
-               {
-                 add_smooth_motion_rows(
-                   subject,
-                   [&](const std::string &quantity, double value, double theory, const output::Tolerance &tolerance)
-                   { rows.add(quantity, "1", value, theory, std::abs(value - theory), tolerance); });
-               });
-  rows.attempt("strip without a seed",
-               [&]
-               {
-                 DamageMotion motion = strip(problem, 1.3, 2, 0.3);
-                 for (unsigned int step = 0; step < 20; ++step)
-                   motion.advance();
-                 support::LargestError damage;
-                 for (const double d : motion.damage().nodal())
-                   damage.add(d);
-                 rows.add("damage of a strip without a seed", "1", damage.error(), 0., damage.error(), {0., "exactly"});
-               });
+  rows.attempt("smooth deformations", [&] { add_smooth_motion_rows(subject, rows); });
+  rows.attempt(
+    "strip without a seed",
+    [&]
+    {
+      DamageMotion motion = strip(problem, 1.3, 2, 0.3);
+      for (unsigned int step = 0; step < 20; ++step)
+        motion.advance();
+      support::LargestError damage;
+      for (const double d : motion.damage().nodal())
+        damage.add(d);
+      rows.add("damage of a strip without a seed", "1", of_continuum(damage.error(), 0.), damage, {0., "exactly"});
+    });
   rows.attempt("crack below its toughness",
                [&]
                {
                  const double advance = growth(problem, 0.9, 2, 0.3, 4., 6.).advance / (height * law.length);
-                 rows.add("advance of a crack driven by 0.9 G_c, over the height", "1", advance, 0., std::abs(advance),
-                          {1e-3, "chosen: the front stands still"});
+                 rows.add("advance of a crack driven by 0.9 G_c, over the height", "1", of_continuum(advance, 0.),
+                          std::abs(advance), {1e-3, "chosen: the front stands still"});
                });
   rows.attempt("steady crack",
                [&]
@@ -265,7 +240,7 @@ void add_damage_motion_rows(const bridge::Subject &subject, const DamageLaw &law
                  {
                    const Toughness coarse = steady_crack(problem, 4, rows), fine = steady_crack(problem, 8, rows);
                    const double ratio = 2. * fine.ratio - coarse.ratio;
-                   rows.add("energy of a steady crack over G_c, extrapolated in h", "1", ratio, 1.,
+                   rows.add("energy of a steady crack over G_c, extrapolated in h", "1", of_continuum(ratio, 1.),
                             std::abs(ratio - 1.),
                             output::limited(2. * fine.tolerance + coarse.tolerance, 0., 0.2,
                                             "twice the tolerance of the finer mesh and that of the coarser one"));

@@ -3,7 +3,6 @@ import numpy as np
 
 from claim_tables import Plot, groups, largest_text, sorted_by
 from panels import Grid, colours_of, entry
-from pictures import save
 
 LAWS = {"local": "local law", "gradient": "with gradient energy"}
 
@@ -12,7 +11,7 @@ TABLES = {
 }
 
 
-def draw_damaged_bar(tables, path):
+def draw_damaged_bar(tables):
     """Damage along broken bars, on several meshes, and the closed form."""
     table = tables["damaged_bar"]
     colours, meshes = colours_of(table["h/xi"][np.isfinite(table["h/xi"])], "h / ξ =")
@@ -30,8 +29,7 @@ def draw_damaged_bar(tables, path):
                 axes.plot(part["X/xi"], part["damage"], "o", color=colours[size], markersize=4, markerfacecolor="none")
                 metrics.append(f"{name}, {title}, h = {size:.4g} ξ: damage off the closed form by "
                                f"{largest_text(part['damage'] - part['theory'])}")
-    save(grid.page.figure, path)
-    return metrics
+    return grid, metrics
 
 
 PLOTS = (

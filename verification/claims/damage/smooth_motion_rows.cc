@@ -18,9 +18,9 @@ using dealii::Point;
 using dealii::Tensor;
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double smooth_density = 1e3;       // sets the unit of time alone
-constexpr double periods_height = 8.; // wavelength of the deformation, over the spacing
-constexpr double added_strain = 0.05;       // of the deformation, in addition to that of the case
+constexpr double smooth_density = 1e3; // sets the unit of time alone
+constexpr double periods_height = 8.;  // wavelength of the deformation, over the spacing
+constexpr double added_strain = 0.05;  // of the deformation, in addition to that of the case
 
 // A square sheet with one wavelength of a deformation along either axis.
 struct Deformation
@@ -184,8 +184,10 @@ double wave(const Sheet &sheet)
 
 } // namespace
 
-void add_smooth_motion_rows(const bridge::Subject &subject, const AddRow &add)
+void add_smooth_motion_rows(const bridge::Subject &subject, const Rows &rows)
 {
+  const auto add = [&](const std::string &quantity, double value, double theory, const output::Tolerance &tolerance)
+  { rows.add(quantity, "1", of_continuum(value, theory), std::abs(value - theory), tolerance); };
   const lattice::TriangularLattice cell(subject.spacing, 4. * subject.spacing, 4. * subject.spacing,
                                         subject.orientation);
   const Sheet sheet{subject, bridge::to_continuum(subject.deformation), bridge::bond_families(cell, subject.material)};

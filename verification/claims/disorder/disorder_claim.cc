@@ -9,7 +9,10 @@
 #include "lattice/energy.h"
 #include "lattice/relaxation.h"
 #include "support/largest_error.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/disorder/effective_medium.h"
+#include "verification/claims/rows.h"
 
 namespace latcon::claims
 {
@@ -29,6 +32,11 @@ constexpr double normal_quantile = 5., exceeded = 6e-7;
 double student_quantile(double n)
 {
   return boost::math::quantile(boost::math::complement(boost::math::students_t(n - 1.), 0.5 * exceeded));
+}
+
+Rows disorder_rows(const bridge::Subject &subject, ClaimOutcome &outcome)
+{
+  return {outcome.results, "disorder", subject.name + ": "};
 }
 
 // One sheet at one load.
@@ -133,23 +141,12 @@ private:
     const double found = std::sqrt(squares_ / n_factors_);
     const double fourth = mean_over(disorder_.stiffness, [](double factor) { return std::pow(factor - 1., 4); });
     const double root = std::sqrt(n_factors_);
-    outcome.results.add({"disorder",
-                         subject_.name + ": mean factor of the stiffness of the bonds of all sheets",
-                         "1",
-                         mean,
-                         {},
-                         1.,
-                         std::abs(mean - 1.),
-                         {normal_quantile * width / root, "five standard errors of a mean over all bonds"}});
-    outcome.results.add({"disorder",
-                         subject_.name + ": standard deviation of the factor",
-                         "1",
-                         found,
-                         {},
-                         width,
-                         support::relative_error(found, width),
-                         {0.5 * normal_quantile * std::sqrt(fourth / std::pow(width, 4) - 1.) / root,
-                          "five standard errors, from the fourth moment of the distribution"}});
+    const Rows rows = disorder_rows(subject_, outcome);
+    rows.add("mean factor of the stiffness of the bonds of all sheets", "1", of_lattice(mean, 1.), std::abs(mean - 1.),
+             {normal_quantile * width / root, "five standard errors of a mean over all bonds"});
+    rows.add("standard deviation of the factor", "1", of_lattice(found, width), support::relative_error(found, width),
+             {0.5 * normal_quantile * std::sqrt(fourth / std::pow(width, 4) - 1.) / root,
+              "five standard errors, from the fourth moment of the distribution"});
   }
 
   void add_modulus_rows(const std::string &modulus, const Eigen::Matrix2d &load, const std::vector<Measured> &measured,
@@ -194,28 +191,16 @@ private:
     const double of_pairs = 0.5 * share * (1. - share) * std::pow(width, 4);
     const double order = of_pairs + std::pow(width, 5);
     const double nonlinear = nonlinearity_tolerance * (1. - theory);
-    outcome.results.add(
-      {"disorder",
-       subject_.name + ": " + modulus +
-         " over that of homogeneous deformation, beyond the bounds of Voigt and Reuss, worst sheet",
-       "1",
-       excess.value(),
-       {},
-       {},
-       excess.error(),
-       {nonlinear, "laws that are not linear: 100 times the square of the strain, times the reduction"}});
-    outcome.results.add({"disorder",
-                         subject_.name + ": reduction of the " + modulus +
-                           " by disorder, mean over sheets against effective medium, error over the modulus",
-                         "1",
-                         1. - mean,
-                         {},
-                         1. - theory,
-                         std::abs(mean - theory),
-                         {sampling + order + nonlinear,
-                          "standard errors of the mean over sheets (Student, 6e-7), at most those of squares of "
-                          "factors; "
-                          "pairs of bonds (H.24) and the fifth power of the width; laws that are not linear"}});
+    const Rows rows = disorder_rows(subject_, outcome);
+    rows.add(modulus + " over that of homogeneous deformation, beyond the bounds of Voigt and Reuss, worst sheet", "1",
+             of_lattice(excess.value()), excess,
+             {nonlinear, "laws that are not linear: 100 times the square of the strain, times the reduction"});
+    rows.add("reduction of the " + modulus +
+               " by disorder, mean over sheets against effective medium, error over the modulus",
+             "1", of_lattice(1. - mean, 1. - theory), std::abs(mean - theory),
+             {sampling + order + nonlinear,
+              "standard errors of the mean over sheets (Student, 6e-7), at most those of squares of factors; pairs of "
+              "bonds (H.24) and the fifth power of the width; laws that are not linear"});
   }
 
   const bridge::Subject &subject_;
@@ -237,9 +222,22 @@ ClaimOutcome disorder_claim(const bridge::Subject &subject, const DisorderOption
     disorder.stiffness = {lattice::Distribution::Kind::uniform, widest_checked_disorder};
   else if (disorder.stiffness.width() > widest_checked_disorder)
     disorder.stiffness = {disorder.stiffness.kind(), widest_checked_disorder};
-  outcome.results.attempt("disorder", subject.name + ": sheets with disorder of the stiffness",
-                          [&] { DisorderedSheets(subject, options, disorder).run(outcome); });
+  disorder_rows(subject, outcome)
+    .attempt("sheets with disorder of the stiffness",
+             [&] { DisorderedSheets(subject, options, disorder).run(outcome); });
   return outcome;
+}
+
+ClaimOutcome check_disorder(const ClaimInput &input)
+{
+  DisorderOptions options;
+  options.disorder = input.entries.disorder.disorder();
+  if (!input.quick)
+  {
+    options.n_sheets = 64;
+    options.columns = 48;
+  }
+  return disorder_claim(input.subject, options);
 }
 
 } // namespace latcon::claims

@@ -1,7 +1,7 @@
 """Tables and plots of the claim on disorder."""
 from claim_tables import Plot, groups, largest_text, sorted_by
 from panels import Grid, entry
-from pictures import BLUE, GREEN, RED, save
+from pictures import BLUE, GREEN, RED
 
 MODULI = ("bulk modulus", "shear modulus")
 TABLES = {
@@ -10,7 +10,7 @@ TABLES = {
 }
 
 
-def draw_disorder(tables, path):
+def draw_disorder(tables):
     """Moduli of sheets with disorder between their bounds."""
     rows = groups(tables["disorder"], "shells")
     legend = [entry("sheet, relaxed", "", BLUE, marker="o"), entry("effective medium", "--", GREEN),
@@ -29,8 +29,7 @@ def draw_disorder(tables, path):
             axes.plot(table["sheet"], ratio, "o", color=BLUE, markerfacecolor="none", markersize=5)
             metrics.append(f"{shells}, {modulus}: mean off the effective medium by "
                            f"{largest_text(ratio.mean() - theory)}, reduction by disorder {1 - ratio.mean():.2e}")
-    save(grid.page.figure, path)
-    return metrics
+    return grid, metrics
 
 
 PLOTS = (

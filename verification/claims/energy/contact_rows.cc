@@ -5,6 +5,7 @@
 #include "lattice/simulation.h"
 #include "support/largest_error.h"
 #include "verification/claims/absolute_modulus.h"
+#include "verification/claims/rows.h"
 
 namespace latcon::claims
 {
@@ -40,7 +41,7 @@ output::Results contact_rows(const bridge::Subject &subject, const input::Case &
                              const std::function<void(lattice::ContactLaw &)> &planted)
 {
   const double d = subject.spacing;
-  const lattice::TriangularLattice sheet(d, 10. * d, 10. * d, subject.orientation);
+  const lattice::TriangularLattice sheet = subject.sheet();
   const lattice::Material material = lattice::without_memory(subject.material);
   lattice::ContactLaw law = lattice::contact_like_nearest_bond(sheet, material, input.contact_distance * d,
                                                                input.contact_stiffness, input.contact_viscosity);
@@ -84,27 +85,18 @@ output::Results contact_rows(const bridge::Subject &subject, const input::Case &
   const double momentum = (0.5 * (velocity(right) + velocity(left)) - common).norm() / speed;
   const lattice::EnergyBalance energies = simulation.energies();
   output::Results results;
-  const auto add =
-    [&](const std::string &quantity, double found, double theory, double error, const output::Tolerance &tolerance)
-  {
-    results.add(
-      {"energy",
-       subject.name + ": contact of two sites" + (stepping.stages > 0 ? " (Runge-Kutta-Chebyshev), " : ", ") + quantity,
-       "1",
-       found,
-       {},
-       theory,
-       error,
-       tolerance});
-  };
-  add("coefficient of restitution against bonds and contact alone", restitution, impact.restitution,
-      support::relative_error(restitution, impact.restitution),
-      {3e-4,
-       "second order of 400 steps in the contact, and the kink of the force at its end: 1e-4 at most, times three"});
-  add("momentum, change over that of approach", momentum, 0., momentum, {1e-10, "round-off"});
-  add("energy imbalance over the energy at the start", energies.imbalance() / energies.initial, 0.,
-      std::abs(energies.imbalance() / energies.initial),
-      {1e-4, "time stepping while they touch: (w h)^2 / 4 with 400 steps, 6e-5"});
+  const Rows rows(results, "energy",
+                  subject.name + ": contact of two sites" +
+                    (stepping.stages > 0 ? " (Runge-Kutta-Chebyshev), " : ", "));
+  rows.add(
+    "coefficient of restitution against bonds and contact alone", "1", of_lattice(restitution, impact.restitution),
+    support::relative_error(restitution, impact.restitution),
+    {3e-4,
+     "second order of 400 steps in the contact, and the kink of the force at its end: 1e-4 at most, times three"});
+  rows.add("momentum, change over that of approach", "1", of_lattice(momentum, 0.), momentum, {1e-10, "round-off"});
+  const double imbalance = energies.imbalance() / energies.initial;
+  rows.add("energy imbalance over the energy at the start", "1", of_lattice(imbalance, 0.), std::abs(imbalance),
+           {1e-4, "time stepping while they touch: (w h)^2 / 4 with 400 steps, 6e-5"});
   return results;
 }
 

@@ -11,7 +11,14 @@
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/network_comparison.h"
 #include "verification/claims/absolute_modulus.h"
+#include "verification/claims/claim_input.h"
 #include "verification/claims/claim_inputs.h"
+#include "verification/claims/claim_list.h"
+#include "verification/claims/energy/contact_rows.h"
+#include "verification/claims/energy/wave_energy.h"
+#include "verification/claims/rows.h"
+#include "verification/claims/stability_row.h"
+#include "verification/claims/wave_states.h"
 
 namespace latcon::claims
 {
@@ -25,12 +32,6 @@ const output::Tolerance equal_formulas{bridge::NetworkComparison::equal_formulas
 constexpr double strain_step = 1e-3;
 const output::Tolerance small_strain_tolerance{
   1e-9, "fourth-order differences with a strain of 1e-3: 1e-12 of higher moduli, round-off over the strain"};
-
-// Lattice of 12 by 12 sites: the two outer rows and columns lack neighbours, the middle ones do not.
-lattice::TriangularLattice small_sheet(const bridge::Subject &subject)
-{
-  return {subject.spacing, 12. * subject.spacing, 12. * subject.spacing, subject.orientation};
-}
 
 double unit_uniform(std::mt19937_64 &generator)
 {
@@ -62,25 +63,6 @@ Eigen::Matrix2d stress_derivative(const Stress &stress, int k, int L)
   return (8. * (at(h) - at(-h)) - (at(2. * h) - at(-2. * h))) / (12. * h);
 }
 
-// Rows of the claim, in their order.
-class Rows
-{
-public:
-  Rows(const bridge::Subject &subject, output::Results &results) : subject_(subject), results_(results) {}
-
-  void add(const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
-           std::optional<double> continuum_value, std::optional<double> theory, std::optional<double> error,
-           const output::Tolerance &tolerance)
-  {
-    results_.add(
-      {"energy", subject_.name + ": " + quantity, unit, lattice_value, continuum_value, theory, error, tolerance});
-  }
-
-private:
-  const bridge::Subject &subject_;
-  output::Results &results_;
-};
-
 // Moduli [Pa] and long-wave speeds [m/s] at F = I.
 struct Moduli
 {
@@ -109,31 +91,27 @@ Moduli continuum_moduli(const bridge::Subject &subject, const continuum::Materia
 
 // Moduli and speeds on the lattice, in a law of the continuum, and in closed form.
 void moduli_rows(const bridge::Subject &subject, const Moduli &lattice_side, bridge::Law law,
-                 const std::string &law_name, const Moduli &law_side, Rows &rows)
+                 const std::string &law_name, const Moduli &law_side, const Rows &rows)
 {
-  const auto row = [&](const std::string &quantity, const std::string &unit, double Moduli::*value, double theory)
+  const auto add =
+    [&](const std::string &quantity, const std::string &unit, double Moduli::*value, double theory, bool is_judged)
   {
     const double on_lattice = lattice_side.*value, on_continuum = law_side.*value;
     const double error =
       support::largest_of({support::relative_error(on_lattice, theory), support::relative_error(on_continuum, theory)});
-    rows.add(quantity + " at F = I, " + law_name, unit, on_lattice, on_continuum, theory, error,
-             {subject.tolerance(law, *small_strain_tolerance), small_strain_tolerance.reason});
+    rows.add(quantity, unit, of_both(on_lattice, on_continuum, theory), error, small_strain_tolerance, is_judged);
   };
   const bridge::SmallStrain &theory = subject.theory;
-  row("mu", "Pa", &Moduli::mu, theory.shear_modulus);
-  row("lambda", "Pa", &Moduli::lambda, theory.shear_modulus);
-  row("c_S", "m/s", &Moduli::shear_speed, theory.shear_speed);
-  row("c_L", "m/s", &Moduli::longitudinal_speed, theory.longitudinal_speed);
-}
-
-// Both sides take the cross-section of a bond from the lattice; this row does not.
-void absolute_row(const bridge::Subject &subject, double on_lattice, double on_continuum, Rows &rows)
-{
-  const double theory = absolute_shear_modulus(subject.material);
-  rows.add(
-    "mu at F = I, lattice and Cauchy-Born against a, b and s alone", "Pa", on_lattice, on_continuum, theory,
-    support::largest_of({support::relative_error(on_lattice, theory), support::relative_error(on_continuum, theory)}),
-    small_strain_tolerance);
+  const std::string where = " at F = I, " + law_name;
+  const bool is_judged = subject.judges(law);
+  add("mu" + where, "Pa", &Moduli::mu, theory.shear_modulus, is_judged);
+  add("lambda" + where, "Pa", &Moduli::lambda, theory.shear_modulus, is_judged);
+  add("c_S" + where, "m/s", &Moduli::shear_speed, theory.shear_speed, is_judged);
+  add("c_L" + where, "m/s", &Moduli::longitudinal_speed, theory.longitudinal_speed, is_judged);
+  // Both sides take the cross-section of a bond from the lattice; this row does not.
+  if (law == bridge::Law::cauchy_born)
+    add("mu at F = I, lattice and Cauchy-Born against a, b and s alone", "Pa", &Moduli::mu,
+        absolute_shear_modulus(subject.material), true);
 }
 
 // Residual about the calibrated ratio. The smallest residual has no slope, and a wrong ratio has better neighbours. At
@@ -170,14 +148,13 @@ Optimum optimum(const bridge::Subject &subject, const lattice::TriangularLattice
 // The law fitted along the loading path. At finite strain the residual of the fit is reported; but the law must be the
 // best one, and elliptic, so that finite elements can solve it.
 void mooney_rivlin_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
-                        const Moduli &lattice_side, Rows &rows)
+                        const Moduli &lattice_side, const Rows &rows)
 {
-  const auto judged = [&](double tolerance, const std::string &reason)
-  { return output::Tolerance(subject.tolerance(bridge::Law::mooney_rivlin, tolerance), reason); };
+  const bool is_judged = subject.judges(bridge::Law::mooney_rivlin);
   if (!subject.mooney_rivlin)
   {
     rows.add("plane-stress Mooney-Rivlin: no ratio gives a law that has a thickness all along the loading path", "1",
-             {}, {}, {}, std::numeric_limits<double>::infinity(), judged(0., "there must be one"));
+             {}, std::numeric_limits<double>::infinity(), {0., "there must be one"}, is_judged);
     return;
   }
   const bridge::Calibration &fit = *subject.mooney_rivlin;
@@ -187,33 +164,33 @@ void mooney_rivlin_rows(const bridge::Subject &subject, const lattice::Triangula
 
   const double on_lattice = bridge::homogeneous_response(sheet, subject.material, subject.deformation).energy_density;
   const double on_continuum = law.energy(bridge::to_continuum(subject.deformation));
-  rows.add("energy density of the loaded sheet, plane-stress Mooney-Rivlin", "J/m^3", on_lattice, on_continuum, {},
-           support::relative_error(on_continuum, on_lattice), {});
-  rows.add("rms energy residual of plane-stress Mooney-Rivlin along the loading path", "1", {}, fit.energy_residual, {},
-           fit.energy_residual, {});
+  rows.add("energy density of the loaded sheet, plane-stress Mooney-Rivlin", "J/m^3", of_both(on_lattice, on_continuum),
+           support::relative_error(on_continuum, on_lattice));
+  rows.add("rms energy residual of plane-stress Mooney-Rivlin along the loading path", "1",
+           of_continuum(fit.energy_residual), fit.energy_residual);
   if (subject.ratio_is_calibrated)
   {
     const Optimum found = optimum(subject, sheet);
     rows.add(std::string("calibrated ratio r = C2 / (C1 + C2)") +
                (found.is_end ? ", at the end of the search interval; error: slope of the residual inwards"
                              : "; error: slope of the residual there"),
-             "1", {}, fit.ratio, {}, found.slope,
-             judged(2e-6,
-                    "location of the minimum to 1e-9 times a curvature below 100; central difference with steps of "
-                    "1e-4 times a third derivative below 1000"));
+             "1", of_continuum(fit.ratio), found.slope,
+             {2e-6, "location of the minimum to 1e-9 times a curvature below 100; central difference with steps of "
+                    "1e-4 times a third derivative below 1000"},
+             is_judged);
   }
   else
-    rows.add("given ratio r = C2 / (C1 + C2)", "1", {}, fit.ratio, {}, {}, {});
+    rows.add("given ratio r = C2 / (C1 + C2)", "1", of_continuum(fit.ratio));
   // Strong ellipticity: the slowest wave on the path has rho c^2 > 0; the error is its distance below zero.
   const double slowest = fit.smallest_acoustic_eigenvalue;
   rows.add(std::string("slowest rho c^2 / mu on the path, plane-stress Mooney-Rivlin") +
              (slowest < 0. ? ": the law loses ellipticity" : ""),
-           "1", {}, slowest, {}, support::one_sided(-slowest), judged(0., "a sign"));
+           "1", of_continuum(slowest), support::one_sided(-slowest), {0., "a sign"}, is_judged);
 }
 
 // The lattice against its own continuum law.
 void random_deformations(const bridge::Subject &subject, const lattice::TriangularLattice &sheet, unsigned int samples,
-                         Rows &rows)
+                         const Rows &rows)
 {
   support::LargestError energy_error, stress_error;
   std::mt19937_64 generator(20061111);
@@ -227,16 +204,14 @@ void random_deformations(const bridge::Subject &subject, const lattice::Triangul
     stress_error.add((measured.first_piola_stress - stress).norm() / stress.norm());
   }
   const std::string count = std::to_string(samples) + " random F";
-  rows.add("energy density, Cauchy-Born, largest relative error, " + count, "1", {}, {}, {}, energy_error.error(),
-           equal_formulas);
-  rows.add("first Piola stress, Cauchy-Born, largest relative error, " + count, "1", {}, {}, {}, stress_error.error(),
-           equal_formulas);
+  rows.add("energy density, Cauchy-Born, largest relative error, " + count, "1", {}, energy_error, equal_formulas);
+  rows.add("first Piola stress, Cauchy-Born, largest relative error, " + count, "1", {}, stress_error, equal_formulas);
 }
 
 // The network law neglects only the lattice's dependence on direction: it is the mean over rotations of the lattice,
 // and differs from the lattice by no more than that dependence (theory-comparison.md, eq. (H.15)).
 void network_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet, const Moduli &lattice_side,
-                  unsigned int samples, Rows &rows)
+                  unsigned int samples, const Rows &rows)
 {
   moduli_rows(subject, lattice_side, bridge::Law::mooney_rivlin_network, "network",
               continuum_moduli(subject, subject.network), rows);
@@ -250,54 +225,67 @@ void network_rows(const bridge::Subject &subject, const lattice::TriangularLatti
     energy_share.add(both.energy_error() / both.energy_bound());
     stress_share.add(both.stress_error() / both.stress_bound());
   }
-  const auto add =
-    [&](const std::string &quantity, const support::LargestError &error, const std::optional<double> &tolerance)
-  {
-    rows.add(quantity + ", " + std::to_string(samples) + " random F", "1", {}, {}, {}, error.error(),
-             {tolerance, equal_formulas.reason});
-  };
-  const std::optional<double> judged = subject.tolerance(bridge::Law::mooney_rivlin_network, *equal_formulas);
+  const auto add = [&](const std::string &quantity, const support::LargestError &error, bool is_judged)
+  { rows.add(quantity + ", " + std::to_string(samples) + " random F", "1", {}, error, equal_formulas, is_judged); };
+  const bool is_judged = subject.judges(bridge::Law::mooney_rivlin_network);
   add("energy density, network against the lattice's mean over rotations, largest relative error", energy_from_mean,
-      judged);
+      is_judged);
   add("first Piola stress, network against the lattice's mean over rotations, largest relative error", stress_from_mean,
-      judged);
+      is_judged);
   // Reported: the bounds follow from the agreement with the mean, and the energy attains its own.
-  add("energy density, network, largest error over the bound of anisotropy", energy_share, {});
-  add("first Piola stress, network, largest error over the bound of anisotropy", stress_share, {});
+  add("energy density, network, largest error over the bound of anisotropy", energy_share, false);
+  add("first Piola stress, network, largest error over the bound of anisotropy", stress_share, false);
   if (subject.deformation.isIdentity(1e-12))
     return; // neither stress nor a part of the energy that depends on the direction
   const bridge::NetworkComparison stretched(subject, sheet, subject.deformation);
-  rows.add("energy density of the loaded sheet, network", "J/m^3", stretched.lattice_energy, stretched.network_energy,
-           stretched.energy.mean(0), stretched.energy_error(), {});
-  rows.add("first Piola stress of the loaded sheet, network, Frobenius norm", "Pa", stretched.lattice_stress.norm(),
-           stretched.network_stress.norm(), stretched.stress.mean.norm(), stretched.stress_error(), {});
+  rows.add("energy density of the loaded sheet, network", "J/m^3",
+           of_both(stretched.lattice_energy, stretched.network_energy, stretched.energy.mean(0)),
+           stretched.energy_error());
+  rows.add("first Piola stress of the loaded sheet, network, Frobenius norm", "Pa",
+           of_both(stretched.lattice_stress.norm(), stretched.network_stress.norm(), stretched.stress.mean.norm()),
+           stretched.stress_error());
 }
 
 } // namespace
 
 output::Results energy_claim(const bridge::Subject &subject, unsigned int samples)
 {
-  const lattice::TriangularLattice sheet = small_sheet(subject);
+  // The two outer rows and columns lack neighbours, the middle ones do not.
+  const lattice::TriangularLattice sheet = subject.sheet(12.);
   output::Results results;
-  Rows rows(subject, results);
-  const auto attempt = [&](const std::string &part, const std::function<void()> &compute)
-  { return results.attempt("energy", subject.name + ": " + part, compute); };
-  attempt("homogeneous deformations", [&] { random_deformations(subject, sheet, samples, rows); });
+  const Rows rows(results, "energy", subject.name + ": ");
+  rows.attempt("homogeneous deformations", [&] { random_deformations(subject, sheet, samples, rows); });
   std::optional<Moduli> on_lattice;
-  attempt("moduli and wave speeds at F = I",
-          [&]
-          {
-            on_lattice = lattice_moduli(subject, sheet);
-            moduli_rows(subject, *on_lattice, bridge::Law::cauchy_born, "Cauchy-Born",
-                        continuum_moduli(subject, subject.cauchy_born), rows);
-            absolute_row(subject, on_lattice->mu, continuum_moduli(subject, subject.cauchy_born).mu, rows);
-          });
+  rows.attempt("moduli and wave speeds at F = I",
+               [&]
+               {
+                 on_lattice = lattice_moduli(subject, sheet);
+                 moduli_rows(subject, *on_lattice, bridge::Law::cauchy_born, "Cauchy-Born",
+                             continuum_moduli(subject, subject.cauchy_born), rows);
+               });
   if (!on_lattice)
     return results;
-  attempt("network", [&] { network_rows(subject, sheet, *on_lattice, samples, rows); });
-  attempt("plane-stress Mooney-Rivlin along the loading path",
-          [&] { mooney_rivlin_rows(subject, sheet, *on_lattice, rows); });
+  rows.attempt("network", [&] { network_rows(subject, sheet, *on_lattice, samples, rows); });
+  rows.attempt("plane-stress Mooney-Rivlin along the loading path",
+               [&] { mooney_rivlin_rows(subject, sheet, *on_lattice, rows); });
   return results;
+}
+
+ClaimOutcome check_energy(const ClaimInput &input)
+{
+  const bridge::Subject &subject = input.subject;
+  ClaimOutcome outcome{energy_claim(subject, input.quick ? 200 : 2000), {}};
+  if (!subject.is_stable())
+    outcome.results.add(stability_row(subject, "energy"));
+  if (input.entries.has_contact)
+    outcome.results.attempt("energy", subject.name + ": contact",
+                            [&] { outcome.results.add(contact_rows(subject, input.entries)); });
+  WaveEnergyOptions options;
+  options.states = wave_states(subject, true);
+  if (input.quick)
+    options.kd = {0.25, 0.5};
+  outcome.add(wave_energy_claim(subject, options));
+  return outcome;
 }
 
 } // namespace latcon::claims

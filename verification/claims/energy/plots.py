@@ -3,7 +3,7 @@ import numpy as np
 
 from claim_tables import WAVE, Plot, fitted_order, groups, largest_text, off, range_text, sorted_by, states
 from panels import LAW_COLOURS, MARKERS, Grid, colours_of, entry, headroom, logarithmic, note
-from pictures import BLACK, GREY, save
+from pictures import BLACK, GREY
 
 TABLES = {
     "sinusoidal_energy": ({"shells": None, "wave": ("L", "S")},
@@ -14,7 +14,7 @@ TABLES = {
 }
 
 
-def draw_sinusoidal_energy(tables, path):
+def draw_sinusoidal_energy(tables):
     """Energy of a sheet displaced along a sinusoid over that of the local continuum, and differences from the lattice."""
     table = tables["sinusoidal_energy"]
     colours, angles = colours_of(table["angle [deg]"], "waves along", "°")
@@ -24,11 +24,10 @@ def draw_sinusoidal_energy(tables, path):
     rows = states(table)
     grid = Grid([name for name, _ in rows], 3, legend)
     metrics = []
-    for number, (name, state) in enumerate(rows):
-        panels = {wave: grid.axes(number, column, title=f"{word} waves", xlabel="k d [1]") for column, (wave, word) in
-                  enumerate((("L", "longitudinal"), ("S", "shear")))}
-        panels["L"].set_ylabel("energy / local [1]")
-        error = grid.axes(number, 2, title="off the lattice's, relative [1]", xlabel="k d [1]")
+    titles = ("longitudinal waves", "shear waves", "off the lattice's, relative [1]")
+    for name, state, (*panels, error) in grid.each(rows, titles, "k d [1]"):
+        panels[0].set_ylabel("energy / local [1]")
+        panels = dict(zip("LS", panels))
         found = {law: [] for law in laws}
         for (wave, angle), part in groups(state, "wave", "angle [deg]"):
             part = sorted_by(part, "k d")
@@ -50,11 +49,10 @@ def draw_sinusoidal_energy(tables, path):
         found = [f"order of the {law} energy {orders[law]}" for law in laws if orders[law]]
         found.append(f"finite elements off the gradient energy by {largest_text(state['fem'] / state['gradient'] - 1)}")
         metrics.append(f"{name}: {'; '.join(found)}")
-    save(grid.page.figure, path)
-    return metrics
+    return grid, metrics
 
 
-def draw_travelling_waves(tables, path):
+def draw_travelling_waves(tables):
     """Mean energies in a travelling wave over the theory's, and the finite elements' against the lattice's."""
     table = tables["travelling_waves"]
     colours, angles = colours_of(table["angle [deg]"], "waves along", "°")
@@ -63,10 +61,8 @@ def draw_travelling_waves(tables, path):
     rows = states(table)
     grid = Grid([name for name, _ in rows], 3, legend + angles, per_line=5)
     metrics = []
-    for number, (name, state) in enumerate(rows):
-        titles = ("elastic energy / theory [1]", "kinetic energy / theory [1]", "elements off lattice, relative [1]")
-        elastic, kinetic, error = (grid.axes(number, column, title=title, xlabel="k d [1]")
-                                   for column, title in enumerate(titles))
+    titles = ("elastic energy / theory [1]", "kinetic energy / theory [1]", "elements off lattice, relative [1]")
+    for name, state, (elastic, kinetic, error) in grid.each(rows, titles, "k d [1]"):
         for (wave, angle), part in groups(state, "wave", "angle [deg]"):
             part = sorted_by(part, "k d")
             k, colour, theory = part["k d"], colours[angle], part["theory [J/m^3]"]
@@ -85,8 +81,7 @@ def draw_travelling_waves(tables, path):
         metrics.append(f"{name}: " + "; ".join(filter(None, (
             off(f"{what} energy of the finite elements", fem, lattice, "the lattice's")
             for what, (lattice, fem) in parts))))
-    save(grid.page.figure, path)
-    return metrics
+    return grid, metrics
 
 
 def elastic_energies(part):

@@ -43,14 +43,12 @@ double lattice_stiffness(const WaveCell &cell, const lattice::Material &material
   const auto energy = [&](double amplitude)
   {
     lattice::State state = at_rest;
-    for (std::size_t row = 0; row < sheet.rows(); ++row)
-      for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-      {
-        const std::size_t place = sheet.index(row, column);
-        const double shape = amplitude * std::cos(cell.K.dot(sheet.reference(place)));
-        state.x[place] += shape * p.x();
-        state.y[place] += shape * p.y();
-      }
+    for_each_site(cell,
+                  [&](std::size_t place, double phase)
+                  {
+                    state.x[place] += amplitude * std::cos(phase) * p.x();
+                    state.y[place] += amplitude * std::cos(phase) * p.y();
+                  });
     lattice::update_images(state, sheet);
     return lattice::elastic_energy(state, sheet, material);
   };
@@ -91,6 +89,7 @@ void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
   const double d = subject.spacing, l_d = subject.lengths.lattice;
   output::Table &table = outcome.table("sinusoidal_energy", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d",
                                                              "lattice", "local", "gradient", "filtered", "fem"});
+  const lattice::TriangularLattice sheet = subject.sheet();
   support::LargestError lattice_error, element_error, excess_error;
   CommonOrder local_order(order_kd), gradient_order(order_kd), filtered_order(order_kd);
   for (const WaveDirection &direction : {WaveDirection{1, 0}, WaveDirection{1, 2}})
@@ -101,8 +100,7 @@ void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
       const WaveCell cell = wave_cell(d, subject.orientation, direction, kd);
       const double inertia = 1. + std::pow(l_d, 2) * cell.K.squaredNorm();
       // One field for all: polarised as the waves of the local continuum.
-      const auto waves =
-        bridge::plane_waves(continuum_matrices(media.local, F, cell.K), bridge::wave_normal(F, cell.K));
+      const auto waves = continuum_waves(media.local, F, cell.K);
       for (std::size_t w = 0; w < 2; ++w)
       {
         const Eigen::Vector2d &p = waves[w].polarisation;
@@ -125,9 +123,8 @@ void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
       for (const double kd : order_kd)
       {
         const Eigen::Vector2d K = kd / d * N;
-        const Eigen::Vector2d p =
-          bridge::plane_waves(continuum_matrices(media.local, F, K), bridge::wave_normal(F, K))[w].polarisation;
-        const double exact = bloch_stiffness({d, 10. * d, 10. * d, subject.orientation}, material, F, K, p),
+        const Eigen::Vector2d p = continuum_waves(media.local, F, K)[w].polarisation;
+        const double exact = bloch_stiffness(sheet, material, F, K, p),
                      gradient = closed_stiffness(media.gradient, F, K, p);
         local_errors.push_back(std::abs(closed_stiffness(media.local, F, K, p) / exact - 1.));
         gradient_errors.push_back(std::abs(gradient / exact - 1.));
@@ -141,31 +138,24 @@ void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
       filtered_order.add(filtered_errors);
     }
   }
-  const std::string prefix = subject.name + ", sinusoidal field about " + state_name(F) + ": ";
-  const auto add = [&](const std::string &quantity, std::optional<double> continuum_value, std::optional<double> theory,
-                       double error, const output::Tolerance &tolerance) {
-    outcome.results.add({"energy", prefix + quantity, "1", {}, continuum_value, theory, error, tolerance});
-  };
-  add("energy of the lattice against Bloch, worst of all fields", {}, {}, lattice_error.error(),
-      lattice_energy_tolerance);
-  add("energy of the finite elements against their continuum, worst of all fields", {}, {}, element_error.error(),
-      {4. * discretisation_bound(options.mesh),
-       "bound of the best approximation (Ainsworth), times q(q+1)/(4q-2) < 2 for values at Gauss-Lobatto nodes, and as "
-       "much again for the jumps between cells, which these values do not minimise"});
-  const auto add_order =
-    [&](const std::string &quantity, const CommonOrder &found, double claimed, std::optional<double> tolerance)
-  {
-    const double order = found.order();
-    add("order in kd to which " + quantity, order, claimed, std::abs(order - claimed), {tolerance, reason_of_order});
-  };
-  add_order("local continuum and lattice agree", local_order, 2., order_tolerance);
-  add_order("the gradient continuum's unfiltered energy and the lattice's agree: 2 as without gradient", gradient_order,
-            2., subject.gradient_tolerance(F, order_tolerance));
-  add("excess of the gradient continuum's energy over l_d^2 k^2 at kd = 0.05",
-      excess_error.value() / excess_error.reference(), 1., excess_error.error(),
-      {subject.gradient_tolerance(F, std::pow(order_kd[0], 2)), "the next term, (kd)^2 of this one"});
-  add_order("the gradient continuum's energy over 1 + l_d^2 k^2 and the lattice's agree", filtered_order, 4.,
-            subject.gradient_tolerance(F, order_tolerance));
+  const Rows rows(outcome.results, "energy", subject.name + ", sinusoidal field about " + state_name(F) + ": ");
+  rows.add("energy of the lattice against Bloch, worst of all fields", "1", {}, lattice_error,
+           lattice_energy_tolerance);
+  rows.add(
+    "energy of the finite elements against their continuum, worst of all fields", "1", {}, element_error,
+    {4. * discretisation_bound(options.mesh),
+     "bound of the best approximation (Ainsworth), times q(q+1)/(4q-2) < 2 for values at Gauss-Lobatto nodes, and as "
+     "much again for the jumps between cells, which these values do not minimise"});
+  const bool is_judged = subject.judges_gradient(F);
+  const std::string order = "order in kd to which ";
+  add_order(rows, order + "local continuum and lattice agree", local_order, 2.);
+  add_order(rows, order + "the gradient continuum's unfiltered energy and the lattice's agree: 2 as without gradient",
+            gradient_order, 2., is_judged);
+  rows.add("excess of the gradient continuum's energy over l_d^2 k^2 at kd = 0.05", "1",
+           of_continuum(excess_error.value() / excess_error.reference(), 1.), excess_error,
+           {std::pow(order_kd[0], 2), "the next term, (kd)^2 of this one"}, is_judged);
+  add_order(rows, order + "the gradient continuum's energy over 1 + l_d^2 k^2 and the lattice's agree", filtered_order,
+            4., is_judged);
 }
 
 // Of the lattice, in the eighth of a period for which a wave travels.
@@ -183,18 +173,16 @@ Densities travelling_lattice(const WaveCell &cell, const lattice::Material &mate
   const lattice::TriangularLattice &sheet = cell.sheet;
   lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
   const double at_rest = lattice::elastic_energy(state, sheet, material);
-  for (std::size_t row = 0; row < sheet.rows(); ++row)
-    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-    {
-      const std::size_t place = sheet.index(row, column);
-      const double phase = cell.K.dot(sheet.reference(place));
-      const Eigen::Vector2d u = amplitude * std::cos(phase) * wave.polarisation,
-                            v = amplitude * wave.frequency * std::sin(phase) * wave.polarisation;
-      state.x[place] += u.x();
-      state.y[place] += u.y();
-      state.vx[place] = v.x();
-      state.vy[place] = v.y();
-    }
+  for_each_site(cell,
+                [&](std::size_t place, double phase)
+                {
+                  const Eigen::Vector2d u = amplitude * std::cos(phase) * wave.polarisation,
+                                        v = amplitude * wave.frequency * std::sin(phase) * wave.polarisation;
+                  state.x[place] += u.x();
+                  state.y[place] += u.y();
+                  state.vx[place] = v.x();
+                  state.vy[place] = v.y();
+                });
   // The wave itself shortens bonds a little more.
   const double limit = lattice::time_step_limits(sheet, material, 0.99 * smallest_stretch(sheet, F)).combined;
   const double eighth = 0.25 * M_PI / wave.frequency;
@@ -219,8 +207,7 @@ void travelling(const bridge::Subject &subject, const Eigen::Matrix2d &F, double
   const double kd = cell.K.norm() * d, amplitude = travelling_strain / cell.K.norm();
   const double inertia = 1. + std::pow(subject.lengths.lattice / d * kd, 2);
   const auto bloch = bridge::bloch_waves(cell.sheet, material, F, cell.K),
-             closed =
-               bridge::plane_waves(continuum_matrices(media.gradient, F, cell.K), bridge::wave_normal(F, cell.K));
+             closed = continuum_waves(media.gradient, F, cell.K);
   // Both sides are followed for an eighth of a period, if the wave has one.
   for (const auto &waves : {bloch, closed})
     static_cast<void>(bridge::fastest_frequency(waves));
@@ -242,38 +229,36 @@ void travelling(const bridge::Subject &subject, const Eigen::Matrix2d &F, double
     std::ostringstream where;
     where << subject.name << ", travelling " << wave_names[w] << " wave about " << state_name(F)
           << ", kd = " << std::round(1e3 * kd) / 1e3 << ": ";
-    const auto add = [&](const std::string &quantity, std::optional<double> lattice_value,
-                         std::optional<double> continuum_value, std::optional<double> value, double error,
-                         const output::Tolerance &tolerance)
-    {
-      outcome.results.add(
-        {"energy", where.str() + quantity, "J/m^3", lattice_value, continuum_value, value, error, tolerance});
-    };
+    const Rows rows(outcome.results, "energy", where.str());
     // Harmonic waves share their energy equally.
     const double of_step = 0.25 * std::pow(0.25 * M_PI / least_steps, 2);
     const output::Tolerance tolerance{
       of_step + 3e-5, "velocity Verlet: (w h)^2 / 4, 40 steps in an eighth of a period; average acceleration conserves "
                       "both energies of a wave; elements in space 3e-5"};
-    add("elastic against kinetic energy, lattice and finite elements", run.elastic, elements.elastic, 0.5 * theory,
-        support::largest_of({support::relative_error(run.elastic, run.kinetic),
-                             support::relative_error(elements.elastic, elements.kinetic)}),
-        tolerance);
-    add("energy, lattice and finite elements each against its theory", total, element_total, theory,
-        support::largest_of(
-          {support::relative_error(total, theory), support::relative_error(element_total, continuum_theory)}),
-        tolerance);
+    rows.add("elastic against kinetic energy, lattice and finite elements", "J/m^3",
+             of_both(run.elastic, elements.elastic, 0.5 * theory),
+             support::largest_of({support::relative_error(run.elastic, run.kinetic),
+                                  support::relative_error(elements.elastic, elements.kinetic)}),
+             tolerance);
+    rows.add("energy, lattice and finite elements each against its theory", "J/m^3",
+             of_both(total, element_total, theory),
+             support::largest_of(
+               {support::relative_error(total, theory), support::relative_error(element_total, continuum_theory)}),
+             tolerance);
     // The speeds differ by 1e-4 at most here (claim wave-speeds; more with third-nearest neighbours), energies by twice
     // that and the time stepping.
-    add("energy of the finite elements over 1 + l_d^2 k^2, against the lattice", total, element_total / inertia, theory,
-        support::relative_error(element_total / inertia, total),
-        {subject.gradient_tolerance(F, 2e-4 * gradient_remainder(subject) + *tolerance),
-         "twice the difference in speed that wave-speeds allows at kd = 0.25; " + tolerance.reason});
+    rows.add("energy of the finite elements over 1 + l_d^2 k^2, against the lattice", "J/m^3",
+             of_both(total, element_total / inertia, theory), support::relative_error(element_total / inertia, total),
+             {2e-4 * gradient_remainder(subject) + *tolerance,
+              "twice the difference in speed that wave-speeds allows at kd = 0.25; " + tolerance.reason},
+             subject.judges_gradient(F));
     const output::Tolerance harmonic_tolerance{
       1.5e-4, "second harmonic, with an amplitude of the strain of 1e-4 times third over second moduli, up to 30: 16 "
               "times its square"};
-    add("micro-inertia's share of the kinetic energy, l_d^2 k^2 / (1 + l_d^2 k^2)", {}, elements.micro_inertia,
-        elements.kinetic * (1. - 1. / inertia),
-        support::relative_error(elements.micro_inertia, elements.kinetic * (1. - 1. / inertia)), harmonic_tolerance);
+    const double share = elements.kinetic * (1. - 1. / inertia);
+    rows.add("micro-inertia's share of the kinetic energy, l_d^2 k^2 / (1 + l_d^2 k^2)", "J/m^3",
+             of_continuum(elements.micro_inertia, share), support::relative_error(elements.micro_inertia, share),
+             harmonic_tolerance);
   }
 }
 
@@ -282,16 +267,15 @@ void travelling(const bridge::Subject &subject, const Eigen::Matrix2d &F, double
 ClaimOutcome wave_energy_claim(const bridge::Subject &subject, const WaveEnergyOptions &options)
 {
   ClaimOutcome outcome;
-  const auto attempt = [&](const std::string &part, const std::function<void()> &compute)
-  { outcome.results.attempt("energy", subject.name + ", " + part, compute); };
+  const Rows rows(outcome.results, "energy", subject.name + ", ");
   for (const Eigen::Matrix2d &F : options.states)
-    attempt("sinusoidal field about " + state_name(F), [&] { sinusoidal(subject, F, options, outcome); });
+    rows.attempt("sinusoidal field about " + state_name(F), [&] { sinusoidal(subject, F, options, outcome); });
   for (const Eigen::Matrix2d &F : options.states)
     for (const double kd : options.kd)
     {
       std::ostringstream part;
       part << "travelling waves about " << state_name(F) << ", kd = " << kd;
-      attempt(part.str(), [&] { travelling(subject, F, kd, options.travelling_mesh, outcome); });
+      rows.attempt(part.str(), [&] { travelling(subject, F, kd, options.travelling_mesh, outcome); });
     }
   return outcome;
 }

@@ -1,12 +1,14 @@
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 
 #include <cmath>
-#include <limits>
 
 #include "support/largest_error.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/intrinsic_length/dispersion.h"
 #include "verification/claims/intrinsic_length/edge_layer.h"
 #include "verification/claims/intrinsic_length/gradient_positivity.h"
+#include "verification/claims/rows.h"
 #include "verification/claims/state_name.h"
 
 namespace latcon::claims
@@ -29,48 +31,23 @@ output::Tolerance run_tolerance(const bridge::Subject &subject)
           "7.6e-6; errors of the waves, 2e-7, times twenty; half of both for a margin"};
 }
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
-class LengthRows
+Rows length_rows(const bridge::Subject &subject, ClaimOutcome &outcome)
 {
-public:
-  LengthRows(const bridge::Subject &subject, ClaimOutcome &outcome) : subject_(subject), outcome_(outcome) {}
-
-  void add(const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
-           std::optional<double> continuum_value, std::optional<double> theory, std::optional<double> error,
-           const output::Tolerance &tolerance)
-  {
-    outcome_.results.add({"intrinsic-length", subject_.name + ": " + quantity, unit, lattice_value, continuum_value,
-                          theory, error, tolerance});
-  }
-
-  bool attempt(const std::string &part, const std::function<void()> &compute)
-  {
-    return outcome_.results.attempt("intrinsic-length", subject_.name + ": " + part, compute);
-  }
-
-private:
-  const bridge::Subject &subject_;
-  ClaimOutcome &outcome_;
-};
-
-lattice::TriangularLattice any_sheet(const bridge::Subject &subject)
-{
-  return {subject.spacing, 10. * subject.spacing, 10. * subject.spacing, subject.orientation};
+  return {outcome.results, "intrinsic-length", subject.name + ": "};
 }
 
 // alpha at F = I: its dependence on direction, from Bloch, from runs, in the continua.
 void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &options, ClaimOutcome &outcome)
 {
   const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
-  const lattice::TriangularLattice sheet = any_sheet(subject);
+  const lattice::TriangularLattice sheet = subject.sheet();
   const lattice::Material material = lattice::without_dashpots(subject.material);
   const double d = subject.spacing, rho = subject.material.density;
   const WaveContinuum gradient{{subject.cauchy_born, *subject.lattice_gradient}, {rho, subject.lengths.lattice}};
   const WaveContinuum isotropic{{subject.cauchy_born, *subject.isotropic_gradient},
                                 {rho, subject.lengths.isotropic_inertia}};
   const WaveContinuum network{{subject.network, *subject.network_gradient}, {rho, subject.lengths.lattice}};
-  LengthRows rows(subject, outcome);
+  const Rows rows = length_rows(subject, outcome);
 
   // All directions.
   output::Table &table = outcome.table("dispersion", {"shells", "angle [deg]", "alpha_L", "alpha_S", "nearest_L",
@@ -115,69 +92,67 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
     const Eigen::Vector2d N = unit_vector(direction, subject.orientation);
     const double degrees = angle(direction, subject.orientation);
     const std::string at = " at " + std::to_string(std::lround(degrees)) + " degrees";
-    Alpha run{nothing, nothing}; // if no wave oscillates, the rows fail
+    Alpha run{unknown, unknown}; // if no wave oscillates, the rows fail
     rows.attempt("lattice run, waves" + at,
                  [&] { run = running_alpha(d, subject.orientation, direction, material, I); });
     runs.add({subject.name, degrees, run[0], run[1]});
     const Alpha closed = lattice_alpha(sheet, material, I, N), continuum = continuum_alpha(gradient, I, N, d);
     for (std::size_t w = 0; w < 2; ++w)
       rows.add("alpha of " + std::string(wave_names[w]) + " waves" + at + ", lattice run against closed form", "1",
-               run[w], continuum[w], closed[w], std::abs(run[w] - closed[w]), run_tolerance(subject));
+               of_both(run[w], continuum[w], closed[w]), std::abs(run[w] - closed[w]), run_tolerance(subject));
   }
 
-  rows.add("alpha in all directions, Bloch against closed form", "1", {}, {}, {}, bloch_error.error(), bloch_tolerance);
-  rows.add("alpha in all directions, gradient continuum against closed form", "1", {}, {}, {}, continuum_error.error(),
+  rows.add("alpha in all directions, Bloch against closed form", "1", {}, bloch_error, bloch_tolerance);
+  rows.add("alpha in all directions, gradient continuum against closed form", "1", {}, continuum_error,
            equal_closed_forms);
   // A positive alpha softens; the claim is the sign.
-  rows.add("softening: smallest alpha of any wave", "1", alphas.smallest(), {}, {},
+  rows.add("softening: smallest alpha of any wave", "1", of_lattice(alphas.smallest()),
            support::one_sided(-alphas.smallest()), sign);
-  rows.add("largest alpha of any wave", "1", alphas.largest(), {}, {}, {}, {});
+  rows.add("largest alpha of any wave", "1", of_lattice(alphas.largest()));
   for (std::size_t w = 0; w < 2; ++w)
   {
     const std::string name = std::string("alpha of ") + wave_names[w] + " waves, ";
-    rows.add(name + "mean over directions, isotropic gradient continuum against lattice", "1", mean[w],
-             isotropic_alpha[w], {}, std::abs(isotropic_alpha[w] - mean[w]),
-             {subject.tolerance(bridge::Law::isotropic_gradient, *equal_closed_forms), equal_closed_forms.reason});
-    rows.add(name + "largest difference of the isotropic continuum from the lattice", "1", {}, {}, {},
-             isotropic_loss[w].error(), {});
+    rows.add(name + "mean over directions, isotropic gradient continuum against lattice", "1",
+             of_both(mean[w], isotropic_alpha[w]), std::abs(isotropic_alpha[w] - mean[w]), equal_closed_forms,
+             subject.judges(bridge::Law::isotropic_gradient));
+    rows.add(name + "largest difference of the isotropic continuum from the lattice", "1", {}, isotropic_loss[w]);
     // At F = I its moduli are the lattice's, so the mean of its gradient energy gives the mean of alpha, in all
     // directions.
     support::LargestError from_mean;
     for (const Alpha &alpha : of_network)
       from_mean.add_difference(alpha[w], mean[w]);
-    rows.add(name + "network in all directions against the lattice's mean over directions", "1", mean[w],
-             from_mean.value(), {}, from_mean.error(),
-             {subject.tolerance(bridge::Law::mooney_rivlin_network, *equal_closed_forms), equal_closed_forms.reason});
-    rows.add(name + "largest difference of the network from the lattice", "1", {}, {}, {}, network_loss[w].error(), {});
-    if (subject.material.third_nearest)
-      rows.add(name + "mean over directions, the part of the longer bonds", "1", mean[w] - nearest_mean[w], {}, {}, {},
-               {});
-    else if (subject.material.next_nearest)
-      rows.add(name + "mean over directions, the part of the next-nearest bonds", "1", mean[w] - nearest_mean[w], {},
-               {}, {}, {});
+    rows.add(name + "network in all directions against the lattice's mean over directions", "1",
+             of_both(mean[w], from_mean.value()), from_mean, equal_closed_forms,
+             subject.judges(bridge::Law::mooney_rivlin_network));
+    rows.add(name + "largest difference of the network from the lattice", "1", {}, network_loss[w]);
+    if (subject.material.third_nearest || subject.material.next_nearest)
+      rows.add(name + "mean over directions, the part of the " +
+                 (subject.material.third_nearest ? "longer" : "next-nearest") + " bonds",
+               "1", of_lattice(mean[w] - nearest_mean[w]));
   }
   const WaveContinuum no_inertia{{subject.cauchy_born, *subject.isotropic_gradient}, {rho, 0.}};
   const Alpha hardening = continuum_alpha(no_inertia, I, Eigen::Vector2d(1., 0.), d);
   // Not a fault of the code: a positive gradient energy alone cannot soften.
   const double least_hardening = support::largest_of({hardening[0], hardening[1]});
-  rows.add("hardening: alpha of a positive gradient energy without micro-inertia is negative", "1", {}, least_hardening,
-           {}, support::one_sided(least_hardening),
-           {subject.tolerance(bridge::Law::isotropic_gradient, *sign), sign.reason});
+  rows.add("hardening: alpha of a positive gradient energy without micro-inertia is negative", "1",
+           of_continuum(least_hardening), support::one_sided(least_hardening), sign,
+           subject.judges(bridge::Law::isotropic_gradient));
 }
 
 // The length that keeps the gradient energy positive.
 void positivity(const bridge::Subject &subject, ClaimOutcome &outcome)
 {
   const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
-  const lattice::TriangularLattice sheet = any_sheet(subject);
+  const lattice::TriangularLattice sheet = subject.sheet();
   const double d = subject.spacing, unit = subject.theory.shear_modulus * d * d;
-  LengthRows rows(subject, outcome);
+  const Rows rows = length_rows(subject, outcome);
   const double longest = subject.material.third_nearest  ? 2. * d
                          : subject.material.next_nearest ? std::sqrt(3.) * d
                                                          : d;
-  rows.add("intrinsic length l_d, the longest bond over sqrt(12)", "m", longest / std::sqrt(12.),
-           subject.lengths.lattice, longest / std::sqrt(12.),
-           support::relative_error(subject.lengths.lattice, longest / std::sqrt(12.)), equal_closed_forms);
+  const double length = longest / std::sqrt(12.);
+  rows.add("intrinsic length l_d, the longest bond over sqrt(12)", "m",
+           of_both(length, subject.lengths.lattice, length), support::relative_error(subject.lengths.lattice, length),
+           equal_closed_forms);
 
   struct State
   {
@@ -191,34 +166,34 @@ void positivity(const bridge::Subject &subject, ClaimOutcome &outcome)
     // Positive at l_d: no shorter length than the critical one.
     const std::string shortest = "shortest length with a positive gradient energy, against l_d" + where;
     if (critical)
-      rows.add(shortest, "m", critical, subject.lengths.lattice, {},
-               support::one_sided(*critical / subject.lengths.lattice - 1.),
-               {subject.gradient_tolerance(F, *equal_closed_forms), equal_closed_forms.reason});
+      rows.add(shortest, "m", of_both(*critical, subject.lengths.lattice),
+               support::one_sided(*critical / subject.lengths.lattice - 1.), equal_closed_forms,
+               subject.judges_gradient(F));
     else
-      // See gradient_tolerance(): the law neglects the terms that make it negative.
-      rows.add(shortest + ": there is none, bonds are compressed", "m", {}, subject.lengths.lattice, {}, {}, {});
+      // See judges_gradient(): the law neglects the terms that make it negative.
+      rows.add(shortest + ": there is none, bonds are compressed", "m", of_continuum(subject.lengths.lattice));
     const double at_length = smallest_eigenvalue(*subject.lattice_gradient, F) / unit;
-    rows.add("smallest eigenvalue of the gradient energy over mu d^2 at l_d" + where, "1", {}, at_length, {},
+    rows.add("smallest eigenvalue of the gradient energy over mu d^2 at l_d" + where, "1", of_continuum(at_length),
              support::one_sided(-at_length), positive);
     const double of_network = smallest_eigenvalue(*subject.network_gradient, F) / unit;
-    rows.add("smallest eigenvalue of the network's gradient energy over mu d^2 at l_d" + where, "1", {}, of_network, {},
-             support::one_sided(-of_network),
-             {subject.tolerance(bridge::Law::mooney_rivlin_network, *positive), positive.reason});
+    rows.add("smallest eigenvalue of the network's gradient energy over mu d^2 at l_d" + where, "1",
+             of_continuum(of_network), support::one_sided(-of_network), positive,
+             subject.judges(bridge::Law::mooney_rivlin_network));
     if (!critical)
       continue;
     const double below = smallest_lattice_eigenvalue(sheet, subject.material, F, 0.99 * *critical) / unit;
-    rows.add("the same 1 % below the shortest length: negative" + where, "1", below, {}, {}, support::one_sided(below),
-             sign);
+    rows.add("the same 1 % below the shortest length: negative" + where, "1", of_lattice(below),
+             support::one_sided(below), sign);
   }
 }
 
 // A free edge, its rows along x.
 void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &options, ClaimOutcome &outcome)
 {
-  LengthRows rows(subject, outcome);
+  const Rows rows = length_rows(subject, outcome);
   const lattice::Material material = lattice::without_dashpots(subject.material);
   // Without an equilibrium the rows fail.
-  EdgeLayer layer{nothing, std::vector<double>(options.edge_rows, nothing), nothing};
+  EdgeLayer layer{unknown, std::vector<double>(options.edge_rows, unknown), unknown};
   rows.attempt("edge layer, relaxed strip",
                [&] { layer = relaxed_edge(subject.spacing, material, options.edge_stretch, options.edge_rows); });
   const double root = edge_decay(subject.spacing, material, options.edge_stretch, layer.stretch_across);
@@ -231,7 +206,7 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
        !material.next_nearest ? 0. : layer.deviations[anchor] * std::pow(root, static_cast<double>(j) - anchor)});
 
   rows.add("edge layer: residual force of the relaxed strip over mu d", "1",
-           layer.residual / (subject.theory.shear_modulus * subject.spacing), {}, {}, {}, {});
+           of_lattice(layer.residual / (subject.theory.shear_modulus * subject.spacing)));
   if (!subject.material.next_nearest)
   {
     support::LargestError largest;
@@ -239,20 +214,21 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
       largest.add_difference(deviation, 0.);
     // Statics of nearest neighbours have no length: every row interacts with the next one only. Third-nearest bonds
     // between rows are collinear with nearest ones: both have the same stretch, 1 at a free edge, and neither pulls.
-    rows.add("no edge layer: largest deviation of a row spacing at a free edge", "1", largest.error(), {}, 0.,
-             largest.error(), {1e-10, "residual of the relaxed strip"});
+    rows.add("no edge layer: largest deviation of a row spacing at a free edge", "1", of_lattice(largest.error(), 0.),
+             largest, {1e-10, "residual of the relaxed strip"});
     return;
   }
   rows.add("edge layer: deviation of the first row spacing, stretch " +
              std::to_string(options.edge_stretch).substr(0, 4),
-           "1", layer.deviations[0], {}, {}, {}, {});
-  // LengthRows four to seven: the second power of the deviation is gone, round-off not yet met.
+           "1", of_lattice(layer.deviations[0]));
+  // Rows four to seven: the second power of the deviation is gone, round-off not yet met.
   constexpr std::size_t first = 3, last = 6;
   const double decay = -std::pow(std::abs(layer.deviations[last] / layer.deviations[first]), 1. / (last - first));
   const bool alternates = layer.deviations[first] * layer.deviations[first + 1] < 0.;
+  const double factor = alternates ? decay : -decay;
   rows.add(
-    "edge layer: decay from row to row, against its characteristic equation", "1", alternates ? decay : -decay, {},
-    root, support::relative_error(alternates ? decay : -decay, root),
+    "edge layer: decay from row to row, against its characteristic equation", "1", of_lattice(factor, root),
+    support::relative_error(factor, root),
     output::limited(10. * std::abs(layer.deviations[first]), 1e-5, 1e-3,
                     "terms of second order: deviation of the fourth row times third over second moduli, up to 10"));
   // Layer of a continuum with that gradient energy: exp(-Y / l), of one sign.
@@ -261,8 +237,8 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
   F(0, 0) = options.edge_stretch;
   F(1, 1) = layer.stretch_across;
   const Alpha alpha = continuum_alpha(gradient, F, Eigen::Vector2d(0., 1.), subject.spacing);
-  rows.add("edge layer: decay factor per row, gradient continuum (always positive)", "1", alternates ? decay : -decay,
-           std::exp(-std::sqrt(3.) / 2. / std::sqrt(-alpha[0])), {}, {}, {});
+  rows.add("edge layer: decay factor per row, gradient continuum (always positive)", "1",
+           of_both(factor, std::exp(-std::sqrt(3.) / 2. / std::sqrt(-alpha[0]))));
 }
 
 } // namespace
@@ -270,11 +246,18 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
 ClaimOutcome intrinsic_length_claim(const bridge::Subject &subject, const IntrinsicLengthOptions &options)
 {
   ClaimOutcome outcome;
-  LengthRows rows(subject, outcome);
+  const Rows rows = length_rows(subject, outcome);
   rows.attempt("alpha", [&] { dispersion(subject, options, outcome); });
   rows.attempt("positive gradient energy", [&] { positivity(subject, outcome); });
   rows.attempt("edge layer", [&] { edge_layer(subject, options, outcome); });
   return outcome;
+}
+
+ClaimOutcome check_intrinsic_length(const ClaimInput &input)
+{
+  IntrinsicLengthOptions options;
+  options.angle_step = input.quick ? 15. : 3.;
+  return intrinsic_length_claim(input.subject, options);
 }
 
 } // namespace latcon::claims

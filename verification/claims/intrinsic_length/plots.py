@@ -3,7 +3,7 @@ import numpy as np
 
 from claim_tables import Plot, groups, largest, largest_text, range_text, sorted_by
 from panels import Grid, entry, headroom, logarithmic, note
-from pictures import BLACK, BLUE, GREEN, GREY, RED, SKY, save
+from pictures import BLACK, BLUE, GREEN, GREY, RED, SKY
 
 OTHER_COLOURS = ("#cc79a7", SKY, BLACK, GREY)
 
@@ -15,7 +15,7 @@ TABLES = {
 }
 
 
-def draw_dispersion(tables, path):
+def draw_dispersion(tables):
     """The coefficient alpha of both waves against direction, and the values fitted to runs."""
     table, runs = tables["dispersion"], tables.get("dispersion_runs")
     waves = {"L": ("longitudinal", RED), "S": ("shear", BLUE)}
@@ -46,11 +46,10 @@ def draw_dispersion(tables, path):
         text = f"; fitted to runs off the exact one by {largest_text(np.concatenate(worst))}" if worst else ""
         spread = ", ".join(f"{name} {range_text(part[f'alpha_{wave}'], '.4f')}" for wave, (name, _) in waves.items())
         metrics.append(f"{name}: α {spread}{text}")
-    save(grid.page.figure, path)
-    return metrics
+    return grid, metrics
 
 
-def draw_edge_layer(tables, path):
+def draw_edge_layer(tables):
     """Relative differences between the spacings of rows near a free edge and in the bulk."""
     table = tables["edge_layer"]
     names = [shells for (shells,), _ in groups(table, "shells")]
@@ -84,8 +83,7 @@ def draw_edge_layer(tables, path):
     axes.xaxis.get_major_locator().set_params(integer=True)
     note(axes, [(text.split("; off")[0], colours[name]) for name, text in zip(names, metrics)], "upper right")
     headroom(axes, 1.5)
-    save(grid.page.figure, path)
-    return metrics
+    return grid, metrics
 
 
 def decay_of(deviation):

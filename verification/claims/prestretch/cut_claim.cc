@@ -1,6 +1,5 @@
 #include <array>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include <Eigen/LU>
@@ -10,13 +9,12 @@
 #include "support/largest_error.h"
 #include "verification/bridge/equivalent_sheet.h"
 #include "verification/claims/prestretch/cut_study.h"
+#include "verification/claims/rows.h"
 
 namespace latcon::claims
 {
 namespace
 {
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 // Least squares with the standard errors of its parameters.
 struct Fit
@@ -86,33 +84,30 @@ class Judge
 {
 public:
   Judge(const bridge::Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F,
-        const std::vector<CutResult> &results)
+        const std::vector<CutResult> &results, output::Results &rows)
     : subject_(subject), study_(study), F_(F), results_(results), is_hole_(study.name == "hole"),
-      where_(subject.name + ": " + study.name + ", F = " + in_words(F) + ", ")
+      rows_(rows, "prestretch", subject.name + ": " + study.name + ", F = " + in_words(F) + ", ")
   {
-    largest_ = size_text(study.sizes.back());
   }
 
-  output::Results judged() const
+  void judge() const
   {
-    output::Results rows;
     // Without an equilibrium of the local law the rows fail.
     for (const CutResult &result : results_)
       if (!result.errors && result.law.rfind("local", 0) == 0 && result.law != "local-nominal")
-        rows.add(output::not_computed("prestretch", where_ + "local law at " + size_text(result.size), result.failure));
+        rows_.add_not_computed("local law at " + size_text(result.size), result.failure);
     const std::vector<double> displacement = series("local", &CutErrors::displacement);
-    add_orders(rows, displacement);
-    const output::Tolerance allowed =
-      add_expected(rows, "displacement, rms at " + judged_sizes(), displacement, place());
+    add_orders(displacement);
+    const output::Tolerance allowed = add_expected("displacement, rms at " + judged_sizes(), displacement, place());
     // In a layer of the width d about a rim stresses have an error of order one. About a tip they and the reactions
     // that they leave fall too slowly to be extrapolated by a fit.
     constexpr double of_layer = 0.15;
-    (void)add_expected(rows, "stress, rms", series("local", &CutErrors::stress),
-                       of_layer / std::sqrt(study_.sizes.back()), is_hole_);
+    (void)add_expected("stress, rms", series("local", &CutErrors::stress), of_layer / std::sqrt(study_.sizes.back()),
+                       is_hole_);
 
     for (const Scalar &scalar : scalars)
-      add(rows, scalar.name, scalar_error("local", scalar), place_allowance(scalar));
-    add_network(rows);
+      add(scalar.name, scalar_error("local", scalar), place_allowance(scalar));
+    add_network();
 
     for (const auto &[law, kind] : {std::pair(std::string("lattice"), bridge::Law::lattice_gradient),
                                     std::pair(std::string("isotropic"), bridge::Law::isotropic_gradient),
@@ -121,28 +116,26 @@ public:
       {
         const std::string name =
           law == "mooney-rivlin" ? "plane-stress Mooney-Rivlin" : "with the " + law + " gradient energy";
-        const output::Tolerance tolerance = kind == bridge::Law::mooney_rivlin || !is_hole_
-                                              ? output::Tolerance()
-                                              : output::Tolerance{subject_.tolerance(kind, *allowed), allowed.reason};
+        const bool can_judge = kind != bridge::Law::mooney_rivlin && is_hole_;
         if (other->errors)
-          add(rows, name + ": displacement", other->errors->displacement, tolerance);
-        else if (tolerance)
-          rows.add(output::not_computed("prestretch", where_ + name, other->failure));
+          add(name + ": displacement", other->errors->displacement, can_judge ? allowed : output::Tolerance(),
+              subject_.judges(kind));
         else
-          add(rows, name + ": no equilibrium: " + other->failure, {}, {});
+          add_missing(name, other->failure, can_judge && subject_.judges(kind));
       }
-    return rows;
   }
 
   // Reports which laws have an equilibrium, and their errors.
-  output::Results reported() const
+  void report() const
   {
-    output::Results rows;
     for (const CutResult &result : results_)
       if (result.size == study_.sizes.back() && result.law != "local-nominal")
-        add(rows, result.law + (result.errors ? ": displacement" : ": no equilibrium: " + result.failure),
-            result.errors ? std::optional<double>(result.errors->displacement) : std::nullopt, {});
-    return rows;
+      {
+        if (result.errors)
+          add(result.law + ": displacement", result.errors->displacement);
+        else
+          add_missing(result.law, result.failure, false);
+      }
   }
 
 private:
@@ -178,10 +171,8 @@ private:
   // half a spacing. No solver has a part in it.
   double place() const
   {
-    const lattice::TriangularLattice sheet(subject_.spacing, 10. * subject_.spacing, 10. * subject_.spacing,
-                                           subject_.orientation);
-    const double d = subject_.spacing;
-    return (is_hole_ ? bridge::rim_recession(sheet, subject_.material) / d : 0.5) / study_.sizes.back();
+    const double rim = is_hole_ ? bridge::rim_recession(subject_.sheet(), subject_.material) / subject_.spacing : 0.5;
+    return rim / study_.sizes.back();
   }
 
   // Change of the local law if rim or tip move by the uncertainty of their position: half the recession and what it
@@ -192,8 +183,7 @@ private:
     if (!is_hole_)
       return output::limited(moved, 0.02 * place(), scalar.at_notch * place(),
                              "change of the local law if the tip moves by d/2");
-    const lattice::TriangularLattice sheet(subject_.spacing, 10. * subject_.spacing, 10. * subject_.spacing,
-                                           subject_.orientation);
+    const lattice::TriangularLattice sheet = subject_.sheet();
     // Strains along a rim are on average three times those of the sheet, whose Poisson's ratio is 1/3.
     const double hoop = 1. + 3. * support::one_sided(0.5 * F_.trace() - 1.);
     const double gain = bridge::stretched_rim_recession(sheet, subject_.material, hoop) /
@@ -207,40 +197,24 @@ private:
   // Orders, and limits for d/R = 0, with terms of second order. At a rim the lattice differs from the continuum by
   // O(d), which is the least order there; with few radii the scatter hides it. About the tip of a notch, where the
   // local law has no bounded stretch, no order is known beforehand.
-  void add_orders(output::Results &rows, const std::vector<double> &displacement) const
+  void add_orders(const std::vector<double> &displacement) const
   {
     constexpr std::size_t enough = 8;
     const bool is_judged = is_hole_ && study_.sizes.size() >= enough;
     const Fit order = power_law(study_.sizes, displacement, is_judged);
-    output::Result row{"prestretch",
-                       where_ + "order of the displacement's error in " + (is_hole_ ? "d/R" : "d/length") +
-                         (is_judged ? ", with second order" : ""),
-                       "1",
-                       order.parameter(1),
-                       {},
-                       {},
-                       {}};
-    if (is_judged)
-    {
-      row.theory = 1.;
-      row.error = support::one_sided(1. - order.parameter(1));
-      row.tolerance = output::limited(order.uncertainty(1), 0.05, 0.5, "uncertainty of the fit, one case of 20");
-    }
-    rows.add(row);
+    const std::string name = std::string("order of the displacement's error in ") + (is_hole_ ? "d/R" : "d/length");
     if (!is_judged)
-      return;
-    const auto add_limit = [&](const std::string &name, const std::vector<double> &errors)
+      return rows_.add(name, "1", of_lattice(order.parameter(1)));
+    rows_.add(name + ", with second order", "1", of_lattice(order.parameter(1), 1.),
+              support::one_sided(1. - order.parameter(1)),
+              output::limited(order.uncertainty(1), 0.05, 0.5, "uncertainty of the fit, one case of 20"));
+    const auto add_limit = [&](const std::string &quantity, const std::vector<double> &errors)
     {
       const Fit fit = limit_law(study_.sizes, errors);
-      rows.add({"prestretch",
-                where_ + name + ", limit of the error for d/R = 0",
-                "1",
-                fit.parameter(0),
-                {},
-                0.,
+      rows_.add(quantity + ", limit of the error for d/R = 0", "1", of_lattice(fit.parameter(0), 0.),
                 std::abs(fit.parameter(0)),
                 output::limited(fit.uncertainty(0), 1e-4, 2e-3,
-                                "uncertainty of a fit with terms of first and second order, one case of 20")});
+                                "uncertainty of a fit with terms of first and second order, one case of 20"));
     };
     add_limit("displacement, rms", displacement);
     for (const Scalar &scalar : scalars)
@@ -250,11 +224,13 @@ private:
   // The network is the mean of the local law over rotations of the lattice: to first order of the anisotropy it lies
   // midway between the law and the law turned by 30 degrees (theory-comparison.md, eq. (H.17)). Against the lattice it
   // is off by half the distance of these two, which is reported.
-  void add_network(output::Results &rows) const
+  void add_network() const
   {
+    const bool is_judged = subject_.judges(bridge::Law::mooney_rivlin_network);
+    const auto failure = [](const CutResult *result) { return result != nullptr ? result->failure : "not computed"; };
     const CutResult *network = find("network", study_.sizes.back());
     if (network == nullptr || !network->errors || !network->from_middle)
-      return add_missing(rows, "network", network);
+      return add_missing("network", failure(network), is_judged);
     const CutDistance &middle = *network->from_middle;
     // First order: half the distance of the two laws. Second order: its products with the first order in stress, not
     // small where all bonds are alike in length, and reported there.
@@ -265,9 +241,8 @@ private:
       const double first = 0.5 * distance_from_local("local-turned", part);
       const output::Tolerance second = output::limited(4. * first_in_stress * (first + first_in_stress), 2e-4, 8e-3,
                                                        "four times the products of first order in the anisotropy");
-      add(rows, "network: " + name + ", against the mean of the local law at 0 and 30 degrees", middle.*part,
-          is_small ? output::Tolerance(subject_.tolerance(bridge::Law::mooney_rivlin_network, *second), second.reason)
-                   : output::Tolerance());
+      add("network: " + name + ", against the mean of the local law at 0 and 30 degrees", middle.*part,
+          is_small ? second : output::Tolerance(), is_judged);
     };
     add_middle("displacement", &CutDistance::displacement);
     add_middle("stress, rms", &CutDistance::stress);
@@ -276,25 +251,24 @@ private:
       if (scalar.distance != &CutDistance::shape)
         add_middle(scalar.name, scalar.distance);
 
-    add(rows, "network: displacement", network->errors->displacement, {});
-    add(rows, "network: stress, rms", network->errors->stress, {});
+    add("network: displacement", network->errors->displacement);
+    add("network: stress, rms", network->errors->stress);
     for (const Scalar &scalar : scalars)
-      add(rows, std::string("network: ") + scalar.name, scalar_error("network", scalar), {});
+      add(std::string("network: ") + scalar.name, scalar_error("network", scalar));
     const CutResult *gradient = find("network-gradient", study_.sizes.back());
     const std::string name = "network with its gradient energy: displacement";
     if (gradient != nullptr && gradient->errors)
-      add(rows, name, gradient->errors->displacement, {});
+      add(name, gradient->errors->displacement);
     else
-      add_missing(rows, name, gradient);
+      add_missing(name, failure(gradient), is_judged);
   }
 
-  void add_missing(output::Results &rows, const std::string &name, const CutResult *result) const
+  void add_missing(const std::string &name, const std::string &failure, bool is_judged) const
   {
-    const std::string failure = result != nullptr ? result->failure : "not computed";
-    if (subject_.tolerance(bridge::Law::mooney_rivlin_network, 0.))
-      rows.add(output::not_computed("prestretch", where_ + name, failure));
+    if (is_judged)
+      rows_.add_not_computed(name, failure);
     else
-      add(rows, name + ": no equilibrium: " + failure, {}, {});
+      rows_.add(name + ": no equilibrium: " + failure, "1", {});
   }
 
   std::string size_text(double size) const
@@ -304,16 +278,16 @@ private:
     return text.str();
   }
 
-  void add(output::Results &rows, const std::string &quantity, std::optional<double> error,
-           const output::Tolerance &tolerance) const
+  void add(const std::string &quantity, double error, const output::Tolerance &tolerance = {},
+           bool is_judged = true) const
   {
-    rows.add({"prestretch", where_ + quantity, "1", {}, {}, {}, error, tolerance});
+    rows_.add(quantity, "1", {}, error, tolerance, is_judged);
   }
 
   std::string judged_sizes() const
   {
     if (study_.n_judged == 1)
-      return largest_;
+      return size_text(study_.sizes.back());
     std::ostringstream text;
     text << size_text(study_.sizes[study_.sizes.size() - study_.n_judged]) << " to " << study_.sizes.back();
     return text.str();
@@ -321,8 +295,8 @@ private:
 
   // The errors at the largest sizes against the extrapolation of the others, within its scatter and below a ceiling.
   // @return tolerance at the largest size
-  output::Tolerance add_expected(output::Results &rows, const std::string &quantity, const std::vector<double> &errors,
-                                 double ceiling, bool checked = true) const
+  output::Tolerance add_expected(const std::string &quantity, const std::vector<double> &errors, double ceiling,
+                                 bool checked = true) const
   {
     const auto n = static_cast<std::ptrdiff_t>(errors.size() - study_.n_judged);
     // Two parameters: a third, of second order, is not determined by radii of 8 d to 24 d, and extrapolates to nothing.
@@ -345,14 +319,8 @@ private:
                                std::to_string(static_cast<int>(one_of)));
     };
     const double size = geometric_mean({study_.sizes.begin() + n, study_.sizes.end()});
-    rows.add({"prestretch",
-              where_ + quantity,
-              "1",
-              {},
-              {},
-              expected(size),
-              geometric_mean({errors.begin() + n, errors.end()}),
-              checked ? allowed(size, study_.n_judged) : output::Tolerance()});
+    rows_.add(quantity, "1", {{}, {}, expected(size)}, geometric_mean({errors.begin() + n, errors.end()}),
+              checked ? allowed(size, study_.n_judged) : output::Tolerance());
     return allowed(study_.sizes.back(), 1);
   }
 
@@ -387,7 +355,7 @@ private:
   Eigen::Matrix2d F_;
   const std::vector<CutResult> &results_;
   bool is_hole_;
-  std::string where_, largest_;
+  Rows rows_;
 };
 
 } // namespace
@@ -414,8 +382,10 @@ ClaimOutcome cut_claim(const bridge::Subject &subject, const CutStudy &study)
                  e.reaction_vector, e.shape, e.displacement_all, e.displacement_max, e.cauchy_stress, e.stress_scale,
                  r.residual, e.unknowns, e.fem});
     }
-    const Judge judge(subject, study, F, results);
-    outcome.results.add(study.is_reported ? judge.reported() : judge.judged());
+    output::Results rows; // none if one of them throws
+    const Judge judge(subject, study, F, results, rows);
+    study.is_reported ? judge.report() : judge.judge();
+    outcome.results.add(rows);
   };
   for (const Eigen::Matrix2d &F : study.states)
     outcome.results.attempt("prestretch", subject.name + ": " + study.name + ", F = " + in_words(F),

@@ -196,6 +196,27 @@ CutSolution solution(const CutLattice &cut, const CutSheet &sheet, const bridge:
 
 } // namespace
 
+std::string no_equilibrium(const std::function<void()> &compute)
+{
+  try
+  {
+    compute();
+  }
+  catch (const continuum::SolverFailed &error)
+  {
+    return error.what();
+  }
+  catch (const continuum::LinearSolverFailed &error)
+  {
+    return error.what();
+  }
+  catch (const continuum::NonPhysicalState &error)
+  {
+    return error.what();
+  }
+  return {};
+}
+
 CutDistance distance(const CutLattice &lattice, const CutSheet &sheet, const CutSolution &a, const CutSolution &b)
 {
   double u = 0., P = 0., norm = 0., n = 0.;
@@ -226,39 +247,28 @@ std::optional<CutSolution> compare(const CutLattice &cut, const CutSheet &sheet,
   settings.relative_tolerance = 1e-9;
   settings.smallest_load_step = 1. / 16.;
   const Points points(cut, sheet, domain);
-  try
-  {
-    continuum::StaticSolver solver(mesh, law, conditions(sheet), settings);
-    solver.solve();
-    std::vector<continuum::PointState> states = solver.evaluate(points.points());
-    std::vector<Eigen::Vector2d> u = points.displacements(states, sheet.F), coarser = u;
-    for (unsigned int cycle = 0; cycle < mesh_settings.cycles; ++cycle)
+  std::optional<CutSolution> found;
+  failure = no_equilibrium(
+    [&]
     {
-      solver.refine(mesh, mesh_settings.fraction);
-      solver.equilibrate();
-      if (cycle + 2 < mesh_settings.cycles)
-        continue;
-      coarser = std::move(u);
-      states = solver.evaluate(points.points());
-      u = points.displacements(states, sheet.F);
-    }
-    CutSolution found = solution(cut, sheet, domain, solver, states, u);
-    found.errors.fem = rms_difference(u, coarser) / displacement_scale(sheet);
-    return found;
-  }
-  catch (const continuum::SolverFailed &error)
-  {
-    failure = error.what();
-  }
-  catch (const continuum::LinearSolverFailed &error)
-  {
-    failure = error.what();
-  }
-  catch (const continuum::NonPhysicalState &error)
-  {
-    failure = error.what();
-  }
-  return std::nullopt;
+      continuum::StaticSolver solver(mesh, law, conditions(sheet), settings);
+      solver.solve();
+      std::vector<continuum::PointState> states = solver.evaluate(points.points());
+      std::vector<Eigen::Vector2d> u = points.displacements(states, sheet.F), coarser = u;
+      for (unsigned int cycle = 0; cycle < mesh_settings.cycles; ++cycle)
+      {
+        solver.refine(mesh, mesh_settings.fraction);
+        solver.equilibrate();
+        if (cycle + 2 < mesh_settings.cycles)
+          continue;
+        coarser = std::move(u);
+        states = solver.evaluate(points.points());
+        u = points.displacements(states, sheet.F);
+      }
+      found = solution(cut, sheet, domain, solver, states, u);
+      found->errors.fem = rms_difference(u, coarser) / displacement_scale(sheet);
+    });
+  return found;
 }
 
 } // namespace latcon::claims

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -65,6 +66,9 @@ struct CutDistance
 
 /// @param a, b whose errors are against `lattice`
 CutDistance distance(const CutLattice &lattice, const CutSheet &sheet, const CutSolution &a, const CutSolution &b);
+
+/// Calls `compute`. @return why there is no equilibrium, the message of a solver; empty if there is one
+std::string no_equilibrium(const std::function<void()> &compute);
 
 /// Solves the finite element sheet of a law and compares it with a lattice; none without an equilibrium, with the
 /// reason in `failure`. Collective.

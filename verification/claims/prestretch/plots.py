@@ -1,9 +1,11 @@
 """Tables and plots of the claim on pre-stretch: errors around holes and notches."""
+from functools import partial
+
 import numpy as np
 
 from claim_tables import STATE, Plot, fitted_order, groups, sorted_by, states
 from panels import LAW_COLOURS, Grid, entry, logarithmic, note
-from pictures import BLACK, GREY, SKY, save
+from pictures import BLACK, GREY, SKY
 
 PARTS = ("displacement", "stress", "energy", "reaction", "shape")
 OTHER_COLOURS = ("#cc79a7", SKY, BLACK, GREY)
@@ -15,18 +17,9 @@ TABLES = {
 }
 
 
-def draw_hole(tables, path):
-    """Errors of the continua around a hole against d/R."""
-    return draw_cut(tables["hole"], "R/d", "d / R [1]", path)
-
-
-def draw_notch(tables, path):
-    """Errors of the continua around a notch against d over its length."""
-    return draw_cut(tables["notch"], "length/d", "d / length [1]", path)
-
-
-def draw_cut(table, size, label, path):
-    """A row of panels per state, a panel per quantity, a line per law."""
+def draw_cut(tables, name, size, label):
+    """Errors of the continua around a cut: a row of panels per state, a panel per quantity, a line per law."""
+    table = tables[name]
     laws = list(dict.fromkeys(table["law"]))
     others = iter(OTHER_COLOURS)
     colours = {law: next((colour for word, colour in LAW_COLOURS.items() if word in law), None) for law in laws}
@@ -64,16 +57,15 @@ def draw_cut(table, size, label, path):
             logarithmic(axes)
             note(axes, lines)
         metrics += [f"{name}, {law}: order of {', '.join(orders[law])}" for law in laws if orders[law]]
-    save(grid.page.figure, path)
-    return metrics
+    return grid, metrics
 
 
 PLOTS = (
-    Plot("hole", draw_hole,
+    Plot("hole", partial(draw_cut, name="hole", size="R/d", label="d / R [1]"),
          "Around a hole, where the deformation varies, they differ by a power of d over its radius.",
          "Stretched sheets with a round hole of radius R: relative differences between finite elements and lattice "
          "against d/R, a line for each law of the finite elements. The order is the slope of a line."),
-    Plot("notch", draw_notch,
+    Plot("notch", partial(draw_cut, name="notch", size="length/d", label="d / length [1]"),
          "At a notch they differ by a power of d over its length.",
          "Stretched sheets with a notch: relative differences between finite elements and lattice against d over "
          "its length, a line for each law of the finite elements. The order is the slope of a line."),

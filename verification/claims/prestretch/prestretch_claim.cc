@@ -5,7 +5,6 @@
 
 #include <deal.II/base/function.h>
 
-#include "continuum/errors.h"
 #include "continuum/rectangle.h"
 #include "continuum/static_solver.h"
 #include "lattice/relaxation.h"
@@ -13,6 +12,11 @@
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/network_comparison.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
+#include "verification/claims/prestretch/cut_comparison.h"
+#include "verification/claims/prestretch/cut_study.h"
+#include "verification/claims/rows.h"
 #include "verification/claims/stability_row.h"
 
 namespace latcon::claims
@@ -85,16 +89,15 @@ LatticeSide relaxed_lattice(const bridge::Subject &subject, const lattice::Trian
   return side;
 }
 
-struct Row
+struct Compared
 {
-  std::string quantity;
-  std::string unit;
-  std::optional<double> lattice, continuum;
-  std::optional<double> error;
+  std::string quantity, unit;
+  Sides sides;
+  double error;
 };
 
-std::vector<Row> compare(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
-                         const LatticeSide &side, const continuum::Material &law, const PrestretchOptions &options)
+std::vector<Compared> compare(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
+                              const LatticeSide &side, const continuum::Material &law, const PrestretchOptions &options)
 {
   dealii::parallel::distributed::Triangulation<2> mesh(MPI_COMM_WORLD);
   continuum::make_rectangle(mesh, {sheet.length(), sheet.height(), options.cells_x, options.cells_y});
@@ -130,94 +133,60 @@ std::vector<Row> compare(const bridge::Subject &subject, const lattice::Triangul
   const auto reactions = solver.reactions();
   const double right = reactions.at(continuum::edge::right)[0] / sheet.height();
   const double top = reactions.at(continuum::edge::top)[1] / sheet.length();
-  const auto relative = [](double a, double b) { return std::abs(a - b) / std::abs(b); };
-  return {
-    {"mean energy density", "J/m^3", side.energy_density, energy_density,
-     relative(side.energy_density, energy_density)},
-    {"traction on the right edge", "Pa", side.right_traction.x(), right, relative(side.right_traction.x(), right)},
-    {"traction on the top edge", "Pa", side.top_traction.y(), top, relative(side.top_traction.y(), top)},
-    {"displacement, largest difference / length", "1", {}, {}, displacement_error.error() / sheet.length()},
-    {"deformation gradient, largest relative difference", "1", {}, {}, gradient_error.error()},
-    {"first Piola stress, largest difference / largest", "1", {}, {}, stress_error.error() / stress_scale.largest()}};
+  const auto both = [](const std::string &quantity, const std::string &unit, double a, double b) {
+    return Compared{quantity, unit, of_both(a, b), std::abs(a - b) / std::abs(b)};
+  };
+  return {both("mean energy density", "J/m^3", side.energy_density, energy_density),
+          both("traction on the right edge", "Pa", side.right_traction.x(), right),
+          both("traction on the top edge", "Pa", side.top_traction.y(), top),
+          {"displacement, largest difference / length", "1", {}, displacement_error.error() / sheet.length()},
+          {"deformation gradient, largest relative difference", "1", {}, gradient_error.error()},
+          {"first Piola stress, largest difference / largest", "1", {}, stress_error.error() / stress_scale.largest()}};
 }
 
 // The network is the mean over rotations of the lattice (theory-comparison.md, eq. (H.14)), which the simulator
 // evaluates; its fields are as homogeneous as the lattice's. The lattice itself differs by its dependence on direction,
 // which is reported.
-output::Results network_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
-                             const LatticeSide &side, const PrestretchOptions &options)
+void network_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet, const LatticeSide &side,
+                  const PrestretchOptions &options, const Rows &rows)
 {
-  const lattice::TriangularLattice small(subject.spacing, 12. * subject.spacing, 12. * subject.spacing,
-                                         subject.orientation);
-  const bridge::NetworkComparison loaded(subject, small, subject.deformation);
-  const std::vector<Row> found = compare(subject, sheet, side, subject.network, options);
+  const bridge::NetworkComparison loaded(subject, subject.sheet(12.), subject.deformation);
+  const std::vector<Compared> found = compare(subject, sheet, side, subject.network, options);
   // In the order of compare(); those without a mean are fields.
   const std::array<std::optional<double>, 6> means{
     loaded.energy.mean(0), loaded.stress.mean(0), loaded.stress.mean(3), {}, {}, {}};
   constexpr std::size_t stress = 5;
-  const auto judged = [&](double tolerance, const std::string &reason)
-  { return output::Tolerance(subject.tolerance(bridge::Law::mooney_rivlin_network, tolerance), reason); };
-  output::Results results;
+  const bool is_judged = subject.judges(bridge::Law::mooney_rivlin_network);
   for (std::size_t i = 0; i < found.size(); ++i)
   {
-    const auto add = [&](const std::string &quantity, const std::optional<double> &theory,
-                         const std::optional<double> &error, const output::Tolerance &tolerance)
-    {
-      results.add({"prestretch", subject.name + ": " + quantity, found[i].unit, found[i].lattice, found[i].continuum,
-                   theory, error, tolerance});
-    };
+    const auto &[quantity, unit, sides, error] = found[i];
     if (means[i])
-      add(found[i].quantity + ", network against the lattice's mean over rotations", means[i],
-          support::relative_error(found[i].continuum.value(), *means[i]),
-          judged(*solver_tolerance + bridge::NetworkComparison::equal_formulas,
-                 "two formulas of the same sum; " + solver_tolerance.reason));
+      rows.add(quantity + ", network against the lattice's mean over rotations", unit,
+               {sides.lattice, sides.continuum, means[i]}, support::relative_error(sides.continuum.value(), *means[i]),
+               {*solver_tolerance + bridge::NetworkComparison::equal_formulas,
+                "two formulas of the same sum; " + solver_tolerance.reason},
+               is_judged);
     const bool is_field = !means[i] && i != stress;
-    add(found[i].quantity + ", network", {}, found[i].error,
-        is_field ? judged(*solver_tolerance, solver_tolerance.reason) : output::Tolerance());
+    rows.add(quantity + ", network", unit, sides, error, is_field ? solver_tolerance : output::Tolerance(), is_judged);
   }
-  return results;
 }
 
 // Comparison with the law fitted along the loading path, for information: the law is not the lattice's, and need not
 // have an equilibrium.
-output::Results mooney_rivlin_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
-                                   const LatticeSide &side, const PrestretchOptions &options)
+void mooney_rivlin_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
+                        const LatticeSide &side, const PrestretchOptions &options, const Rows &rows)
 {
-  output::Results results;
-  const auto add = [&](const std::string &quantity, const Row &row)
-  {
-    results.add({"prestretch",
-                 subject.name + ": " + quantity + ", plane-stress Mooney-Rivlin",
-                 row.unit,
-                 row.lattice,
-                 row.continuum,
-                 {},
-                 row.error,
-                 {}});
-  };
   if (!subject.mooney_rivlin)
-    return results;
-  const auto no_equilibrium = [&](const std::exception &failure) {
-    add(std::string("no equilibrium: ") + failure.what(), {"", "1", {}, {}, {}});
-  };
-  try
-  {
-    for (const Row &row : compare(subject, sheet, side, continuum::MooneyRivlin(subject.mooney_rivlin->law), options))
-      add(row.quantity, row);
-  }
-  catch (const continuum::SolverFailed &failure)
-  {
-    no_equilibrium(failure);
-  }
-  catch (const continuum::LinearSolverFailed &failure)
-  {
-    no_equilibrium(failure);
-  }
-  catch (const continuum::NonPhysicalState &failure)
-  {
-    no_equilibrium(failure);
-  }
-  return results;
+    return;
+  const std::string failure = no_equilibrium(
+    [&]
+    {
+      for (const auto &[quantity, unit, sides, error] :
+           compare(subject, sheet, side, continuum::MooneyRivlin(subject.mooney_rivlin->law), options))
+        rows.add(quantity + ", plane-stress Mooney-Rivlin", unit, sides, error);
+    });
+  if (!failure.empty())
+    rows.add("no equilibrium: " + failure + ", plane-stress Mooney-Rivlin", "1", {});
 }
 
 } // namespace
@@ -228,36 +197,56 @@ output::Results prestretch_claim(const bridge::Subject &subject, const Prestretc
   results.add(stability_row(subject, "prestretch"));
   if (!subject.is_stable())
     return results; // nothing homogeneous to compare
-  const auto attempt = [&](const std::string &part, const std::function<void()> &compute)
-  { return results.attempt("prestretch", subject.name + ": " + part, compute); };
+  const Rows rows(results, "prestretch", subject.name + ": ");
   std::optional<lattice::TriangularLattice> sheet;
   LatticeSide side;
-  if (!attempt("relaxed lattice",
-               [&]
-               {
-                 sheet.emplace(subject.spacing, options.length * subject.spacing, options.height * subject.spacing,
-                               subject.orientation);
-                 side = relaxed_lattice(subject, *sheet, options.noise);
-               }))
+  if (!rows.attempt("relaxed lattice",
+                    [&]
+                    {
+                      sheet.emplace(subject.spacing, options.length * subject.spacing, options.height * subject.spacing,
+                                    subject.orientation);
+                      side = relaxed_lattice(subject, *sheet, options.noise);
+                    }))
     return results;
 
-  attempt("equilibrium, Cauchy-Born",
-          [&]
-          {
-            for (const Row &row : compare(subject, *sheet, side, subject.cauchy_born, options))
-              results.add({"prestretch",
-                           subject.name + ": " + row.quantity + ", Cauchy-Born",
-                           row.unit,
-                           row.lattice,
-                           row.continuum,
-                           {},
-                           row.error,
-                           solver_tolerance});
-          });
-  attempt("equilibrium, network", [&] { results.add(network_rows(subject, *sheet, side, options)); });
-  attempt("equilibrium, plane-stress Mooney-Rivlin",
-          [&] { results.add(mooney_rivlin_rows(subject, *sheet, side, options)); });
+  rows.attempt("equilibrium, Cauchy-Born",
+               [&]
+               {
+                 for (const auto &[quantity, unit, sides, error] :
+                      compare(subject, *sheet, side, subject.cauchy_born, options))
+                   rows.add(quantity + ", Cauchy-Born", unit, sides, error, solver_tolerance);
+               });
+  rows.attempt("equilibrium, network", [&] { network_rows(subject, *sheet, side, options, rows); });
+  rows.attempt("equilibrium, plane-stress Mooney-Rivlin",
+               [&] { mooney_rivlin_rows(subject, *sheet, side, options, rows); });
   return results;
+}
+
+ClaimOutcome check_prestretch(const ClaimInput &input)
+{
+  const bridge::Subject &subject = input.subject;
+  const bool quick = input.quick;
+  PrestretchOptions options;
+  if (!quick)
+  {
+    options.length = 120.;
+    options.height = 80.;
+    options.cells_x = 24;
+    options.cells_y = 16;
+  }
+  ClaimOutcome outcome{prestretch_claim(subject, options), {}};
+  if (subject.material.coordination() == 6)
+  {
+    outcome.add(cut_claim(subject, nearest_hole_study(quick)));
+    if (!quick)
+      outcome.add(cut_claim(subject, notch_study(false)));
+    return outcome;
+  }
+  outcome.add(cut_claim(subject, hole_study(quick)));
+  outcome.add(cut_claim(subject, notch_study(quick)));
+  if (!quick && subject.is_stable() && (subject.deformation - Eigen::Matrix2d::Identity()).norm() > 0.01)
+    outcome.add(cut_claim(subject, loaded_hole_study(subject.deformation)));
+  return outcome;
 }
 
 } // namespace latcon::claims

@@ -13,13 +13,13 @@
 #include "verification/bridge/homogenisation.h"
 #include "verification/bridge/homogenised_memory.h"
 #include "verification/claims/relaxation/branch_theory.h"
+#include "verification/claims/rows.h"
 #include "verification/claims/wave_sheet.h"
 
 namespace latcon::claims
 {
 namespace
 {
-
 
 // Mean of P over a sheet in equilibrium: sum of reactions times positions, over the area.
 Eigen::Matrix2d mean_stress(const continuum::DynamicSolver &solver, double area)
@@ -47,10 +47,7 @@ void add_held_elements(const bridge::Subject &subject, const lattice::Triangular
   constexpr unsigned int cells = 2;
   continuum::Sheet::Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, {extent, extent, cells, cells, false, false});
-  continuum::BoundaryConditions conditions;
-  const auto held = std::make_shared<bridge::AffineDisplacement>(F);
-  for (const auto id : {continuum::edge::left, continuum::edge::right, continuum::edge::bottom, continuum::edge::top})
-    conditions.displacements.push_back({id, held});
+  const continuum::BoundaryConditions conditions(bridge::affine_boundary(F));
   continuum::DynamicSettings settings{time_step};
   settings.degree = 2;
   const auto viscosity = bridge::homogenised_viscosity(sheet, planted);
@@ -58,7 +55,7 @@ void add_held_elements(const bridge::Subject &subject, const lattice::Triangular
   continuum::DynamicSolver solver(mesh, {subject.cauchy_born}, conditions, {subject.material.density}, settings,
                                   viscosity.get(), {}, memory.get());
   const continuum::Sheet::Vector at_rest = solver.sheet().make_owned();
-  solver.start(interpolated(solver.sheet(), *held), at_rest, 0.,
+  solver.start(interpolated(solver.sheet(), bridge::AffineDisplacement(F)), at_rest, 0.,
                std::vector<continuum::Sheet::Vector>(memory ? memory->n_numbers() : 0, at_rest));
 
   std::array<double, lattice::n_bond_kinds> n_bonds;
@@ -107,35 +104,27 @@ void add_held_elements(const bridge::Subject &subject, const lattice::Triangular
       compare(solver.time());
   }
 
-  const auto add = [&](const std::string &quantity, const std::string &unit, std::optional<double> continuum_value,
-                       std::optional<double> theory_value, double error, double tolerance)
-  {
-    outcome.results.add({"relaxation",
-                         subject.name + ": held sheet after a step of strain, finite elements, " + quantity,
-                         unit,
-                         {},
-                         continuum_value,
-                         theory_value,
-                         error,
-                         {tolerance, "round-off: 4 roundings in each step and 1000 for sums over quadrature points, "
-                                     "times the quantity over that to which the error is relative"}});
-  };
+  const Rows rows(outcome.results, "relaxation",
+                  subject.name + ": held sheet after a step of strain, finite elements, ");
+  const std::string reason = "round-off: 4 roundings in each step and 1000 for sums over quadrature points, times the "
+                             "quantity over that to which the error is relative";
   // An update rounds four times, and adds a change of stretch that is round-off: of the displacement at free nodes,
   // which Newton's method leaves undetermined to its tolerance. Sums over 36 quadrature points with gradients of shape
   // functions round less than 1000 times.
   const double round_off = (4. * static_cast<double>(n_steps) + 1000.) * std::numeric_limits<double>::epsilon();
   const double elastic_over_stored = of_law / stored_at_start,
                relaxed_over_stress = relaxed.norm() / overstress_at_start.norm();
-  add("first Piola stress, worst of all times, error over the overstress at the start", "Pa", stress_error.value(),
-      stress_error.reference(), stress_error.error(), 10. * round_off * (1. + relaxed_over_stress));
-  add("energy stored in a branch, worst of all branches and times, error over that at the start", "J/m",
-      stored_error.value(), stored_error.reference(), stored_error.error(), 2. * round_off);
-  add("energy dissipated by a branch, worst of all branches and times, error over that stored at the start", "J/m",
-      dissipated_error.value(), dissipated_error.reference(), dissipated_error.error(), 2. * round_off);
-  add("branches against the totals of the energy ledger, worst of all times, error over their energy at the start", "1",
-      {}, {}, totals.error(), round_off * (1. + elastic_over_stored));
-  add("energy imbalance, worst of all times, over the energy of the branches at the start", "1", {}, {},
-      imbalance.error(), round_off * (1. + elastic_over_stored));
+  rows.add("first Piola stress, worst of all times, error over the overstress at the start", "Pa",
+           of_continuum(stress_error), stress_error, {10. * round_off * (1. + relaxed_over_stress), reason});
+  rows.add("energy stored in a branch, worst of all branches and times, error over that at the start", "J/m",
+           of_continuum(stored_error), stored_error, {2. * round_off, reason});
+  rows.add("energy dissipated by a branch, worst of all branches and times, error over that stored at the start", "J/m",
+           of_continuum(dissipated_error), dissipated_error, {2. * round_off, reason});
+  const output::Tolerance of_energies{round_off * (1. + elastic_over_stored), reason};
+  rows.add("branches against the totals of the energy ledger, worst of all times, error over their energy at the start",
+           "1", {}, totals, of_energies);
+  rows.add("energy imbalance, worst of all times, over the energy of the branches at the start", "1", {}, imbalance,
+           of_energies);
 }
 
 } // namespace latcon::claims

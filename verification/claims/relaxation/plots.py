@@ -3,7 +3,7 @@ import numpy as np
 
 from claim_tables import Plot, groups, largest_text, sorted_by
 from panels import Grid, entry
-from pictures import BLUE, GREEN, RED, save
+from pictures import BLUE, GREEN, RED
 
 TABLES = {
     "relaxation": ({"shells": None, "integrator": ("velocity Verlet", "Runge-Kutta-Chebyshev")},
@@ -12,7 +12,7 @@ TABLES = {
 }
 
 
-def draw_relaxation(tables, path):
+def draw_relaxation(tables):
     """Overstress and energies of a held sheet against time."""
     rows = [(f"{shells}, {integrator}", sorted_by(part, "t [s]"))
             for (shells, integrator), part in groups(tables["relaxation"], "shells", "integrator")]
@@ -20,9 +20,8 @@ def draw_relaxation(tables, path):
               entry("stored", "-", GREEN), entry("dissipated", "-", RED)]
     grid = Grid([name for name, _ in rows], 2, legend, per_line=5)
     metrics = []
-    for number, (name, part) in enumerate(rows):
-        panels = [grid.axes(number, column, title=title, xlabel="time [ms]") for column, title in enumerate(
-            ("overstress over that at the start [1]", "energy over that at the start [1]"))]
+    titles = ("overstress over that at the start [1]", "energy over that at the start [1]")
+    for name, part, panels in grid.each(rows, titles, "time [ms]"):
         worst = []
         for axes, quantity, first, colour in ((panels[0], "overstress [Pa]", "overstress [Pa]", BLUE),
                                               (panels[1], "stored [J/m]", "stored [J/m]", GREEN),
@@ -35,8 +34,7 @@ def draw_relaxation(tables, path):
         for axes in panels:
             axes.set_ylim(bottom=0)
         metrics.append(f"{name}: off the closed form by {largest_text(np.concatenate(worst))} of the value at the start")
-    save(grid.page.figure, path)
-    return metrics
+    return grid, metrics
 
 
 PLOTS = (

@@ -11,9 +11,12 @@
 #include "support/dense.h"
 #include "support/largest_error.h"
 #include "verification/bridge/homogeneous_response.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/lattice_waves.h"
 #include "verification/claims/relaxation/branch_theory.h"
 #include "verification/claims/relaxation/held_elements.h"
+#include "verification/claims/rows.h"
 
 namespace latcon::claims
 {
@@ -121,20 +124,10 @@ public:
   void add_rows(const bridge::Subject &subject, const std::string &integrator, std::size_t n_steps,
                 ClaimOutcome &outcome) const
   {
-    const auto add = [&](const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
-                         std::optional<double> continuum_value, std::optional<double> theory_value, double error,
-                         double tolerance)
-    {
-      outcome.results.add({"relaxation",
-                           subject.name + ": held sheet after a step of strain, " + integrator + ", " + quantity,
-                           unit,
-                           lattice_value,
-                           continuum_value,
-                           theory_value,
-                           error,
-                           {tolerance, "round-off: 4 roundings in each step and 1000 for sums over bonds, times the "
-                                       "quantity over that to which the error is relative"}});
-    };
+    const Rows rows(outcome.results, "relaxation",
+                    subject.name + ": held sheet after a step of strain, " + integrator + ", ");
+    const std::string reason = "round-off: 4 roundings in each step and 1000 for sums over bonds, times the quantity "
+                               "over that to which the error is relative";
     // Each update rounds twice, multiplies by an exponential that is off by a rounding, and adds a change of stretch
     // that is round-off: 4 roundings at most. Sums over the bonds of the sheet round less than 1000 times.
     const double round_off = (4. * static_cast<double>(n_steps) + 1000.) * epsilon;
@@ -144,18 +137,20 @@ public:
       dissipated.add(-std::expm1(-2. * t_first / branch.relaxation_time));
     const double elastic_over_stored = simulation_.energies().elastic / stored_;
     // Overstress is a difference to the stress of the laws.
-    add("first Piola stress, worst of all times, error over the overstress at the start", "Pa", stress_error_.value(),
-        stress_error_.reference(), {}, stress_error_.error(), round_off * (1. + relaxed_.norm() / overstress_.norm()));
-    add("energy stored in a branch, worst of all branches and times, error over that at the start", "J/m",
-        stored_error_.value(), {}, stored_error_.reference(), stored_error_.error(), 2. * round_off);
-    add("energy dissipated by a branch, worst of all branches and times", "J/m", dissipated_error_.value(), {},
-        dissipated_error_.reference(), dissipated_error_.error(), 2. * round_off / dissipated.smallest());
-    add("branches against the totals of the energy ledger, worst of all times, error over their energy at the start",
-        "1", {}, {}, {}, totals_.error(), round_off * (1. + elastic_over_stored));
-    add(
+    rows.add("first Piola stress, worst of all times, error over the overstress at the start", "Pa",
+             of_both(stress_error_.value(), stress_error_.reference()), stress_error_,
+             {round_off * (1. + relaxed_.norm() / overstress_.norm()), reason});
+    rows.add("energy stored in a branch, worst of all branches and times, error over that at the start", "J/m",
+             of_lattice(stored_error_), stored_error_, {2. * round_off, reason});
+    rows.add("energy dissipated by a branch, worst of all branches and times", "J/m", of_lattice(dissipated_error_),
+             dissipated_error_, {2. * round_off / dissipated.smallest(), reason});
+    rows.add(
+      "branches against the totals of the energy ledger, worst of all times, error over their energy at the start", "1",
+      {}, totals_, {round_off * (1. + elastic_over_stored), reason});
+    rows.add(
       "energy imbalance, worst of all times, against that of the trapezoidal rule, over the energy of the branches at "
       "the start",
-      "1", imbalance_.value(), {}, imbalance_.reference(), imbalance_.error(), round_off * (2. + elastic_over_stored));
+      "1", of_lattice(imbalance_), imbalance_, {round_off * (2. + elastic_over_stored), reason});
     output::Table &table =
       outcome.table("relaxation", {"shells", "integrator", "t [s]", "lattice_overstress [Pa]", "theory_overstress [Pa]",
                                    "lattice_stored [J/m]", "theory_stored [J/m]", "lattice_dissipated [J/m]",
@@ -210,8 +205,8 @@ bool is_damped(const lattice::Material &material)
 ClaimOutcome relaxation_claim(const bridge::Subject &subject, const RelaxationOptions &options)
 {
   ClaimOutcome outcome;
-  const double extent = 12. * subject.spacing;
-  const lattice::TriangularLattice sheet(subject.spacing, extent, extent, subject.orientation);
+  const lattice::TriangularLattice sheet = subject.sheet(12.);
+  const Rows rows(outcome.results, "relaxation", subject.name + ": held sheet after a step of strain, ");
   const Eigen::Matrix2d F = strained(subject, sheet);
   const auto relax = [&](const std::string &integrator, bool is_chebyshev)
   {
@@ -247,23 +242,27 @@ ClaimOutcome relaxation_claim(const bridge::Subject &subject, const RelaxationOp
       return;
     // Over the same time in fewer steps: their updates are exact.
     constexpr std::size_t element_steps = 40;
-    outcome.results.attempt("relaxation", subject.name + ": held sheet after a step of strain, finite elements",
-                            [&]
-                            {
-                              add_held_elements(subject, sheet, material, planted, F,
-                                                static_cast<double>(n_steps) * stepping().step / element_steps,
-                                                element_steps, outcome);
-                            });
+    rows.attempt("finite elements",
+                 [&]
+                 {
+                   add_held_elements(subject, sheet, material, planted, F,
+                                     static_cast<double>(n_steps) * stepping().step / element_steps, element_steps,
+                                     outcome);
+                 });
   };
-  const auto attempt = [&](const std::string &integrator, bool is_chebyshev)
-  {
-    outcome.results.attempt("relaxation", subject.name + ": held sheet after a step of strain, " + integrator,
-                            [&] { relax(integrator, is_chebyshev); });
-  };
-  attempt("velocity Verlet", false);
+  const std::string verlet = "velocity Verlet", chebyshev = "Runge-Kutta-Chebyshev";
+  rows.attempt(verlet, [&] { relax(verlet, false); });
   if (is_damped(subject.material))
-    attempt("Runge-Kutta-Chebyshev", true);
+    rows.attempt(chebyshev, [&] { relax(chebyshev, true); });
   return outcome;
+}
+
+ClaimOutcome check_relaxation(const ClaimInput &input)
+{
+  RelaxationOptions options;
+  if (!input.quick)
+    options.max_steps = 100000;
+  return relaxation_claim(input.subject, options);
 }
 
 } // namespace latcon::claims

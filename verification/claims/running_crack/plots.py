@@ -4,7 +4,7 @@ from matplotlib.colors import TwoSlopeNorm
 
 from claim_tables import Plot, groups
 from panels import Grid, entry
-from pictures import BLACK, save
+from pictures import BLACK
 
 SIDES = {"lattice": "lattice", "local": "local continuum", "gradient": "gradient continuum"}
 
@@ -14,7 +14,7 @@ TABLES = {
 }
 
 
-def draw_running_crack(tables, path):
+def draw_running_crack(tables):
     """Velocity along the crack and opening stress around the tip: lattice, local, gradient."""
     table = tables["running_crack"]
     shells = [name for (name,), _ in groups(table, "shells")]
@@ -53,8 +53,7 @@ def draw_running_crack(tables, path):
             if own.any():
                 deepest.append(f"{title} {np.min(table['v_x [m/s]'][own]):.2f}")
         metrics.append(f"{name}: most negative velocity ahead of the tip [m/s]: {', '.join(deepest)}")
-    save(grid.page.figure, path, few_colours=False)
-    return metrics
+    return grid, metrics
 
 
 def field(X, Y, values):
@@ -72,5 +71,5 @@ PLOTS = (
          "energy.",
          "Fields around the tip of a driven crack in the reference configuration, mean of four samples: lattice, network "
          "continuum, and the same with gradient energy and micro-inertia, with one scale of colours for each row. Blue "
-         "ahead of the tip: material that moves against the crack."),
+         "ahead of the tip: material that moves against the crack.", few_colours=False),
 )

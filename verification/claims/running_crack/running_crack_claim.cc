@@ -4,9 +4,13 @@
 #include <functional>
 #include <sstream>
 
+#include "support/fits.h"
 #include "support/largest_error.h"
 #include "verification/bridge/equivalent_sheet.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/continuum_waves.h"
+#include "verification/claims/rows.h"
 #include "verification/claims/stability_row.h"
 #include "verification/claims/state_name.h"
 
@@ -80,28 +84,12 @@ private:
   double from_, to_, pitch_;
 };
 
-// Shift of the tip of the first field ahead of its nominal position [d] at which the second field is closest to it, by
-// golden section search to a thousandth.
+// Shift of the tip of the first field ahead of its nominal position [d] at which the second field is closest to it, to
+// a thousandth.
 double effective_tip(const TipField &first, const TipField &second, const Region &region, double d)
 {
-  const Quantity &velocity = quantities().front();
-  const auto at = [&](double shift) { return region.distance(first, second, velocity, shift * d); };
-  constexpr double ratio = 0.6180339887498949;
-  double low = -1.5, high = 1.5;
-  double a = high - ratio * (high - low), b = low + ratio * (high - low), f_a = at(a), f_b = at(b);
-  while (high - low > 1e-3)
-  {
-    if (!std::isfinite(f_a) || !std::isfinite(f_b))
-      return std::nan("");
-    const bool left = f_a < f_b;
-    (left ? high : low) = left ? b : a;
-    (left ? b : a) = left ? a : b;
-    (left ? f_b : f_a) = left ? f_a : f_b;
-    double &point = left ? a : b;
-    point = left ? high - ratio * (high - low) : low + ratio * (high - low);
-    (left ? f_a : f_b) = at(point);
-  }
-  return 0.5 * (low + high);
+  const auto distance = [&](double shift) { return region.distance(first, second, quantities().front(), shift * d); };
+  return support::golden_section(distance, -1.5, 1.5, 1e-3);
 }
 
 // Cells of about `size` spacings, in strides: a power of two, as the path of the tip is divided.
@@ -118,7 +106,8 @@ class CrackComparison
 {
 public:
   CrackComparison(const bridge::Subject &subject, const CrackSides &sides, const RunningCrackOptions &options)
-    : subject_(subject), sides_(sides), options_(options), far_(sides.drive, far_from, options.far),
+    : rows(outcome.results, "running-crack", subject.name + ", " + state_name(subject.deformation) + ": "),
+      subject_(subject), sides_(sides), options_(options), far_(sides.drive, far_from, options.far),
       near_(sides.drive, near_from, near_to), reach_((options.far + 3.) * subject.spacing),
       lattice_(drive_lattice_crack(sides.drive, lattice::without_memory(subject.material), subject.deformation, reach_,
                                    frame("lattice"))) // the continuum has no memories
@@ -142,21 +131,9 @@ public:
   }
 
   ClaimOutcome outcome;
+  const Rows rows;
 
 private:
-  void add(const std::string &quantity, const std::string &unit, std::optional<double> lattice,
-           std::optional<double> continuum, std::optional<double> error, const output::Tolerance &tolerance)
-  {
-    outcome.results.add({"running-crack",
-                         subject_.name + ", " + state_name(subject_.deformation) + ": " + quantity,
-                         unit,
-                         lattice,
-                         continuum,
-                         {},
-                         error,
-                         tolerance});
-  }
-
   // Error of the law at the strains of the far field, relative to the stress that drives the motion.
   double anisotropy(const TipField &field) const
   {
@@ -170,7 +147,7 @@ private:
   {
     // The local continuum is judged. At the flanks, and with its gradient energy, it lacks what missing bonds take from
     // a lattice (docs/running-crack.md).
-    const bool is_judged = name == "local";
+    const bool is_local = name == "local", is_judged = subject_.judges(bridge::Law::mooney_rivlin_network);
     const double d = subject_.spacing, leaves_out = anisotropy(fine);
     std::ostringstream annulus;
     annulus << far_from << " d <= r <= " << options_.far << " d";
@@ -183,10 +160,8 @@ private:
         output::limited(discretisation + tip + leaves_out, 0.01, largest_far_tolerance,
                         "change of the mesh, which bounds an error of first order; change by a tip that is d/2 ahead; "
                         "anisotropy of the bonds at the strains of the far field");
-      add(quantity.name + ", " + annulus.str() + ", " + name + " continuum against lattice", "1", {}, {}, error,
-          is_judged && !quantity.on_flank
-            ? output::Tolerance(subject_.tolerance(bridge::Law::mooney_rivlin_network, *allowed), allowed.reason)
-            : output::Tolerance());
+      rows.add(quantity.name + ", " + annulus.str() + ", " + name + " continuum against lattice", "1", {}, error,
+               is_local && !quantity.on_flank ? allowed : output::Tolerance(), is_judged);
       outcome.table("running_crack_far", {"shells", "law", "quantity", "error", "discretisation", "tip", "anisotropy"})
         .add({subject_.name, name, quantity.name, error, discretisation, tip, leaves_out});
     }
@@ -195,10 +170,8 @@ private:
     const output::Tolerance of_tip =
       output::limited(tip_resolution + std::abs(tip - tip_of_coarse), tip_resolution, 0.75,
                       "half a spacing, to which a lattice has a tip; change of the mesh");
-    add("effective tip of the lattice ahead of the cut, in d, from the far velocity of the " + name + " continuum", "1",
-        tip, 0., std::abs(tip),
-        is_judged ? output::Tolerance(subject_.tolerance(bridge::Law::mooney_rivlin_network, *of_tip), of_tip.reason)
-                  : output::Tolerance());
+    rows.add("effective tip of the lattice ahead of the cut, in d, from the far velocity of the " + name + " continuum",
+             "1", of_both(tip, 0.), std::abs(tip), is_local ? of_tip : output::Tolerance(), is_judged);
   }
 
   void report(const std::string &name, const TipRun &coarse, const TipRun &fine)
@@ -209,12 +182,14 @@ private:
     for (const Quantity &quantity : quantities())
     {
       const std::string where = quantity.name + ", " + annulus.str() + ", " + name + " continuum: ";
-      add(where + "against lattice", "1", {}, {}, near_.distance(lattice_.field, fine.field, quantity), {});
-      add(where + "mesh against one of twice the size", "1", {}, {}, near_.distance(fine.field, coarse.field, quantity),
-          {});
+      rows.add(where + "against lattice", "1", {}, near_.distance(lattice_.field, fine.field, quantity));
+      rows.add(where + "mesh against one of twice the size", "1", {},
+               near_.distance(fine.field, coarse.field, quantity));
     }
-    const auto pair = [&](const std::string &what, const std::string &unit, double lattice, double continuum) {
-      add(what + ", " + name + " continuum", unit, lattice, continuum, support::relative_error(continuum, lattice), {});
+    const auto pair = [&](const std::string &what, const std::string &unit, double lattice, double continuum)
+    {
+      rows.add(what + ", " + name + " continuum", unit, of_both(lattice, continuum),
+               support::relative_error(continuum, lattice));
     };
     const double limit = 0.01 * sides_.drive.speed * subject_.deformation(0, 0), reach = options_.far * d;
     const BackwardZone of_lattice = backward_zone(lattice_.field, limit, reach);
@@ -230,8 +205,8 @@ private:
       at << " at r = " << radius << " d";
       pair("opening stress straight ahead" + at.str(), "Pa", lattice.ahead, continuum.ahead);
       pair("lobes of the opening stress, largest over straight ahead" + at.str(), "1", lattice.ratio, continuum.ratio);
-      add("lobes of the opening stress, angle of the largest" + at.str() + ", " + name + " continuum", "deg",
-          lattice.angle, continuum.angle, std::abs(lattice.angle - continuum.angle), {});
+      rows.add("lobes of the opening stress, angle of the largest" + at.str() + ", " + name + " continuum", "deg",
+               of_both(lattice.angle, continuum.angle), std::abs(lattice.angle - continuum.angle));
     }
     pair("energy lost by the sheet per length of crack", "J/m^2", lattice_.energy.lost, fine.energy.lost);
     pair("energy dissipated by viscosity per length of crack", "J/m^2", lattice_.energy.dissipated,
@@ -292,8 +267,7 @@ CrackSides crack_sides(const bridge::Subject &subject, const RunningCrackOptions
   drive.n_strides = static_cast<unsigned int>(std::lround(options.advance * d / drive.stride()));
   const Eigen::Vector2d K(1. / d, 0.);
   const WaveContinuum medium{{subject.network}, {subject.material.density}};
-  const auto waves = bridge::plane_waves(continuum_matrices(medium, subject.deformation, K),
-                                         bridge::wave_normal(subject.deformation, K));
+  const auto waves = continuum_waves(medium, subject.deformation, K);
   drive.speed = 0.5 * support::smallest_of({waves[0].frequency, waves[1].frequency}) / K.norm();
 
   const lattice::TriangularLattice sheet(d, drive.length, drive.height, drive.orientation);
@@ -319,15 +293,8 @@ ClaimOutcome running_crack_claim(const bridge::Subject &subject, const RunningCr
   if (!subject.is_stable())
     outcome.results.add(stability_row(subject, "running-crack"));
   else if (F(0, 1) != 0. || F(1, 0) != 0. || !(F(1, 1) > 1. + least_opening))
-    outcome.results.add(
-      {"running-crack",
-       subject.name + ", " + state_name(F) + ": no crack is compared, the sheet is sheared or not stretched across it",
-       "1",
-       {},
-       {},
-       {},
-       {},
-       {}});
+    Rows(outcome.results, "running-crack", subject.name + ", " + state_name(F) + ": ")
+      .add("no crack is compared, the sheet is sheared or not stretched across it", "1", {});
   else
     return running_crack_claim(subject, crack_sides(subject, options), options);
   return outcome;
@@ -337,19 +304,19 @@ ClaimOutcome running_crack_claim(const bridge::Subject &subject, const CrackSide
                                  const RunningCrackOptions &options)
 {
   CrackComparison comparison(subject, sides, options);
-  const std::string prefix = subject.name + ", " + state_name(subject.deformation) + ": ";
-  const auto compare = [&](const std::string &name, const CrackContinuum &medium)
-  {
-    comparison.outcome.results.attempt("running-crack", prefix + name + " continuum",
-                                       [&] { comparison.compare(name, medium); });
-  };
-  compare("local", sides.local);
+  comparison.rows.attempt("local continuum", [&] { comparison.compare("local", sides.local); });
   // Reported: so is a computation that does not succeed.
   output::Results failure;
-  if (!failure.attempt("running-crack", prefix + "gradient continuum",
-                       [&] { comparison.compare("gradient", sides.gradient); }))
-    comparison.outcome.results.add({"running-crack", failure.rows().front().quantity, "1", {}, {}, {}, {}});
+  if (!failure.attempt("running-crack", "gradient continuum", [&] { comparison.compare("gradient", sides.gradient); }))
+    comparison.rows.add(failure.rows().front().quantity, "1", {});
   return comparison.outcome;
+}
+
+ClaimOutcome check_running_crack(const ClaimInput &input)
+{
+  RunningCrackOptions options = input.quick ? RunningCrackOptions() : full_running_crack();
+  options.frames = input.frames;
+  return running_crack_claim(input.subject, options);
 }
 
 } // namespace latcon::claims

@@ -3,7 +3,6 @@ import numpy as np
 
 from claim_tables import Plot, groups, largest_text
 from panels import Grid, colours_of, entry
-from pictures import save
 
 TABLES = {
     "steady_crack": ({}, ("beta", "driving", "breaking elongation", "lattice speed", "exact speed")),
@@ -11,7 +10,7 @@ TABLES = {
 }
 
 
-def draw_steady_crack(tables, path):
+def draw_steady_crack(tables):
     """Measured and exact speeds of steady cracks over the driving."""
     points, curve = tables["steady_crack"], tables.get("steady_crack_curve")
     colours, entries = colours_of(points["beta"], "β =")
@@ -30,8 +29,7 @@ def draw_steady_crack(tables, path):
             axes.plot(x, y, ":", color=colours[beta], linewidth=1.2)
             axes.plot(np.where(exists == "yes", x, np.nan), y, "-", color=colours[beta], linewidth=1.2)
     axes.set(xlim=(1.0, 1.1 * np.nanmax(points["driving"])), ylim=(0, None))
-    save(grid.page.figure, path)
-    return metrics
+    return grid, metrics
 
 
 PLOTS = (

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "support/largest_error.h"
+#include "verification/claims/rows.h"
 #include "verification/claims/steady_crack/crack_run.h"
 #include "verification/claims/steady_crack/static_crack.h"
 #include "verification/claims/steady_crack/steady_crack.h"
@@ -17,11 +18,15 @@ namespace latcon::claims
 namespace
 {
 
-constexpr const char *claim = "steady-crack";
 constexpr std::size_t free_rows = 9;      // on each side: 20 rows with the held ones
 constexpr double fastest = 0.6;           // of the speeds searched, close to that of shear waves
 constexpr double record_duration = 1024.; // all motion behind these cracks has died out after half of it
 constexpr std::size_t record_samples = std::size_t(1) << 15;
+
+Rows crack_rows(ClaimOutcome &outcome)
+{
+  return {outcome.results, "steady-crack", ""};
+}
 
 // A run and the exact solution for the elongation at which its bonds broke: up to a time step after they reached the
 // breaking elongation, on average half a step, so that the lattice is slightly tougher than specified.
@@ -111,42 +116,19 @@ void add_run(ClaimOutcome &outcome, const CrackRunOptions &options, const Theory
   const double released = options.driving * options.driving;
   const double c_S = shear_speed();
 
-  output::Results &results = outcome.results;
-  results.add({claim,
-               "crack speed over c_S" + where,
-               "1",
-               run.speed / c_S,
-               {},
-               comparison.speed / c_S,
-               speed_error,
-               speed_tolerance});
-  results.add({claim,
-               "energy released for a broken bond, over that of the bond" + where,
-               "1",
-               run.released,
-               {},
-               released,
-               std::abs(comparison.errors[1]),
-               limited(tolerance[1])});
-  results.add({claim,
-               "energy dissipated for a broken bond, over that of the bond" + where,
-               "1",
-               run.viscous,
-               {},
-               released - run.broken,
-               std::abs(comparison.errors[2]),
-               limited(tolerance[2])});
+  const Rows rows = crack_rows(outcome);
+  rows.add("crack speed over c_S" + where, "1", of_lattice(run.speed / c_S, comparison.speed / c_S), speed_error,
+           speed_tolerance);
+  rows.add("energy released for a broken bond, over that of the bond" + where, "1", of_lattice(run.released, released),
+           std::abs(comparison.errors[1]), limited(tolerance[1]));
+  rows.add("energy dissipated for a broken bond, over that of the bond" + where, "1",
+           of_lattice(run.viscous, released - run.broken), std::abs(comparison.errors[2]), limited(tolerance[2]));
   const double elsewhere = run.largest_elsewhere / run.breaking_elongation();
-  results.add({claim,
-               "largest elongation off the crack, over the breaking one" + where,
-               "1",
-               elsewhere,
-               {},
-               fields.largest_elsewhere,
-               support::relative_error(elsewhere, fields.largest_elsewhere),
-               {}});
+  rows.add("largest elongation off the crack, over the breaking one" + where, "1",
+           of_lattice(elsewhere, fields.largest_elsewhere),
+           support::relative_error(elsewhere, fields.largest_elsewhere));
   const double off_line = static_cast<double>(run.off_line);
-  results.add({claim, "bonds broken off the crack" + where, "1", off_line, {}, 0., off_line, {0., "none"}});
+  rows.add("bonds broken off the crack" + where, "1", of_lattice(off_line, 0.), off_line, {0., "none"});
 
   outcome
     .table("steady_crack", {"beta", "driving", "breaking elongation", "lattice speed", "exact speed", "error",
@@ -164,14 +146,9 @@ void add_limit(ClaimOutcome &outcome, const CrackRunOptions &options)
   const double elsewhere = steady_fields(options.strip, speed, record_duration, record_samples).largest_elsewhere;
   const auto off_line = static_cast<double>(run_crack(options).off_line);
   const std::string quantity = "bonds broken off the crack (theory: largest elongation there)";
-  outcome.results.add({claim,
-                       quantity + place(options.strip.viscosity, options.driving),
-                       "1",
-                       off_line,
-                       {},
-                       elsewhere,
-                       (off_line > 0.) == (elsewhere > 1.) ? 0. : 1.,
-                       {0., "both or neither"}});
+  crack_rows(outcome).add(quantity + place(options.strip.viscosity, options.driving), "1",
+                          of_lattice(off_line, elsewhere), (off_line > 0.) == (elsewhere > 1.) ? 0. : 1.,
+                          {0., "both or neither"});
 }
 
 // A crack at rest just before it starts, and one that creeps: the slower, the closer, faster than any power of v.
@@ -182,26 +159,16 @@ void add_quasi_static(ClaimOutcome &outcome)
                        window = trapping_window(strip, 24 * strip.layers());
   const double truncation = 2. * std::abs(window.starts - coarse.starts);
   const double product = window.heals * window.starts;
-  outcome.results.add(
-    {claim,
-     "Delta_- Delta_+ / Delta_G^2 of a crack at rest",
-     "1",
-     {},
-     {},
-     product,
-     support::relative_error(product, 1.),
-     output::limited(2. * truncation, 1e-9, 1e-4, "twice that of either end: change by a longer strip")});
+  const Rows rows = crack_rows(outcome);
+  rows.add("Delta_- Delta_+ / Delta_G^2 of a crack at rest", "1", {{}, {}, product},
+           support::relative_error(product, 1.),
+           output::limited(2. * truncation, 1e-9, 1e-4, "twice that of either end: change by a longer strip"));
   constexpr double creeping = 0.01;
   const double slow = steady_driving(strip, creeping), slower = steady_driving(strip, 0.5 * creeping);
-  outcome.results.add({claim,
-                       "driving of a creeping crack over that at which one at rest starts",
-                       "1",
-                       {},
-                       {},
-                       slower / window.starts,
-                       support::relative_error(slower, window.starts),
-                       output::limited(2. * std::abs(slower - slow) + truncation, 1e-9, largest_tolerance,
-                                       "twice the change from twice the speed, and by a longer strip")});
+  rows.add("driving of a creeping crack over that at which one at rest starts", "1", {{}, {}, slower / window.starts},
+           support::relative_error(slower, window.starts),
+           output::limited(2. * std::abs(slower - slow) + truncation, 1e-9, largest_tolerance,
+                           "twice the change from twice the speed, and by a longer strip"));
 }
 
 void add_curves(ClaimOutcome &outcome, const std::vector<SteadyCrackSeries> &series)
@@ -231,7 +198,7 @@ ClaimOutcome steady_cracks(const SteadyCrackSeries &series)
 {
   ClaimOutcome outcome;
   const auto attempt = [&](const std::string &part, double driving, const std::function<void()> &compute)
-  { outcome.results.attempt(claim, part + place(series.viscosity, driving), compute); };
+  { crack_rows(outcome).attempt(part + place(series.viscosity, driving), compute); };
   const CrackStrip strip{free_rows, series.viscosity};
   std::vector<std::pair<CrackRunOptions, TheoryComparison>> cracks;
   for (const double driving : series.drivings)
@@ -257,12 +224,12 @@ ClaimOutcome steady_cracks(const SteadyCrackSeries &series)
 ClaimOutcome steady_crack_claim(bool quick)
 {
   ClaimOutcome outcome;
-  outcome.results.attempt(claim, "cracks at rest and creeping", [&] { add_quasi_static(outcome); });
+  crack_rows(outcome).attempt("cracks at rest and creeping", [&] { add_quasi_static(outcome); });
   const std::vector<SteadyCrackSeries> every = steady_crack_series(quick);
   for (const SteadyCrackSeries &series : every)
     outcome.add(steady_cracks(series));
   if (!quick)
-    outcome.results.attempt(claim, "curves of the exact solution", [&] { add_curves(outcome, every); });
+    crack_rows(outcome).attempt("curves of the exact solution", [&] { add_curves(outcome, every); });
   return outcome;
 }
 

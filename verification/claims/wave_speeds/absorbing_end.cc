@@ -8,6 +8,7 @@
 #include "support/dense.h"
 #include "support/largest_error.h"
 #include "verification/claims/lattice_waves.h"
+#include "verification/claims/rows.h"
 
 namespace latcon::claims
 {
@@ -62,22 +63,15 @@ double reflected_share(const bridge::Subject &subject, const Eigen::Vector2d &po
 output::Results absorbing_end_rows(const bridge::Subject &subject)
 {
   output::Results results;
-  const lattice::TriangularLattice any(subject.spacing, 10. * subject.spacing, 10. * subject.spacing,
-                                       subject.orientation);
+  const Rows rows(results, "wave-speeds",
+                  subject.name + ", loaded: share of a long wave that an absorbing end reflects, ");
   const support::SymmetricModes waves =
-    support::symmetric_modes(lattice::tangent_along_x(any, subject.material, subject.deformation));
+    support::symmetric_modes(lattice::tangent_along_x(subject.sheet(), subject.material, subject.deformation));
   for (int i = 0; i < 2; ++i)
   {
     const double share = reflected_share(subject, waves.vectors.col(i));
-    results.add({"wave-speeds",
-                 subject.name + ", loaded: share of a long wave that an absorbing end reflects, " +
-                   (i == 0 ? "slower" : "faster") + " wave",
-                 "1",
-                 share,
-                 {},
-                 0.,
-                 std::abs(share),
-                 {5e-4, "dispersion of the pulse, (kd)^2 / 24 at k = 1 / 8 d"}});
+    rows.add(i == 0 ? "slower wave" : "faster wave", "1", of_lattice(share, 0.), std::abs(share),
+             {5e-4, "dispersion of the pulse, (kd)^2 / 24 at k = 1 / 8 d"});
   }
   return results;
 }

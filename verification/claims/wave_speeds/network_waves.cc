@@ -26,7 +26,7 @@ void network_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, con
   const double d = subject.spacing, rho = subject.material.density;
   const double largest = gradient_remainder(subject) * matrix_tolerance;
   const lattice::Material material = lattice::without_dashpots(subject.material);
-  const lattice::TriangularLattice sheet(d, 10. * d, 10. * d, subject.orientation); // only its bonds matter
+  const lattice::TriangularLattice sheet = subject.sheet();
   const WaveContinuum local{{subject.network}, {rho}},
     gradient{{subject.network, *subject.network_gradient}, {rho, subject.lengths.lattice}};
   // The matrix of a lattice turned by R is that of the lattice at F R, for the wave R^T K.
@@ -66,34 +66,28 @@ void network_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, con
     from_mean.add((network - mean.mean).norm() / mean.mean.norm());
     share.add((network - lattice_matrices.col(0)).norm() / (mean.bound + largest * mean.mean.norm()));
 
-    const auto closed = bridge::plane_waves(continuum_matrices(gradient, F, K), bridge::wave_normal(F, K));
+    const auto closed = continuum_waves(gradient, F, K);
     const auto elements = discrete_frequencies(gradient, F, K, mesh);
     for (std::size_t w = 0; w < 2; ++w)
       elements_error.add_relative(elements[w], closed[w].frequency);
   }
 
-  const std::string prefix = subject.name + ", " + state_name(F) + ": ";
-  const auto add = [&](const std::string &quantity, std::optional<double> found, std::optional<double> theory,
-                       double error, const output::Tolerance &tolerance) {
-    outcome.results.add({"wave-speeds", prefix + quantity, "1", {}, found, theory, error, tolerance});
-  };
-  const auto judged = [&](double tolerance) { return subject.network_gradient_tolerance(F, tolerance); };
-  add(
+  const Rows rows(outcome.results, "wave-speeds", subject.name + ", " + state_name(F) + ": ");
+  const bool is_judged = subject.judges(bridge::Law::mooney_rivlin_network),
+             gradient_is_judged = subject.judges_network_gradient(F);
+  rows.add(
     "matrix of waves at kd = 0.25, network with gradient energy against the lattice's mean over rotations, worst of 4 "
     "directions",
-    {}, {}, from_mean.error(), {judged(largest), "squares of speeds: twice what wave-speeds allows at kd = 0.25"});
+    "1", {}, from_mean, {largest, "squares of speeds: twice what wave-speeds allows at kd = 0.25"}, gradient_is_judged);
   // Reported: it follows from the row before.
-  add("matrix of waves at kd = 0.25, network with gradient energy, largest error over the bound of anisotropy", {}, {},
-      share.error(), {});
-  add("order in kd of the local network's error against that mean", local_order.order(), 2.,
-      std::abs(local_order.order() - 2.),
-      {subject.tolerance(bridge::Law::mooney_rivlin_network, order_tolerance), reason_of_order});
-  add("order in kd of the network's error with gradient energy against that mean", gradient_order.order(), 4.,
-      std::abs(gradient_order.order() - 4.), {judged(order_tolerance), reason_of_order});
-  add("frequency, finite elements of the network with gradient energy against their continuum, worst of all waves", {},
-      {}, elements_error.error(),
-      {subject.tolerance(bridge::Law::mooney_rivlin_network, discretisation_bound(mesh)),
-       "Ainsworth's dispersion error of the elements"});
+  rows.add("matrix of waves at kd = 0.25, network with gradient energy, largest error over the bound of anisotropy",
+           "1", {}, share);
+  add_order(rows, "order in kd of the local network's error against that mean", local_order, 2., is_judged);
+  add_order(rows, "order in kd of the network's error with gradient energy against that mean", gradient_order, 4.,
+            gradient_is_judged);
+  rows.add("frequency, finite elements of the network with gradient energy against their continuum, worst of all waves",
+           "1", {}, elements_error, {discretisation_bound(mesh), "Ainsworth's dispersion error of the elements"},
+           is_judged);
 }
 
 } // namespace latcon::claims

@@ -3,7 +3,7 @@ import numpy as np
 
 from claim_tables import WAVE, Plot, fitted_order, groups, largest, off, range_text, sorted_by, states
 from panels import LAW_COLOURS, MARKERS, WAVES, Grid, colours_of, entry, headroom, logarithmic, logarithmic_along_x, note
-from pictures import BLUE, save
+from pictures import BLUE
 
 TABLES = {
     "wave_speeds": ({"shells": None, "wave": ("L", "S")},
@@ -15,7 +15,7 @@ TABLES = {
 }
 
 
-def draw_wave_speeds(tables, path):
+def draw_wave_speeds(tables):
     """Phase velocities of both waves relative to that of long waves, and errors of the continua."""
     table = tables["wave_speeds"]
     colours, angles = colours_of(table["angle [deg]"], "waves along", "°")
@@ -25,15 +25,12 @@ def draw_wave_speeds(tables, path):
     rows = states(table)
     grid = Grid([name for name, _ in rows], 3, legend)
     metrics = []
-    for number, (name, state) in enumerate(rows):
-        for column, wave in enumerate(WAVES):
-            axes = grid.axes(number, column, title=f"{WAVES[wave]} waves", xlabel="k d [1]")
-            if column == 0:
-                axes.set_ylabel("phase velocity off\nthat of long waves [%]")
-            for (_, angle), part in groups(state, "wave", "angle [deg]"):
-                if part["wave"][0] == wave:
-                    draw_speeds(axes, sorted_by(part, "k d"), colours[angle])
-        axes = grid.axes(number, 2, title="off the lattice's, relative [1]", xlabel="k d [1]")
+    titles = (*(f"{word} waves" for word in WAVES.values()), "off the lattice's, relative [1]")
+    for name, state, (*panels, axes) in grid.each(rows, titles, "k d [1]"):
+        panels[0].set_ylabel("phase velocity off\nthat of long waves [%]")
+        panels = dict(zip(WAVES, panels))
+        for (wave, angle), part in groups(state, "wave", "angle [deg]"):
+            draw_speeds(panels[wave], sorted_by(part, "k d"), colours[angle])
         orders = draw_speed_errors(axes, state, laws)
         headroom(axes, 2.2)
         note(axes, [(f"{law}{f': order {orders[law]}' if orders[law] else ''}", LAW_COLOURS[law]) for law in laws])
@@ -41,8 +38,7 @@ def draw_wave_speeds(tables, path):
             off("a run of the lattice", state["lattice [m/s]"], state["bloch [m/s]"], "the exact dispersion"),
             off("finite elements", state["fem [m/s]"], state["gradient [m/s]"], "the gradient continuum"),
             *(f"order of the {law} continuum {orders[law]}" for law in laws if orders[law])))))
-    save(grid.page.figure, path)
-    return metrics
+    return grid, metrics
 
 
 def draw_speeds(axes, part, colour):
@@ -73,7 +69,7 @@ def draw_speed_errors(axes, state, laws):
     return orders
 
 
-def draw_attenuation(tables, path):
+def draw_attenuation(tables):
     """Decay rate and frequency of damped waves against k d, and differences from the theory."""
     table = tables["attenuation"]
     sides = {"lattice": "o", "continuum": "+", "fem": "x"}
@@ -83,9 +79,8 @@ def draw_attenuation(tables, path):
             for (wave,), part in groups(state, "wave")]
     grid = Grid([name for name, _ in rows], 3, legend)
     metrics = []
-    for number, (name, state) in enumerate(rows):
-        panels = [grid.axes(number, column, title=title, xlabel="k d [1]") for column, title in enumerate(
-            ("decay rate [1/s]", "frequency [10³ rad/s]", "off the theory, relative [1]"))]
+    titles = ("decay rate [1/s]", "frequency [10³ rad/s]", "off the theory, relative [1]")
+    for name, state, panels in grid.each(rows, titles, "k d [1]"):
         for _, part in groups(state, "angle [deg]"):
             part = sorted_by(part, "k d")
             for axes, what, scale in zip(panels, ("decay [1/s]", "frequency [rad/s]"), (1, 1e-3)):
@@ -105,8 +100,7 @@ def draw_attenuation(tables, path):
         metrics.append(f"{name}: " + "; ".join(
             f"{words[side]}: not computed" if value is None else
             f"{words[side]} off the theory by up to {value:.1e} of |ω + iγ|" for side, value in worst.items()))
-    save(grid.page.figure, path)
-    return metrics
+    return grid, metrics
 
 
 def rate_error(part, side):

@@ -1,18 +1,22 @@
 #include "verification/claims/wave_speeds/wave_speeds_claim.h"
 
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 
 #include "support/largest_error.h"
 #include "verification/bridge/bloch.h"
 #include "verification/claims/absolute_modulus.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/gradient_remainder.h"
 #include "verification/claims/lattice_waves.h"
 #include "verification/claims/order_fit.h"
+#include "verification/claims/stability_row.h"
 #include "verification/claims/state_name.h"
+#include "verification/claims/wave_speeds/absorbing_end.h"
 #include "verification/claims/wave_speeds/network_waves.h"
+#include "verification/claims/wave_states.h"
 
 namespace latcon::claims
 {
@@ -26,8 +30,6 @@ const output::Tolerance lattice_tolerance{
 constexpr double compared_kd = 0.25;
 constexpr double gradient_tolerance = 1e-4;
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
 std::array<double, 2> frequencies(const std::array<bridge::PlaneWave, 2> &waves)
 {
   return {waves[0].frequency, waves[1].frequency};
@@ -39,8 +41,7 @@ class Waves
 public:
   Waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, const WaveSpeedsOptions &options)
     : F_(F), material_(lattice::without_dashpots(subject.material)),
-      of_runs_(options.planted ? options.planted(material_) : material_),
-      sheet_(subject.spacing, 10. * subject.spacing, 10. * subject.spacing, subject.orientation),
+      of_runs_(options.planted ? options.planted(material_) : material_), sheet_(subject.sheet()),
       local_(std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born}, {subject.material.density}})),
       gradient_(std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born, *subject.lattice_gradient},
                                                               {subject.material.density, subject.lengths.lattice}})),
@@ -72,7 +73,7 @@ public:
 private:
   std::array<double, 2> closed(const WaveContinuum &medium, const Eigen::Vector2d &K) const
   {
-    return frequencies(bridge::plane_waves(continuum_matrices(medium, F_, K), bridge::wave_normal(F_, K)));
+    return frequencies(continuum_waves(medium, F_, K));
   }
 
   Eigen::Matrix2d F_;
@@ -86,7 +87,7 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
 {
   const Waves waves(subject, F, options);
   const double d = subject.spacing;
-  const std::string prefix = subject.name + ", " + state_name(F) + ": ";
+  const Rows rows(outcome.results, "wave-speeds", subject.name + ", " + state_name(F) + ": ");
   output::Table &table =
     outcome.table("wave_speeds", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "local [m/s]", "bloch [m/s]",
                                   "lattice [m/s]", "gradient [m/s]", "isotropic [m/s]", "fem [m/s]"});
@@ -105,13 +106,13 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
       const auto local = waves.local(cell.K), bloch = waves.bloch(cell.K), gradient = waves.gradient(cell.K),
                  isotropic = waves.isotropic(cell.K);
       // If a wave does not oscillate, its rows fail.
-      std::array<double, 2> run{nothing, nothing}, elements = run;
+      std::array<double, 2> run{unknown, unknown}, elements = run;
       const auto attempt = [&](const std::string &side, const std::function<void()> &compute)
       {
         std::ostringstream where;
-        where << prefix << side << ", waves at " << std::lround(angle(direction, subject.orientation))
+        where << side << ", waves at " << std::lround(angle(direction, subject.orientation))
               << " degrees, kd = " << options.kd[i];
-        outcome.results.attempt("wave-speeds", where.str(), compute);
+        rows.attempt(where.str(), compute);
       };
       attempt("lattice run", [&] { run = waves.run(cell); });
       attempt("finite elements", [&] { elements = waves.finite_elements(cell.K, options.mesh); });
@@ -153,44 +154,35 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
     }
   }
 
-  const auto add = [&](const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
-                       std::optional<double> continuum_value, std::optional<double> theory, double error,
-                       const output::Tolerance &tolerance)
-  {
-    outcome.results.add(
-      {"wave-speeds", prefix + quantity, unit, lattice_value, continuum_value, theory, error, tolerance});
-  };
   const output::Tolerance remainder{
     std::pow(options.kd[0] * options.kd[1] * 1.02 * 1.02, 2) / 20. + *lattice_tolerance,
     "next term of the series of v(k), its coefficient below 1/20 (at most (4^2/360)/2 + (4/12)^2/8 for bonds up to 2 d "
     "long), and time stepping"};
   for (std::size_t w = 0; w < 2; ++w)
-    add(std::string("long-wave speed, ") + wave_names[w] + ", lattice run against closed form, worst of 4 directions",
-        "m/s", long_waves[w].value(), {}, long_waves[w].reference(), long_waves[w].error(), remainder);
+    rows.add(std::string("long-wave speed, ") + wave_names[w] +
+               ", lattice run against closed form, worst of 4 directions",
+             "m/s", of_lattice(long_waves[w]), long_waves[w], remainder);
   if (F.isIdentity(1e-12))
   {
     // Takes nothing from the side that moves: neither its cross-sections nor its masses.
     const double absolute = std::sqrt(absolute_shear_modulus(subject.material) / subject.material.density);
-    add("long-wave speed, S, lattice run against a, b, s and rho alone, worst of 4 directions", "m/s",
-        long_waves[1].value(), {}, absolute, support::relative_error(long_waves[1].value(), absolute), remainder);
+    rows.add("long-wave speed, S, lattice run against a, b, s and rho alone, worst of 4 directions", "m/s",
+             of_lattice(long_waves[1].value(), absolute), support::relative_error(long_waves[1].value(), absolute),
+             remainder);
   }
-  add("phase velocity, lattice run against Bloch, worst of all waves", "m/s", run_against_bloch.value(), {},
-      run_against_bloch.reference(), run_against_bloch.error(), lattice_tolerance);
-  const auto add_continuum =
-    [&](const std::string &quantity, const support::LargestError &error, const output::Tolerance &tolerance)
-  { add(quantity + ", worst of all waves", "m/s", {}, error.value(), error.reference(), error.error(), tolerance); };
-  add_continuum("phase velocity, finite elements against their continuum", elements_against_closed,
-                {discretisation_bound(options.mesh), "Ainsworth's dispersion error of the elements"});
-  add_continuum("phase velocity at kd = 0.25, gradient continuum against Bloch", gradient_against_bloch,
-                {subject.gradient_tolerance(F, gradient_remainder(subject) * gradient_tolerance),
-                 "the next order, (kl)^4 / 480 for a bond of length l along the wave: 7.3e-5 for l = sqrt(3) d"});
-  const auto add_order = [&](const std::string &name, double order, double claimed, std::optional<double> tolerance)
-  {
-    add("order in kd of the " + name + " continuum's error, all waves together", "1", {}, order, claimed,
-        std::abs(order - claimed), {tolerance, reason_of_order});
-  };
-  add_order("local", local_order.order(), 2., order_tolerance);
-  add_order("gradient", gradient_order.order(), 4., subject.gradient_tolerance(F, order_tolerance));
+  rows.add("phase velocity, lattice run against Bloch, worst of all waves", "m/s", of_lattice(run_against_bloch),
+           run_against_bloch, lattice_tolerance);
+  rows.add("phase velocity, finite elements against their continuum, worst of all waves", "m/s",
+           of_continuum(elements_against_closed), elements_against_closed,
+           {discretisation_bound(options.mesh), "Ainsworth's dispersion error of the elements"});
+  rows.add("phase velocity at kd = 0.25, gradient continuum against Bloch, worst of all waves", "m/s",
+           of_continuum(gradient_against_bloch), gradient_against_bloch,
+           {gradient_remainder(subject) * gradient_tolerance,
+            "the next order, (kl)^4 / 480 for a bond of length l along the wave: 7.3e-5 for l = sqrt(3) d"},
+           subject.judges_gradient(F));
+  add_order(rows, "order in kd of the local continuum's error, all waves together", local_order, 2.);
+  add_order(rows, "order in kd of the gradient continuum's error, all waves together", gradient_order, 4.,
+            subject.judges_gradient(F));
 }
 
 // Waves along x, whose two polarisations the dashpots keep apart by symmetry. Memories, which the continuum lacks, are
@@ -199,8 +191,7 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
                     ClaimOutcome &outcome)
 {
   const lattice::Material material = lattice::without_memory(subject.material);
-  const lattice::TriangularLattice any(subject.spacing, 10. * subject.spacing, 10. * subject.spacing,
-                                       subject.orientation);
+  const lattice::TriangularLattice any = subject.sheet();
   const auto damped = [&](const Eigen::Vector2d &K)
   { return bridge::plane_waves(bridge::bloch_matrices(any, material, F, K), bridge::wave_normal(F, K)); };
 
@@ -222,20 +213,17 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
   const WaveContinuum medium{{subject.cauchy_born, *subject.lattice_gradient},
                              {subject.material.density, subject.lengths.lattice},
                              viscosity.get()};
-  const std::array<bridge::PlaneWave, 2> theory = damped(cell.K),
-                                         kelvin = bridge::plane_waves(continuum_matrices(medium, F, cell.K),
-                                                                      bridge::wave_normal(F, cell.K));
+  const std::array<bridge::PlaneWave, 2> theory = damped(cell.K), kelvin = continuum_waves(medium, F, cell.K);
   std::ostringstream where;
   where << subject.name << ", " << state_name(F) << ", kd = " << std::round(1e4 * k * subject.spacing) / 1e4 << ": ";
+  const Rows rows(outcome.results, "wave-speeds", where.str());
   // If a wave does not oscillate, its rows fail.
-  std::array<Oscillation, 2> run{{{nothing, nothing, 0.}, {nothing, nothing, 0.}}}, elements = run;
-  const auto attempt = [&](const std::string &side, const std::function<void()> &compute)
-  { outcome.results.attempt("wave-speeds", where.str() + side + ", damped waves", compute); };
-  attempt(
-    "lattice run",
+  std::array<Oscillation, 2> run{{{unknown, unknown, 0.}, {unknown, unknown, 0.}}}, elements = run;
+  rows.attempt(
+    "lattice run, damped waves",
     [&] { run = lattice_waves(cell, options.planted ? options.planted(material) : material, F, options.integrator); });
   // Waves this long hardly feel the gradient energy: the error in space is below 1e-6.
-  attempt("finite elements", [&] { elements = finite_element_waves(medium, F, cell.K, {4, 4}); });
+  rows.attempt("finite elements, damped waves", [&] { elements = finite_element_waves(medium, F, cell.K, {4, 4}); });
 
   output::Table &table =
     outcome.table("attenuation",
@@ -246,12 +234,11 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
   for (double fraction = 0.1; fraction < 0.95; fraction *= std::pow(10., 0.1))
   {
     const Eigen::Vector2d K = fraction * cell.K;
-    const auto exact = damped(K),
-               closed = bridge::plane_waves(continuum_matrices(medium, F, K), bridge::wave_normal(F, K));
+    const auto exact = damped(K), closed = continuum_waves(medium, F, K);
     for (std::size_t w = 0; w < 2; ++w)
       table.add({subject.name, F(0, 0), F(1, 1), 0., std::string(wave_names[w]), fraction * k * subject.spacing,
-                 exact[w].frequency, exact[w].decay, nothing, nothing, closed[w].frequency, closed[w].decay, nothing,
-                 nothing});
+                 exact[w].frequency, exact[w].decay, unknown, unknown, closed[w].frequency, closed[w].decay, unknown,
+                 unknown});
   }
   const bool chebyshev = options.integrator == input::Case::Integrator::runge_kutta_chebyshev;
   const output::Tolerance tolerance{1e-4, "average acceleration with 28 steps a period, extrapolated: (w h)^4 / 300, "
@@ -262,33 +249,26 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
     table.add({subject.name, F(0, 0), F(1, 1), 0., std::string(wave_names[w]), k * subject.spacing, theory[w].frequency,
                theory[w].decay, run[w].frequency, run[w].decay, kelvin[w].frequency, kelvin[w].decay,
                elements[w].frequency, elements[w].decay});
-    const std::string name = where.str() + wave_names[w] + ", ";
+    const Rows of_wave = rows.about(wave_names[w] + std::string(", "));
     const auto add = [&](const std::string &quantity, const std::string &unit, double lattice_value,
                          double element_value, double bloch, double closed)
     {
-      outcome.results.add({"wave-speeds",
-                           name + quantity + ", lattice" + (chebyshev ? " (Runge-Kutta-Chebyshev)" : "") +
-                             " and finite elements each against its theory",
-                           unit, lattice_value, element_value, bloch,
-                           support::largest_of({support::relative_error(lattice_value, bloch),
-                                                support::relative_error(element_value, closed)}),
-                           tolerance});
+      of_wave.add(quantity + ", lattice" + (chebyshev ? " (Runge-Kutta-Chebyshev)" : "") +
+                    " and finite elements each against its theory",
+                  unit, of_both(lattice_value, element_value, bloch),
+                  support::largest_of(
+                    {support::relative_error(lattice_value, bloch), support::relative_error(element_value, closed)}),
+                  tolerance);
     };
     add("damped frequency", "rad/s", run[w].frequency, elements[w].frequency, theory[w].frequency, kelvin[w].frequency);
     add("decay", "1/s", run[w].decay, elements[w].decay, theory[w].decay, kelvin[w].decay);
     // Of a wave so long that the tolerance cannot hide an error of 1 %, whatever the dashpots.
     const Eigen::Vector2d K = cell.K * support::smallest_of({1., 0.15 / (k * subject.spacing)});
-    const double closed = bridge::plane_waves(continuum_matrices(medium, F, K), bridge::wave_normal(F, K))[w].decay,
-                 exact = damped(K)[w].decay;
-    outcome.results.add({"wave-speeds",
-                         name + "decay, Kelvin continuum against Bloch" + (K.norm() < k ? ", at kd = 0.15" : ""),
-                         "1/s",
-                         {},
-                         closed,
-                         exact,
-                         support::relative_error(closed, exact),
-                         {std::pow(subject.lengths.lattice * K.norm(), 2),
-                          "dashpots are homogenised to leading order: (l_d^2 - mean l^2 / 12) k^2 is left out"}});
+    const double closed = continuum_waves(medium, F, K)[w].decay, exact = damped(K)[w].decay;
+    of_wave.add(std::string("decay, Kelvin continuum against Bloch") + (K.norm() < k ? ", at kd = 0.15" : ""), "1/s",
+                of_continuum(closed, exact), support::relative_error(closed, exact),
+                {std::pow(subject.lengths.lattice * K.norm(), 2),
+                 "dashpots are homogenised to leading order: (l_d^2 - mean l^2 / 12) k^2 is left out"});
   }
 }
 
@@ -297,12 +277,11 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
 ClaimOutcome wave_speeds_claim(const bridge::Subject &subject, const WaveSpeedsOptions &options)
 {
   ClaimOutcome outcome;
-  const auto attempt = [&](const Eigen::Matrix2d &F, const std::string &part, const std::function<void()> &compute)
-  { outcome.results.attempt("wave-speeds", subject.name + ", " + state_name(F) + ": " + part, compute); };
+  const Rows rows(outcome.results, "wave-speeds", subject.name + ", ");
   for (const Eigen::Matrix2d &F : options.states)
   {
-    attempt(F, "waves", [&] { speeds_at(subject, F, options, outcome); });
-    attempt(F, "waves in the network", [&] { network_waves(subject, F, options.mesh, outcome); });
+    rows.attempt(state_name(F) + ": waves", [&] { speeds_at(subject, F, options, outcome); });
+    rows.attempt(state_name(F) + ": waves in the network", [&] { network_waves(subject, F, options.mesh, outcome); });
   }
   // Not `> 0.`, which would skip a viscosity that is NaN.
   bool has_dashpots = false;
@@ -311,7 +290,30 @@ ClaimOutcome wave_speeds_claim(const bridge::Subject &subject, const WaveSpeedsO
       has_dashpots = has_dashpots || shell->viscosity != 0.;
   if (has_dashpots)
     for (const Eigen::Matrix2d &F : options.damped_states)
-      attempt(F, "damped waves", [&] { attenuation_at(subject, F, options, outcome); });
+      rows.attempt(state_name(F) + ": damped waves", [&] { attenuation_at(subject, F, options, outcome); });
+  return outcome;
+}
+
+ClaimOutcome check_wave_speeds(const ClaimInput &input)
+{
+  const bridge::Subject &subject = input.subject;
+  WaveSpeedsOptions options;
+  options.states = wave_states(subject, input.quick);
+  options.damped_states = wave_states(subject, true);
+  options.integrator = input.entries.integrator;
+  if (input.quick)
+  {
+    options.kd = {0.1, 0.5};
+    options.mesh.cells = 4;
+    options.damped_states = {options.states.back()};
+  }
+  ClaimOutcome outcome = wave_speeds_claim(subject, options);
+  if (!subject.is_stable())
+    outcome.results.add(stability_row(subject, "wave-speeds"));
+  else if (input.entries.left_end == input::Case::End::absorbing ||
+           input.entries.right_end == input::Case::End::absorbing)
+    outcome.results.attempt("wave-speeds", subject.name + ": absorbing end",
+                            [&] { outcome.results.add(absorbing_end_rows(subject)); });
   return outcome;
 }
 

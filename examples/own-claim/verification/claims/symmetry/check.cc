@@ -5,8 +5,8 @@
 
 #include "support/largest_error.h"
 #include "verification/bridge/homogeneous_response.h"
-#include "verification/claims/claim_input.h"
 #include "verification/claims/claim_list.h"
+#include "verification/claims/rows.h"
 
 namespace latcon::claims
 {
@@ -74,8 +74,7 @@ Changes changes_by_rotations_of_undeformed_sheet(const ResponseOf &response)
 ClaimOutcome check_symmetry(const ClaimInput &input)
 {
   const bridge::Subject &subject = input.subject;
-  const lattice::TriangularLattice sheet(subject.spacing, 12. * subject.spacing, 12. * subject.spacing,
-                                         subject.orientation);
+  const lattice::TriangularLattice sheet = subject.sheet(12.);
   const ResponseOf lattice_response = [&](const Eigen::Matrix2d &F)
   { return bridge::homogeneous_response(sheet, subject.material, F); };
   const ResponseOf continuum_response = [&](const Eigen::Matrix2d &F)
@@ -86,24 +85,20 @@ ClaimOutcome check_symmetry(const ClaimInput &input)
   };
 
   ClaimOutcome outcome;
-  const auto row = [&](const std::string &quantity, const std::string &unit, double lattice_value,
-                       double continuum_value, double error)
+  const Rows rows(outcome.results, "symmetry", subject.name + ": ");
+  const auto add = [&](const std::string &rotation, const Changes &a, const Changes &b)
   {
-    outcome.results.add(
-      {"symmetry", subject.name + ": " + quantity, unit, lattice_value, continuum_value, {}, error, round_off});
-  };
-  const auto rows = [&](const std::string &rotation, const Changes &a, const Changes &b)
-  {
-    row("energy density, " + rotation, "J/m^3", a.reference.energy_density, b.reference.energy_density,
-        support::largest_of({a.energy.error(), b.energy.error()}));
-    row("first Piola stress, " + rotation, "Pa", a.reference.first_piola_stress.norm(),
-        b.reference.first_piola_stress.norm(), support::largest_of({a.stress.error(), b.stress.error()}));
+    rows.add("energy density, " + rotation, "J/m^3", of_both(a.reference.energy_density, b.reference.energy_density),
+             support::largest_of({a.energy.error(), b.energy.error()}), round_off);
+    rows.add("first Piola stress, " + rotation, "Pa",
+             of_both(a.reference.first_piola_stress.norm(), b.reference.first_piola_stress.norm()),
+             support::largest_of({a.stress.error(), b.stress.error()}), round_off);
   };
   const unsigned int n_rotations = input.quick ? 5 : 50;
-  rows("rotated deformed sheet", changes_by_rotations_of_deformed_sheet(lattice_response, n_rotations),
-       changes_by_rotations_of_deformed_sheet(continuum_response, n_rotations));
-  rows("rotated undeformed sheet", changes_by_rotations_of_undeformed_sheet(lattice_response),
-       changes_by_rotations_of_undeformed_sheet(continuum_response));
+  add("rotated deformed sheet", changes_by_rotations_of_deformed_sheet(lattice_response, n_rotations),
+      changes_by_rotations_of_deformed_sheet(continuum_response, n_rotations));
+  add("rotated undeformed sheet", changes_by_rotations_of_undeformed_sheet(lattice_response),
+      changes_by_rotations_of_undeformed_sheet(continuum_response));
   return outcome;
 }
 

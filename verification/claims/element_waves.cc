@@ -1,0 +1,334 @@
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <stdexcept>
+
+#include "support/dense.h"
+#include "support/largest_error.h"
+#include "verification/bridge/affine_displacement.h"
+#include "verification/bridge/homogenisation.h"
+#include "verification/claims/continuum_waves.h"
+#include "verification/claims/wave_sheet.h"
+
+namespace latcon::claims
+{
+namespace
+{
+
+using Vector = continuum::Sheet::Vector;
+
+// A sheet with its mass matrix, and both waves on it.
+class WaveSheet
+{
+public:
+  WaveSheet(const WaveContinuum &medium, const continuum::Sheet &sheet, const Eigen::Matrix2d &F,
+            const Eigen::Vector2d &K)
+    : sheet_(sheet), waves_(bridge::plane_waves(elastic(continuum_matrices(medium, F, K)), bridge::wave_normal(F, K)))
+  {
+    sheet.make_matrix(sheet.conformity_constraints(), mass_);
+    sheet.mass(medium.inertia.density, medium.inertia.length, sheet.conformity_constraints(), mass_);
+    base_ = interpolated(sheet, bridge::AffineDisplacement(F));
+    for (std::size_t w = 0; w < 2; ++w)
+      shapes_[w] = interpolated(sheet, CosineWave(K, waves_[w].polarisation));
+  }
+
+  const continuum::Sheet::Matrix &mass() const { return mass_; }
+  const Vector &base() const { return base_; } ///< displacement of the homogeneous state [m]
+  const Vector &shape(std::size_t w) const { return shapes_[w]; }
+  const bridge::PlaneWave &wave(std::size_t w) const { return waves_[w]; }
+
+  /// x.A y over the independent unknowns.
+  double form(const continuum::Sheet::Matrix &A, const Vector &x, const Vector &y) const
+  {
+    Vector product = sheet_.make_owned();
+    A.vmult(product, y);
+    double sum = 0.;
+    for (const auto i : sheet_.owned())
+      if (!sheet_.conformity_constraints().is_constrained(i))
+        sum += x(i) * product(i);
+    return sum;
+  }
+
+  /// Clears the rows of dependent unknowns; the prescribed values are zero.
+  void clear_dependent(Vector &b) const
+  {
+    for (const auto i : sheet_.owned())
+      if (sheet_.conformity_constraints().is_constrained(i))
+        b(i) = 0.;
+    b.compress(dealii::VectorOperation::insert);
+  }
+
+private:
+  static bridge::WaveMatrices elastic(bridge::WaveMatrices matrices)
+  {
+    matrices.damping.setZero();
+    return matrices;
+  }
+
+  const continuum::Sheet &sheet_;
+  std::array<bridge::PlaneWave, 2> waves_;
+  continuum::Sheet::Matrix mass_;
+  Vector base_;
+  std::array<Vector, 2> shapes_;
+};
+
+// A periodic sheet as long as the wave, in motion.
+struct MovingSheet
+{
+  MovingSheet(const WaveContinuum &medium, const Eigen::Vector2d &K, const WaveMesh &resolution,
+              const continuum::DynamicSettings &settings)
+    : rectangle(one_wavelength(K, resolution.cells)), mesh(MPI_COMM_SELF),
+      solver(made(mesh, rectangle), medium.constitution, periodic_edges(), medium.inertia, settings, medium.viscosity,
+             {}, medium.memory)
+  {
+  }
+  static const continuum::Sheet::Mesh &made(continuum::Sheet::Mesh &mesh, const continuum::Rectangle &rectangle)
+  {
+    continuum::make_rectangle(mesh, rectangle);
+    return mesh;
+  }
+
+  continuum::Rectangle rectangle;
+  continuum::Sheet::Mesh mesh;
+  continuum::DynamicSolver solver;
+};
+
+continuum::DynamicSettings settings_for(double time_step, const WaveMesh &resolution, double relative_tolerance)
+{
+  continuum::DynamicSettings settings{time_step};
+  settings.degree = resolution.degree;
+  settings.relative_tolerance = relative_tolerance;
+  return settings;
+}
+
+// Both standing waves, released from rest.
+std::vector<Oscillation> measure(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
+                                 const WaveMesh &resolution, double time_step)
+{
+  MovingSheet moving(medium, K, resolution, settings_for(time_step, resolution, 1e-9));
+  continuum::DynamicSolver &solver = moving.solver;
+  const WaveSheet wave_sheet(medium, solver.sheet(), F, K);
+  // Nonlinear terms change frequencies by the square of this strain; Newton's method sees the wave above the round-off
+  // of the forces in the stretched sheet.
+  const double amplitude = 1e-4 / K.norm();
+  Vector u = wave_sheet.base();
+  u.add(amplitude, wave_sheet.shape(0), amplitude, wave_sheet.shape(1));
+  solver.start(u, solver.sheet().make_owned());
+
+  WaveRecord record(2);
+  Vector difference = solver.sheet().make_owned();
+  const auto observe = [&]
+  {
+    difference = solver.displacement();
+    difference -= wave_sheet.base();
+    for (std::size_t w = 0; w < 2; ++w)
+    {
+      const Vector &shape = wave_sheet.shape(w);
+      record.add(w, wave_sheet.form(wave_sheet.mass(), shape, difference) /
+                      (amplitude * wave_sheet.form(wave_sheet.mass(), shape, shape)));
+    }
+  };
+  observe();
+  constexpr std::size_t max_steps = 2000;
+  for (std::size_t step = 0; !record.have_turned(); ++step)
+  {
+    if (step == max_steps)
+      throw std::runtime_error("a wave of the finite element sheet did not oscillate: it is overdamped, or unstable");
+    solver.step();
+    observe();
+  }
+  return record.fit(time_step);
+}
+
+// Of the wave; nonlinear terms change frequencies by its square.
+constexpr double memory_wave_strain = 1e-4;
+
+// The error is a series in h^2 with terms of (w h)^2 / 12 and w h^2 / (12 tau) (theory-viscoelastic.md, eq. (V.7)).
+double memory_step(const WaveContinuum &medium, const bridge::MemoryWave &wave)
+{
+  const double rate = std::abs(wave.rate);
+  support::Extremes steps;
+  steps.add(0.2 / rate);
+  for (const continuum::MaxwellFibres &fibres : medium.memory->families())
+    for (const continuum::MaxwellBranch &branch : fibres.branches)
+      steps.add(std::sqrt(0.1 * branch.relaxation_time / rate));
+  return steps.smallest();
+}
+
+// Relaxation times of branches by their numbers [s].
+std::vector<double> relaxation_times(const continuum::FibreMemory &memory)
+{
+  std::vector<double> times(memory.n_numbers(), 0.);
+  for (const continuum::MaxwellFibres &fibres : memory.families())
+    for (std::size_t i = 0; i < fibres.branches.size(); ++i)
+      times[fibres.first_number + i] = fibres.branches[i].relaxation_time;
+  return times;
+}
+
+ElementWave measure(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
+                    const bridge::MemoryWave &wave, const WaveMesh &resolution, double time_step, std::size_t stride)
+{
+  MovingSheet moving(medium, K, resolution, settings_for(time_step, resolution, 1e-10));
+  continuum::DynamicSolver &solver = moving.solver;
+  const continuum::Sheet &sheet = solver.sheet();
+  const Vector base = interpolated(sheet, bridge::AffineDisplacement(F));
+  // At the phase of the wave, times `factor`, added to the homogeneous state or to nothing.
+  const auto field = [&](const std::complex<double> &factor, bool is_on_base)
+  {
+    const Eigen::Vector2cd p = memory_wave_strain / K.norm() * factor * wave.polarisation;
+    Vector nodal = interpolated(sheet, CosineWave(K, p.real()));
+    if (is_on_base)
+      nodal += base;
+    return nodal;
+  };
+  // Re(s tau / (1 + s tau) p) is the strain of the spring, so that a branch is relaxed at Re(p / (1 + s tau)).
+  std::vector<Vector> relaxed;
+  for (const double time : relaxation_times(*medium.memory))
+    relaxed.push_back(field(1. / (1. + wave.rate * time), true));
+  solver.start(field(1., true), field(wave.rate, false), 0., relaxed);
+
+  continuum::Sheet::Matrix mass;
+  sheet.make_matrix(sheet.conformity_constraints(), mass);
+  sheet.mass(medium.inertia.density, medium.inertia.length, sheet.conformity_constraints(), mass);
+  const Vector shape = interpolated(sheet, CosineWave(K, wave.polarisation.real().normalized()));
+  Vector weights = sheet.make_owned();
+  mass.vmult(weights, shape);
+  for (const auto i : sheet.owned())
+    if (sheet.conformity_constraints().is_constrained(i))
+      weights(i) = 0.;
+  weights.compress(dealii::VectorOperation::insert);
+
+  Vector ghosted = sheet.make_ghosted();
+  ghosted = base;
+  const double energy = solver.ledger().stored + solver.ledger().kinetic - sheet.energy(ghosted);
+  support::LargestError imbalance;
+  const auto amplitude = [&]
+  {
+    Vector difference = sheet.make_owned();
+    difference = solver.displacement();
+    difference -= base;
+    imbalance.add(std::abs(solver.ledger().imbalance) / energy);
+    return (weights * difference) * K.norm() / (memory_wave_strain * (weights * shape));
+  };
+  const Oscillation found = followed(wave.frequency(), time_step, stride, amplitude, [&] { solver.step(); });
+  return {found, imbalance.error(), 0.};
+}
+
+} // namespace
+
+std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Eigen::Matrix2d &F,
+                                           const Eigen::Vector2d &K, const WaveMesh &resolution)
+{
+  continuum::Sheet::Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, one_wavelength(K, resolution.cells));
+  const continuum::Sheet sheet(mesh, medium.constitution, resolution.degree, periodic_edges());
+  const WaveSheet wave_sheet(medium, sheet, F, K);
+  Vector u = sheet.make_ghosted();
+  u = wave_sheet.base();
+  continuum::Sheet::Matrix stiffness;
+  sheet.make_matrix(sheet.conformity_constraints(), stiffness);
+  sheet.tangent(u, sheet.conformity_constraints(), stiffness);
+  continuum::LinearSolver solver(sheet, {}, {});
+
+  // Both waves at once, by inverse iteration with a shift below them. Translations by whole cells keep waves of other
+  // wave vectors out, so what dies out are the higher branches of this one, of 9 times the eigenvalue and more.
+  std::array<Vector, 2> x{wave_sheet.shape(0), wave_sheet.shape(1)};
+  const auto quotient = [&](std::size_t w)
+  { return wave_sheet.form(stiffness, x[w], x[w]) / wave_sheet.form(wave_sheet.mass(), x[w], x[w]); };
+  continuum::Sheet::Matrix shifted;
+  sheet.make_matrix(sheet.conformity_constraints(), shifted);
+  shifted.add(1., stiffness);
+  shifted.add(0.1 * support::smallest_of({quotient(0), quotient(1)}), wave_sheet.mass());
+  Vector b = sheet.make_owned();
+  for (Vector &y : x)
+  {
+    // Once: nodal values of the wave are off by the size of the interpolation error, of which the eigenvalue has the
+    // square.
+    wave_sheet.mass().vmult(b, y);
+    wave_sheet.clear_dependent(b);
+    solver.solve(shifted, y, b);
+    y *= 1. / y.linfty_norm();
+    sheet.conformity_constraints().distribute(y);
+  }
+  // The errors of the eigenvalues in the space of the two vectors are the squares of those of the vectors.
+  Eigen::Matrix2d K2, M2;
+  for (std::size_t v = 0; v < 2; ++v)
+    for (std::size_t w = 0; w < 2; ++w)
+    {
+      K2(v, w) = wave_sheet.form(stiffness, x[v], x[w]);
+      M2(v, w) = wave_sheet.form(wave_sheet.mass(), x[v], x[w]);
+    }
+  if (!K2.allFinite() || !M2.allFinite())
+    throw std::runtime_error("the finite elements have no waves: their tangent is not finite");
+  const support::SymmetricModes ritz = support::symmetric_modes(K2, M2);
+  const auto frequency = [&](int i) { return std::sqrt(support::one_sided(ritz.values[i])); };
+  const bool first_is_longitudinal =
+    std::abs(ritz.vectors(0, 0)) * std::sqrt(M2(0, 0)) > std::abs(ritz.vectors(1, 0)) * std::sqrt(M2(1, 1));
+  return {frequency(first_is_longitudinal ? 0 : 1), frequency(first_is_longitudinal ? 1 : 0)};
+}
+
+std::array<Oscillation, 2> finite_element_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
+                                                const Eigen::Vector2d &K, const WaveMesh &mesh)
+{
+  // The error of average acceleration is (w h)^2 / 12 before extrapolation, which leaves some (w h)^4 / 300 of it.
+  const double time_step = 2. * M_PI / 28. / bridge::fastest_frequency(continuum_waves(medium, F, K));
+  const auto whole = measure(medium, F, K, mesh, time_step), half = measure(medium, F, K, mesh, 0.5 * time_step);
+  return {extrapolated(whole[0], half[0]), extrapolated(whole[1], half[1])};
+}
+
+ElementWave element_wave(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
+                         const bridge::MemoryWave &wave, const WaveMesh &mesh)
+{
+  const double time_step = memory_step(medium, wave), rate = std::abs(wave.rate);
+  const std::size_t stride = sampling_stride(wave.frequency(), wave.decay(), time_step, 25.);
+  const ElementWave whole = measure(medium, F, K, wave, mesh, time_step, stride),
+                    half = measure(medium, F, K, wave, mesh, 0.5 * time_step, 2 * stride);
+  return {extrapolated(whole.oscillation, half.oscillation), half.imbalance,
+          std::pow(rate * 0.5 * time_step, 2) / 6. * followed_periods * 2. * M_PI * rate / wave.frequency()};
+}
+
+double sinusoidal_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
+                         const Eigen::Vector2d &p, double amplitude, const WaveMesh &resolution)
+{
+  continuum::Sheet::Mesh mesh(MPI_COMM_SELF);
+  const continuum::Rectangle rectangle = one_wavelength(K, resolution.cells);
+  continuum::make_rectangle(mesh, rectangle);
+  const continuum::Sheet sheet(mesh, medium.constitution, resolution.degree, periodic_edges());
+  const Vector base = interpolated(sheet, bridge::AffineDisplacement(F)), shape = interpolated(sheet, CosineWave(K, p));
+  Vector u = sheet.make_ghosted(), sum = sheet.make_owned();
+  const auto energy = [&](double size)
+  {
+    sum = base;
+    sum.add(size, shape);
+    u = sum;
+    return sheet.energy(u);
+  };
+  const double at_rest = energy(0.);
+  const auto second = [&](double size) { return 0.5 * (energy(size) + energy(-size) - 2. * at_rest) / (size * size); };
+  return (4. * second(amplitude) - second(2. * amplitude)) / 3. / (rectangle.length * rectangle.height);
+}
+
+TravellingEnergy travelling_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
+                                   std::size_t wave, double amplitude, const WaveMesh &resolution)
+{
+  const bridge::PlaneWave found = continuum_waves(medium, F, K)[wave];
+  constexpr int steps = 10;
+  MovingSheet moving(medium, K, resolution, settings_for(0.25 * M_PI / found.frequency / steps, resolution, 1e-9));
+  continuum::DynamicSolver &solver = moving.solver;
+  const continuum::Sheet &sheet = solver.sheet();
+  const Vector base = interpolated(sheet, bridge::AffineDisplacement(F));
+  Vector ghosted = sheet.make_ghosted();
+  ghosted = base;
+  const double at_rest = sheet.energy(ghosted);
+  Vector u = base;
+  u += interpolated(sheet, CosineWave(K, amplitude * found.polarisation));
+  // cos(phase - pi/2) = sin(phase), the rate of cos(phase - w t) at t = 0 over w.
+  solver.start(u, interpolated(sheet, CosineWave(K, amplitude * found.frequency * found.polarisation, 0.5 * M_PI)));
+  for (int step = 0; step < steps; ++step)
+    solver.step();
+  const double area = moving.rectangle.length * moving.rectangle.height;
+  const continuum::EnergyLedger &ledger = solver.ledger();
+  return {(ledger.stored - at_rest) / area, ledger.kinetic / area, ledger.micro_kinetic / area};
+}
+
+} // namespace latcon::claims

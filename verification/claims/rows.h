@@ -1,0 +1,91 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "support/largest_error.h"
+#include "verification/output/results.h"
+
+namespace latcon::claims
+{
+
+/// A number that could not be computed; a row that is given it fails.
+inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// What a row compares; what does not apply is empty.
+struct Sides
+{
+  std::optional<double> lattice = {}, continuum = {}, theory = {};
+};
+
+/// Returns a row's sides by their names.
+inline Sides of_both(double lattice, double continuum, std::optional<double> theory = {})
+{
+  return {lattice, continuum, theory};
+}
+inline Sides of_lattice(double value, std::optional<double> theory = {})
+{
+  return {value, {}, theory};
+}
+inline Sides of_continuum(double value, std::optional<double> theory = {})
+{
+  return {{}, value, theory};
+}
+/// Returns the sides of the largest error, whose reference is in theory.
+inline Sides of_lattice(const support::LargestError &error)
+{
+  return {error.value(), {}, error.reference()};
+}
+inline Sides of_continuum(const support::LargestError &error)
+{
+  return {{}, error.value(), error.reference()};
+}
+
+/// Writes the rows of a claim about one subject or state, whose name precedes their quantities.
+class Rows
+{
+public:
+  /// @param claim its name @param where "NN, F = I: "
+  Rows(output::Results &results, std::string claim, std::string where)
+    : results_(results), claim_(std::move(claim)), where_(std::move(where))
+  {
+  }
+
+  /// Returns a writer with more words before quantities.
+  [[nodiscard]] Rows about(const std::string &more) const { return {results_, claim_, where_ + more}; }
+
+  /// Adds a row. @param tolerance with its reason; none: the row is reported @param is_judged false: so it is whatever
+  /// its tolerance
+  void add(const std::string &quantity, const std::string &unit, const Sides &sides, std::optional<double> error = {},
+           output::Tolerance tolerance = {}, bool is_judged = true) const
+  {
+    if (!is_judged)
+      tolerance.reset();
+    results_.add({claim_, where_ + quantity, unit, sides.lattice, sides.continuum, sides.theory, error, tolerance});
+  }
+  void add(const std::string &quantity, const std::string &unit, const Sides &sides,
+           const support::LargestError &largest, const output::Tolerance &tolerance = {}, bool is_judged = true) const
+  {
+    add(quantity, unit, sides, largest.error(), tolerance, is_judged);
+  }
+
+  /// Adds a row that fails.
+  void add_not_computed(const std::string &quantity, const std::string &reason) const
+  {
+    results_.add(output::not_computed(claim_, where_ + quantity, reason));
+  }
+
+  /// See Results::attempt().
+  bool attempt(const std::string &part, const std::function<void()> &compute) const
+  {
+    return results_.attempt(claim_, where_ + part, compute);
+  }
+
+private:
+  output::Results &results_;
+  std::string claim_, where_;
+};
+
+} // namespace latcon::claims
