@@ -14,28 +14,17 @@ template <typename Function>
 double golden_section(const Function &function, double a, double b, double tolerance)
 {
   const double ratio = 0.5 * (std::sqrt(5.) - 1.);
-  double left = b - ratio * (b - a), right = a + ratio * (b - a);
-  double at_left = function(left), at_right = function(right);
+  double x[] = {b - ratio * (b - a), a + ratio * (b - a)}, f[] = {function(x[0]), function(x[1])};
   while (b - a > tolerance)
   {
-    if (!std::isfinite(at_left) || !std::isfinite(at_right))
+    if (!std::isfinite(f[0]) || !std::isfinite(f[1]))
       return std::nan("");
-    if (at_left < at_right)
-    {
-      b = right;
-      right = left;
-      at_right = at_left;
-      left = b - ratio * (b - a);
-      at_left = function(left);
-    }
-    else
-    {
-      a = left;
-      left = right;
-      at_left = at_right;
-      right = a + ratio * (b - a);
-      at_right = function(right);
-    }
+    const std::size_t low = f[0] < f[1] ? 0 : 1, other = 1 - low;
+    (low == 0 ? b : a) = x[other];
+    x[other] = x[low];
+    f[other] = f[low];
+    x[low] = low == 0 ? b - ratio * (b - a) : a + ratio * (b - a);
+    f[low] = function(x[low]);
   }
   return 0.5 * (a + b);
 }

@@ -8,6 +8,18 @@
 namespace latcon::claims
 {
 
+SubjectContinua::SubjectContinua(const bridge::Subject &subject)
+  : local{{subject.cauchy_born}, {subject.material.density}}, gradient{{subject.cauchy_born, *subject.lattice_gradient},
+                                                                       {subject.material.density,
+                                                                        subject.lengths.lattice}},
+    isotropic{{subject.cauchy_born, *subject.isotropic_gradient},
+              {subject.material.density, subject.lengths.isotropic_inertia}},
+    network{{subject.network}, {subject.material.density}}, network_gradient{
+                                                              {subject.network, *subject.network_gradient},
+                                                              {subject.material.density, subject.lengths.lattice}}
+{
+}
+
 bridge::WaveMatrices continuum_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
 {
   const dealii::Tensor<2, 2> state = bridge::to_continuum(F);

@@ -6,6 +6,7 @@
 #include "continuum/viscosity.h"
 #include "verification/bridge/memory_waves.h"
 #include "verification/bridge/plane_waves.h"
+#include "verification/bridge/subject.h"
 #include "verification/claims/oscillation.h"
 
 namespace latcon::claims
@@ -18,6 +19,15 @@ struct WaveContinuum
   continuum::Inertia inertia;
   const continuum::Viscosity *viscosity = nullptr; ///< none: elastic
   const continuum::FibreMemory *memory = nullptr;  ///< none: no Maxwell branches
+};
+
+/// The continua of a subject, without viscosity. The subject must outlive them.
+struct SubjectContinua
+{
+  explicit SubjectContinua(const bridge::Subject &subject);
+
+  WaveContinuum local, gradient, isotropic; ///< Cauchy-Born law: alone, with the lattice's and an isotropic gradient
+  WaveContinuum network, network_gradient;  ///< network: alone, with its gradient
 };
 
 /// Matrices of a plane wave at the homogeneous state F, in closed form from the tangents of the laws

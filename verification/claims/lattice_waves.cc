@@ -10,6 +10,7 @@
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
 #include "verification/bridge/bloch.h"
+#include "verification/claims/spectrum.h"
 
 namespace latcon::claims
 {
@@ -118,11 +119,8 @@ double memory_step(const WaveCell &cell, const lattice::Material &material, cons
   const double limit = 0.9 * lattice::time_step_limits(cell.sheet, material, smallest_stretch(cell.sheet, F)).combined;
   support::Extremes times;
   times.add(1. / std::abs(wave.rate));
-  for (std::size_t number = 0; number < lattice::n_shells; ++number)
-    if (const lattice::Shell *shell = material.in_shell(number))
-      if (const auto *memory = std::get_if<lattice::MaxwellMemory>(&shell->memory))
-        for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
-          times.add(branch.relaxation_time);
+  for (const double time : relaxation_times(material))
+    times.add(time);
   return support::smallest_of({limit, share_per_step * times.smallest()});
 }
 

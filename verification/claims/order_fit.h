@@ -35,19 +35,13 @@ inline double fitted_order(const std::vector<double> &h, const std::vector<doubl
   return support::slope(log_h, log_errors);
 }
 
-/// Order of the errors of many waves, each at the same sizes: order of their root mean square. A wave whose leading
+/// Order of the errors of many waves, each at order_kd: order of their root mean square. A wave whose leading
 /// error vanishes does not hide the order, and a single wave of lower order shows.
 class CommonOrder
 {
 public:
-  explicit CommonOrder(std::vector<double> sizes) : sizes_(std::move(sizes)), squares_(sizes_.size(), 0.) {}
-
-  /// @param errors of one wave, one for each size
-  void add(const std::vector<double> &errors)
-  {
-    for (std::size_t i = 0; i < squares_.size(); ++i)
-      squares_[i] += errors.at(i) * errors.at(i);
-  }
+  /// @param i number of the size in order_kd @param error of one wave
+  void add(std::size_t i, double error) { squares_.at(i) += error * error; }
 
   /// See fitted_order.
   double order() const
@@ -55,11 +49,11 @@ public:
     std::vector<double> errors;
     for (const double square : squares_)
       errors.push_back(std::sqrt(square));
-    return fitted_order(sizes_, errors);
+    return fitted_order(order_kd, errors);
   }
 
 private:
-  std::vector<double> sizes_, squares_;
+  std::vector<double> squares_ = std::vector<double>(order_kd.size(), 0.);
 };
 
 /// Adds the row of an order that a continuum should have.

@@ -58,7 +58,7 @@ void WaveRecord::add(std::size_t wave, double value)
 
 bool WaveRecord::have_turned() const
 {
-  return *std::min_element(turns_.begin(), turns_.end()) >= 2;
+  return std::all_of(turns_.begin(), turns_.end(), [](unsigned int turns) { return turns >= 2; });
 }
 
 std::vector<Oscillation> WaveRecord::fit(double step) const

@@ -11,14 +11,22 @@
 namespace latcon::claims
 {
 
-/// Returns whether the bonds of some shell have Maxwell branches.
-inline bool has_branches(const lattice::Material &material)
+/// Returns the relaxation times of the branches of all shells [s].
+inline std::vector<double> relaxation_times(const lattice::Material &material)
 {
+  std::vector<double> times;
   for (std::size_t number = 0; number < lattice::n_shells; ++number)
     if (const lattice::Shell *shell = material.in_shell(number))
-      if (std::holds_alternative<lattice::MaxwellMemory>(shell->memory))
-        return true;
-  return false;
+      if (const auto *memory = std::get_if<lattice::MaxwellMemory>(&shell->memory))
+        for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
+          times.push_back(branch.relaxation_time);
+  return times;
+}
+
+/// Returns whether the bonds of some shell have Maxwell branches, of which each has one at least.
+inline bool has_branches(const lattice::Material &material)
+{
+  return !relaxation_times(material).empty();
 }
 
 /// Gives all bonds branches with these moduli over the stiffness of a bond at rest [-], > 0, and these relaxation times

@@ -7,7 +7,7 @@
 
 #include "tests/verification/claims/subjects.h"
 #include "verification/bridge/bloch.h"
-#include "verification/claims/stability_row.h"
+#include "verification/claims/states.h"
 
 namespace slowest_wave_test
 {

@@ -17,8 +17,7 @@
 #include "verification/claims/energy/contact_rows.h"
 #include "verification/claims/energy/wave_energy.h"
 #include "verification/claims/rows.h"
-#include "verification/claims/stability_row.h"
-#include "verification/claims/wave_states.h"
+#include "verification/claims/states.h"
 
 namespace latcon::claims
 {

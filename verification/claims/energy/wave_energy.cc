@@ -8,10 +8,9 @@
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
 #include "verification/bridge/bloch.h"
-#include "verification/claims/gradient_remainder.h"
 #include "verification/claims/lattice_waves.h"
 #include "verification/claims/order_fit.h"
-#include "verification/claims/state_name.h"
+#include "verification/claims/states.h"
 
 namespace latcon::claims
 {
@@ -56,17 +55,6 @@ double lattice_stiffness(const WaveCell &cell, const lattice::Material &material
   return half_second_derivative(energy, wave_strain / cell.K.norm()) / area;
 }
 
-struct Media
-{
-  Media(const bridge::Subject &subject)
-    : local{{subject.cauchy_born}, {subject.material.density}}, gradient{
-                                                                  {subject.cauchy_born, *subject.lattice_gradient},
-                                                                  {subject.material.density, subject.lengths.lattice}}
-  {
-  }
-  WaveContinuum local, gradient;
-};
-
 // Mean stiffness energy in closed form, (1/4) p.(rho (1 + l^2 k^2) D) p: mean of cos^2 times half the stiffness.
 double closed_stiffness(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
                         const Eigen::Vector2d &p)
@@ -84,14 +72,14 @@ double bloch_stiffness(const lattice::TriangularLattice &sheet, const lattice::M
 void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const WaveEnergyOptions &options,
                 ClaimOutcome &outcome)
 {
-  const Media media(subject);
+  const SubjectContinua media(subject);
   const lattice::Material material = lattice::without_dashpots(subject.material);
   const double d = subject.spacing, l_d = subject.lengths.lattice;
   output::Table &table = outcome.table("sinusoidal_energy", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d",
                                                              "lattice", "local", "gradient", "filtered", "fem"});
   const lattice::TriangularLattice sheet = subject.sheet();
   support::LargestError lattice_error, element_error, excess_error;
-  CommonOrder local_order(order_kd), gradient_order(order_kd), filtered_order(order_kd);
+  CommonOrder local_order, gradient_order, filtered_order;
   for (const WaveDirection &direction : {WaveDirection{1, 0}, WaveDirection{1, 2}})
   {
     const Eigen::Vector2d N = unit_vector(direction, subject.orientation);
@@ -119,23 +107,19 @@ void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
     }
     for (std::size_t w = 0; w < 2; ++w)
     {
-      std::vector<double> local_errors, gradient_errors, filtered_errors;
-      for (const double kd : order_kd)
+      for (std::size_t i = 0; i < order_kd.size(); ++i)
       {
-        const Eigen::Vector2d K = kd / d * N;
+        const Eigen::Vector2d K = order_kd[i] / d * N;
         const Eigen::Vector2d p = continuum_waves(media.local, F, K)[w].polarisation;
         const double exact = bloch_stiffness(sheet, material, F, K, p),
                      gradient = closed_stiffness(media.gradient, F, K, p);
-        local_errors.push_back(std::abs(closed_stiffness(media.local, F, K, p) / exact - 1.));
-        gradient_errors.push_back(std::abs(gradient / exact - 1.));
-        filtered_errors.push_back(std::abs(gradient / (1. + l_d * l_d * K.squaredNorm()) / exact - 1.));
+        local_order.add(i, std::abs(closed_stiffness(media.local, F, K, p) / exact - 1.));
+        gradient_order.add(i, std::abs(gradient / exact - 1.));
+        filtered_order.add(i, std::abs(gradient / (1. + l_d * l_d * K.squaredNorm()) / exact - 1.));
         // To leading order the excess is l_d^2 k^2, whatever the wave; what follows is of fourth order.
-        if (kd == order_kd[0])
+        if (i == 0)
           excess_error.add_relative(gradient / exact - 1., l_d * l_d * K.squaredNorm());
       }
-      local_order.add(local_errors);
-      gradient_order.add(gradient_errors);
-      filtered_order.add(filtered_errors);
     }
   }
   const Rows rows(outcome.results, "energy", subject.name + ", sinusoidal field about " + state_name(F) + ": ");
@@ -198,7 +182,7 @@ Densities travelling_lattice(const WaveCell &cell, const lattice::Material &mate
 void travelling(const bridge::Subject &subject, const Eigen::Matrix2d &F, double wanted_kd, const WaveMesh &mesh,
                 ClaimOutcome &outcome)
 {
-  const Media media(subject);
+  const SubjectContinua media(subject);
   const lattice::Material material = lattice::without_dashpots(subject.material);
   const double d = subject.spacing, rho = material.density;
   const WaveCell cell = wave_cell(d, subject.orientation, {1, 0}, wanted_kd);

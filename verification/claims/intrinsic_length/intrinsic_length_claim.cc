@@ -9,7 +9,7 @@
 #include "verification/claims/intrinsic_length/edge_layer.h"
 #include "verification/claims/intrinsic_length/gradient_positivity.h"
 #include "verification/claims/rows.h"
-#include "verification/claims/state_name.h"
+#include "verification/claims/states.h"
 
 namespace latcon::claims
 {
@@ -42,11 +42,8 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
   const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
   const lattice::TriangularLattice sheet = subject.sheet();
   const lattice::Material material = lattice::without_dashpots(subject.material);
-  const double d = subject.spacing, rho = subject.material.density;
-  const WaveContinuum gradient{{subject.cauchy_born, *subject.lattice_gradient}, {rho, subject.lengths.lattice}};
-  const WaveContinuum isotropic{{subject.cauchy_born, *subject.isotropic_gradient},
-                                {rho, subject.lengths.isotropic_inertia}};
-  const WaveContinuum network{{subject.network, *subject.network_gradient}, {rho, subject.lengths.lattice}};
+  const double d = subject.spacing;
+  const SubjectContinua media(subject);
   const Rows rows = length_rows(subject, outcome);
 
   // All directions.
@@ -65,9 +62,9 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
     const Eigen::Vector2d N(std::cos(radians), std::sin(radians));
     Alpha nearest{};
     const Alpha closed = lattice_alpha(sheet, material, I, N, &nearest), bloch = bloch_alpha(sheet, material, I, N),
-                continuum = continuum_alpha(gradient, I, N, d);
-    isotropic_alpha = continuum_alpha(isotropic, I, N, d);
-    of_network.push_back(continuum_alpha(network, I, N, d));
+                continuum = continuum_alpha(media.gradient, I, N, d);
+    isotropic_alpha = continuum_alpha(media.isotropic, I, N, d);
+    of_network.push_back(continuum_alpha(media.network_gradient, I, N, d));
     for (std::size_t w = 0; w < 2; ++w)
     {
       bloch_error.add_difference(bloch[w], closed[w]);
@@ -96,7 +93,7 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
     rows.attempt("lattice run, waves" + at,
                  [&] { run = running_alpha(d, subject.orientation, direction, material, I); });
     runs.add({subject.name, degrees, run[0], run[1]});
-    const Alpha closed = lattice_alpha(sheet, material, I, N), continuum = continuum_alpha(gradient, I, N, d);
+    const Alpha closed = lattice_alpha(sheet, material, I, N), continuum = continuum_alpha(media.gradient, I, N, d);
     for (std::size_t w = 0; w < 2; ++w)
       rows.add("alpha of " + std::string(wave_names[w]) + " waves" + at + ", lattice run against closed form", "1",
                of_both(run[w], continuum[w], closed[w]), std::abs(run[w] - closed[w]), run_tolerance(subject));
@@ -130,7 +127,7 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
                  (subject.material.third_nearest ? "longer" : "next-nearest") + " bonds",
                "1", of_lattice(mean[w] - nearest_mean[w]));
   }
-  const WaveContinuum no_inertia{{subject.cauchy_born, *subject.isotropic_gradient}, {rho, 0.}};
+  const WaveContinuum no_inertia{media.isotropic.constitution, {subject.material.density, 0.}};
   const Alpha hardening = continuum_alpha(no_inertia, I, Eigen::Vector2d(1., 0.), d);
   // Not a fault of the code: a positive gradient energy alone cannot soften.
   const double least_hardening = support::largest_of({hardening[0], hardening[1]});

@@ -17,7 +17,7 @@
 #include "verification/claims/prestretch/cut_comparison.h"
 #include "verification/claims/prestretch/cut_study.h"
 #include "verification/claims/rows.h"
-#include "verification/claims/stability_row.h"
+#include "verification/claims/states.h"
 
 namespace latcon::claims
 {

@@ -181,17 +181,6 @@ private:
   std::vector<std::array<double, 7>> points_; // of the table
 };
 
-support::Extremes relaxation_times(const lattice::Material &material) // [s]
-{
-  support::Extremes times;
-  for (std::size_t number = 0; number < lattice::n_shells; ++number)
-    if (const lattice::Shell *shell = material.in_shell(number))
-      if (const auto *memory = std::get_if<lattice::MaxwellMemory>(&shell->memory))
-        for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
-          times.add(branch.relaxation_time);
-  return times;
-}
-
 bool is_damped(const lattice::Material &material)
 {
   for (std::size_t number = 0; number < lattice::n_shells; ++number)
@@ -217,8 +206,8 @@ ClaimOutcome relaxation_claim(const bridge::Subject &subject, const RelaxationOp
       const lattice::TimeStepLimits limits = lattice::time_step_limits(sheet, material, 1.);
       const double stable = is_chebyshev ? lattice::chebyshev_step(sheet, material, 1.) : limits.combined;
       double step = safety * stable;
-      if (has_branches(material))
-        step = support::smallest_of({step, longest_step * relaxation_times(material).smallest()});
+      for (const double time : relaxation_times(material))
+        step = support::smallest_of({step, longest_step * time});
       if (!is_chebyshev)
         return step;
       return lattice::chebyshev_time_stepping(step, limits, 0);
@@ -234,8 +223,11 @@ ClaimOutcome relaxation_claim(const bridge::Subject &subject, const RelaxationOp
     }
     const lattice::Material planted = options.planted ? options.planted(material) : material;
     HeldSheet held(subject, sheet, material, planted, F, stepping());
-    const auto n_steps = static_cast<std::size_t>(std::ceil(support::smallest_of(
-      {static_cast<double>(options.max_steps), 3. * relaxation_times(material).largest() / stepping().step})));
+    support::Extremes times;
+    for (const double time : relaxation_times(material))
+      times.add(time);
+    const auto n_steps = static_cast<std::size_t>(std::ceil(
+      support::smallest_of({static_cast<double>(options.max_steps), 3. * times.largest() / stepping().step})));
     held.run(n_steps);
     held.add_rows(subject, integrator, n_steps, outcome);
     if (is_chebyshev)

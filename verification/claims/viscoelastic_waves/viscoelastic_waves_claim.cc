@@ -14,9 +14,7 @@
 #include "verification/claims/continuum_waves.h"
 #include "verification/claims/lattice_waves.h"
 #include "verification/claims/rows.h"
-#include "verification/claims/stability_row.h"
-#include "verification/claims/state_name.h"
-#include "verification/claims/wave_states.h"
+#include "verification/claims/states.h"
 
 namespace latcon::claims
 {

@@ -5,9 +5,8 @@
 #include "support/largest_error.h"
 #include "verification/bridge/anisotropy.h"
 #include "verification/bridge/bloch.h"
-#include "verification/claims/gradient_remainder.h"
 #include "verification/claims/order_fit.h"
-#include "verification/claims/state_name.h"
+#include "verification/claims/states.h"
 
 namespace latcon::claims
 {
@@ -23,12 +22,11 @@ constexpr double matrix_tolerance = 2e-4;
 void network_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, const WaveMesh &mesh,
                    ClaimOutcome &outcome)
 {
-  const double d = subject.spacing, rho = subject.material.density;
-  const double largest = gradient_remainder(subject) * matrix_tolerance;
+  const double d = subject.spacing, largest = gradient_remainder(subject) * matrix_tolerance;
   const lattice::Material material = lattice::without_dashpots(subject.material);
   const lattice::TriangularLattice sheet = subject.sheet();
-  const WaveContinuum local{{subject.network}, {rho}},
-    gradient{{subject.network, *subject.network_gradient}, {rho, subject.lengths.lattice}};
+  const SubjectContinua media(subject);
+  const WaveContinuum &gradient = media.network_gradient;
   // The matrix of a lattice turned by R is that of the lattice at F R, for the wave R^T K.
   const auto on_lattice = [&](const Eigen::Vector2d &K)
   {
@@ -42,22 +40,19 @@ void network_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, con
   };
 
   support::LargestError from_mean, share, elements_error;
-  CommonOrder local_order(order_kd), gradient_order(order_kd);
+  CommonOrder local_order, gradient_order;
   for (const double degrees : {0., 15., 40., 75.})
   {
     const Eigen::Vector2d N(std::cos(degrees * M_PI / 180.), std::sin(degrees * M_PI / 180.));
-    std::vector<double> local_errors, gradient_errors;
-    for (const double kd : order_kd)
+    for (std::size_t i = 0; i < order_kd.size(); ++i)
     {
-      const Eigen::Vector2d K = kd / d * N;
+      const Eigen::Vector2d K = order_kd[i] / d * N;
       const Eigen::VectorXd mean = bridge::rotation_mean(on_lattice(K)).mean;
       const auto error = [&](const WaveContinuum &medium)
       { return (continuum_matrices(medium, F, K).stiffness.reshaped() - mean).norm() / mean.norm(); };
-      local_errors.push_back(error(local));
-      gradient_errors.push_back(error(gradient));
+      local_order.add(i, error(media.network));
+      gradient_order.add(i, error(gradient));
     }
-    local_order.add(local_errors);
-    gradient_order.add(gradient_errors);
 
     const Eigen::Vector2d K = kd_of_speeds / d * N;
     const Eigen::MatrixXd lattice_matrices = on_lattice(K);

@@ -9,14 +9,11 @@
 #include "verification/claims/absolute_modulus.h"
 #include "verification/claims/claim_input.h"
 #include "verification/claims/claim_list.h"
-#include "verification/claims/gradient_remainder.h"
 #include "verification/claims/lattice_waves.h"
 #include "verification/claims/order_fit.h"
-#include "verification/claims/stability_row.h"
-#include "verification/claims/state_name.h"
+#include "verification/claims/states.h"
 #include "verification/claims/wave_speeds/absorbing_end.h"
 #include "verification/claims/wave_speeds/network_waves.h"
-#include "verification/claims/wave_states.h"
 
 namespace latcon::claims
 {
@@ -41,13 +38,7 @@ class Waves
 public:
   Waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, const WaveSpeedsOptions &options)
     : F_(F), material_(lattice::without_dashpots(subject.material)),
-      of_runs_(options.planted ? options.planted(material_) : material_), sheet_(subject.sheet()),
-      local_(std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born}, {subject.material.density}})),
-      gradient_(std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born, *subject.lattice_gradient},
-                                                              {subject.material.density, subject.lengths.lattice}})),
-      isotropic_(
-        std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born, *subject.isotropic_gradient},
-                                                      {subject.material.density, subject.lengths.isotropic_inertia}}))
+      of_runs_(options.planted ? options.planted(material_) : material_), sheet_(subject.sheet()), media_(subject)
   {
   }
 
@@ -55,9 +46,9 @@ public:
   {
     return frequencies(bridge::bloch_waves(sheet_, material_, F_, K));
   }
-  std::array<double, 2> local(const Eigen::Vector2d &K) const { return closed(*local_, K); }
-  std::array<double, 2> gradient(const Eigen::Vector2d &K) const { return closed(*gradient_, K); }
-  std::array<double, 2> isotropic(const Eigen::Vector2d &K) const { return closed(*isotropic_, K); }
+  std::array<double, 2> local(const Eigen::Vector2d &K) const { return closed(media_.local, K); }
+  std::array<double, 2> gradient(const Eigen::Vector2d &K) const { return closed(media_.gradient, K); }
+  std::array<double, 2> isotropic(const Eigen::Vector2d &K) const { return closed(media_.isotropic, K); }
 
   std::array<double, 2> run(const WaveCell &cell) const
   {
@@ -67,7 +58,7 @@ public:
 
   std::array<double, 2> finite_elements(const Eigen::Vector2d &K, const WaveMesh &mesh) const
   {
-    return discrete_frequencies(*gradient_, F_, K, mesh);
+    return discrete_frequencies(media_.gradient, F_, K, mesh);
   }
 
 private:
@@ -79,7 +70,7 @@ private:
   Eigen::Matrix2d F_;
   lattice::Material material_, of_runs_;
   lattice::TriangularLattice sheet_; // only its bonds matter
-  std::unique_ptr<WaveContinuum> local_, gradient_, isotropic_;
+  SubjectContinua media_;
 };
 
 void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const WaveSpeedsOptions &options,
@@ -92,7 +83,7 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
     outcome.table("wave_speeds", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "local [m/s]", "bloch [m/s]",
                                   "lattice [m/s]", "gradient [m/s]", "isotropic [m/s]", "fem [m/s]"});
   support::LargestError run_against_bloch, elements_against_closed, gradient_against_bloch;
-  CommonOrder local_order(order_kd), gradient_order(order_kd);
+  CommonOrder local_order, gradient_order;
   std::array<support::LargestError, 2> long_waves;
   for (const WaveDirection &direction : wave_directions(subject.orientation))
   {
@@ -135,15 +126,13 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
     for (std::size_t w = 0; w < 2; ++w)
     {
       gradient_against_bloch.add_relative(speed(waves.gradient(K), w), speed(waves.bloch(K), w));
-      std::vector<double> local_errors, gradient_errors;
-      for (const double kd : order_kd)
+      for (std::size_t i = 0; i < order_kd.size(); ++i)
       {
-        const double exact = waves.bloch(kd / d * N)[w];
-        local_errors.push_back(std::abs(waves.local(kd / d * N)[w] / exact - 1.));
-        gradient_errors.push_back(std::abs(waves.gradient(kd / d * N)[w] / exact - 1.));
+        const Eigen::Vector2d of = order_kd[i] / d * N;
+        const double exact = waves.bloch(of)[w];
+        local_order.add(i, std::abs(waves.local(of)[w] / exact - 1.));
+        gradient_order.add(i, std::abs(waves.gradient(of)[w] / exact - 1.));
       }
-      local_order.add(local_errors);
-      gradient_order.add(gradient_errors);
       // v = c (1 - alpha (kd)^2 / 2 + ...): two waves give c.
       const double a = std::pow(longest_kd[0], 2), b = std::pow(longest_kd[1], 2);
       const double extrapolated = (b * longest[w][0] - a * longest[w][1]) / (b - a);
