@@ -4,7 +4,7 @@
 
 #include <omp.h>
 
-#include "lattice/shell_kernels.h"
+#include "lattice/stencil_kernels.h"
 
 namespace latcon::lattice
 {
@@ -12,9 +12,6 @@ namespace
 {
 
 constexpr std::ptrdiff_t reach = 2; // of bonds, in rows
-
-// The first shell that is not among n_row_kinds.
-constexpr std::size_t first_further_shell = kernels::n_row_kinds / n_kinds_per_shell;
 
 // History of the bonds of one kind that start at a place and the places after it.
 template <class Pointer, class Kind>
@@ -43,8 +40,7 @@ bool has_factors(const State &state)
 } // namespace
 
 Forces::Forces(const RowPartition &band, const Material &material)
-  : band_(band), lattice_(band.lattice()), laws_(laws_of(material)),
-    n_kinds_(material.third_nearest ? n_bond_kinds : kernels::n_row_kinds),
+  : band_(band), lattice_(band.lattice()), laws_(laws_of(material)), n_kinds_(material.n_kinds()),
     rows_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - lattice_.stride())),
     columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_viscous_power_(lattice_.rows(), 0.),
     row_mechanism_power_(material.n_mechanisms(), Field(lattice_.rows(), 0.)), row_events_(lattice_.rows(), 0),
@@ -56,7 +52,7 @@ Forces::Forces(const RowPartition &band, const Material &material)
     {
       const double rest_length = lattice_.rest_length(number * n_kinds_per_shell);
       const double section = cross_section(*shell, lattice_);
-      constants_.shells[number] = {rest_length, section, section * shell->viscosity / rest_length};
+      constants_[number] = {rest_length, section, section * shell->viscosity / rest_length};
       memories_[number] = shell->memory;
       first_mechanism_[number] = material.first_mechanism(number);
     }
@@ -79,24 +75,25 @@ void Forces::update_memory(State &state)
   for (std::ptrdiff_t i = 0; i < n; ++i)
   {
     const std::size_t row = rows[static_cast<std::size_t>(i)];
-    const kernels::RowOfBonds bonds = row_of_bonds({state, state.vx, state.vy}, row);
+    const kernels::RowOfBonds sites = sites_of_row({state, state.vx, state.vy}, row);
+    const BondsOfKinds kinds = bonds_of_kinds(state, row);
     for (std::size_t kind = 0; kind < n_kinds_; ++kind)
       if (BondHistory::Kind &history = state.history.kinds[kind]; !history.variables.empty())
-        kernels::update_memory(memory_steps_[shell_of(kind)], constants_.shell(kind), of_kind(bonds, state, row, kind),
-                               kind, remembered_from<double *>(history, lattice_.index(row, 0)));
+        kernels::update_memory(memory_steps_[shell_of(kind)], sites, kinds[kind],
+                               remembered_from<double *>(history, lattice_.index(row, 0)));
   }
   set_elapsed(0.);
 }
 
 // Adds the overstress of the bonds that start in row `from` to what their laws give.
-void Forces::add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &bonds,
-                            std::vector<double> &mechanism_power) const
+void Forces::add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &row,
+                            const BondsOfKinds &kinds, std::vector<double> &mechanism_power) const
 {
   mechanism_power.assign(row_mechanism_power_.size(), 0.);
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
     if (const BondHistory::Kind &history = state.history.kinds[kind]; !history.variables.empty())
-      kernels::add_overstress(memory_steps_[shell_of(kind)], constants_.shell(kind), of_kind(bonds, state, from, kind),
-                              kind, remembered_from<const double *>(history, lattice_.index(from, 0)),
+      kernels::add_overstress(memory_steps_[shell_of(kind)], row, kinds[kind],
+                              remembered_from<const double *>(history, lattice_.index(from, 0)),
                               &mechanism_power[first_mechanism_[shell_of(kind)]]);
 }
 
@@ -173,74 +170,71 @@ void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, Scratch 
         std::fill_n(scratch.bonds.at(row, kind, component) - TriangularLattice::row_alignment, lattice_.stride(), 0.);
 }
 
-kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row) const
+Forces::BondsOfKinds Forces::bonds_of_kinds(const State &state, std::size_t row) const
+{
+  const std::size_t near = lattice_.index(row, 0);
+  const auto from = [near](const Field &factors) { return factors.empty() ? nullptr : factors.data() + near; };
+  BondsOfKinds kinds;
+  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
+    kinds[kind] = {constants_[shell_of(kind)],
+                   lattice_.shift(kind, row),
+                   state.bonds.words(kind) + near,
+                   BondStates::bit(kind),
+                   BondStates::toughened_bit(kind),
+                   retraction_stretch_[kind],
+                   from(state.stiffness.kinds[kind]),
+                   from(state.strength.kinds[kind]),
+                   {}};
+  return kinds;
+}
+
+kernels::RowOfBonds Forces::sites_of_row(const Motion &motion, std::size_t row) const
 {
   const std::size_t near = lattice_.index(row, 0);
   const State &state = motion.state;
-  kernels::RowOfBonds bonds{lattice_.columns(),
-                            &state.x[near],
-                            &state.y[near],
-                            &motion.vx[near],
-                            &motion.vy[near],
-                            state.bonds.words() + near,
-                            {},
-                            state.breaking_stretch,
-                            state.toughened_stretch,
-                            {},
-                            nullptr,
-                            0};
-  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-  {
-    bonds.shift[kind] = lattice_.shift(kind, row);
-    const auto from = [near](const Field &factors) { return factors.empty() ? nullptr : factors.data() + near; };
-    bonds.stiffness[kind] = from(state.stiffness.kinds[kind]);
-    bonds.strength[kind] = from(state.strength.kinds[kind]);
-  }
-  return bonds;
-}
-
-// The same row with the words that hold a kind of its bonds.
-kernels::RowOfBonds Forces::of_kind(kernels::RowOfBonds bonds, const State &state, std::size_t row,
-                                    std::size_t kind) const
-{
-  bonds.bonds = state.bonds.words(kind) + lattice_.index(row, 0);
-  return bonds;
+  return {lattice_.columns(), &state.x[near],         &state.y[near],          &motion.vx[near],
+          &motion.vy[near],   state.breaking_stretch, state.toughened_stretch, shortness_limit_};
 }
 
 bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ahead) const
 {
-  const kernels::RowOfBonds bonds = row_of_bonds({state, state.vx, state.vy}, row);
-  const bool one_by_one = has_factors(state);
-  if (!one_by_one && kernels::any_event_ahead(constants_, bonds, ahead))
-    return true;
-  for (std::size_t shell = one_by_one ? 0 : first_further_shell; shell < n_shells; ++shell)
-    if (has_shell(shell) && kernels::any_event_ahead_in_shell(
-                              constants_, of_kind(bonds, state, row, shell * n_kinds_per_shell), shell, ahead))
-      return true;
-  return false;
+  const BondsOfKinds kinds = bonds_of_kinds(state, row);
+  kernels::RowOfBonds bonds = sites_of_row({state, state.vx, state.vy}, row);
+  bonds.kinds = kinds.data();
+  bonds.n_kinds = n_kinds_;
+  return kernels::any_event_ahead(bonds, ahead);
 }
 
 // The bonds of row `from` as those of `row`: the same, or below the edge of a periodic sheet.
 kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row,
                                       Scratch &scratch) const
 {
-  kernels::RowOfBonds all = row_of_bonds(motion, from);
-  all.ahead = scratch.ahead.data();
-  all.n_ahead = scratch.ahead.size();
+  BondsOfKinds kinds = bonds_of_kinds(motion.state, from);
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-    for (std::size_t component = 0; component < 2; ++component)
-      all.force[kind][component] = scratch.bonds.at(row, kind, component);
+    kinds[kind].force = {{scratch.bonds.at(row, kind, 0), scratch.bonds.at(row, kind, 1)}};
+  kernels::RowOfBonds bonds = sites_of_row(motion, from);
+  bonds.ahead = scratch.ahead.data();
+  bonds.n_ahead = scratch.ahead.size();
   kernels::RowSums sums;
-  const bool one_by_one = has_factors(motion.state);
-  if (!one_by_one)
-    sums = kernels::bonds_of_row(laws_, constants_, all);
-  for (std::size_t shell = one_by_one ? 0 : first_further_shell; shell < n_shells; ++shell)
+  std::size_t shell = 0;
+  if (!has_factors(motion.state))
+  {
+    // The first two at once.
+    bonds.kinds = kinds.data();
+    bonds.n_kinds = (has_shell(1) ? 2 : 1) * n_kinds_per_shell;
+    sums = kernels::bonds_of_row(laws_, bonds);
+    shell = 2;
+  }
+  for (; shell < n_shells; ++shell)
     if (has_shell(shell))
-      kernels::bonds_of_shell(laws_[shell], constants_, of_kind(all, motion.state, from, shell * n_kinds_per_shell),
-                              shell, sums);
+    {
+      bonds.kinds = &kinds[shell * n_kinds_per_shell];
+      bonds.n_kinds = n_kinds_per_shell;
+      kernels::bonds_of_stencil(laws_[shell], bonds, sums);
+    }
   if (!row_mechanism_power_.empty())
   {
-    add_overstress(motion.state, from, all, scratch.mechanism_power);
+    add_overstress(motion.state, from, bonds, kinds, scratch.mechanism_power);
     for (const double power : scratch.mechanism_power)
       sums.viscous_power += power;
   }
@@ -248,7 +242,7 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   const std::size_t columns = lattice_.columns();
   if (columns_repeat_)
     for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-      for (double *component : all.force[kind])
+      for (double *component : kinds[kind].force)
       {
         std::copy_n(component, 2, component + columns);
         std::copy_n(component + columns - 2, 2, component - 2);
@@ -258,30 +252,21 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
 
 void Forces::gather_row(std::ptrdiff_t row, Scratch &scratch) const
 {
-  BondRows &bonds = scratch.bonds;
-  const auto index = static_cast<std::size_t>(row);
-  for (std::size_t component = 0; component < 2; ++component)
+  std::array<std::array<const double *, n_bond_kinds>, 2> start{}, end{};
+  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {
-    std::array<const double *, kernels::n_row_kinds> start, end;
-    for (std::size_t kind = 0; kind < kernels::n_row_kinds; ++kind)
-      start[kind] = bonds.at(row, kind, component);
-    end[0] = start[0] - 1;
-    end[5] = bonds.at(row - 2, 5, component);
-    // The others come from a row of the other parity, where the same shift leads from the site's column to their start.
-    for (std::size_t kind = 1; kind < 5; ++kind)
-      end[kind] = bonds.at(row - 1, kind, component) + static_cast<std::ptrdiff_t>(lattice_.stride()) -
-                  lattice_.shift(kind, index + 1);
-    double *const total = (component == 0 ? scratch.fx : scratch.fy).data();
-    kernels::gather_row(lattice_.columns(), start, end, total);
-    if (n_kinds_ == kernels::n_row_kinds)
-      continue;
-    constexpr std::size_t first = kernels::n_row_kinds;
-    const std::array<const double *, n_kinds_per_shell> third_start{
-      {bonds.at(row, first, component), bonds.at(row, first + 1, component), bonds.at(row, first + 2, component)}};
-    const std::array<const double *, n_kinds_per_shell> third_end{
-      {third_start[0] - 2, bonds.at(row - 2, first + 1, component) - 1, bonds.at(row - 2, first + 2, component) + 1}};
-    kernels::add_third_shell(lattice_.columns(), third_start, third_end, total);
+    // Rows and columns from where a bond starts to where it ends.
+    const std::ptrdiff_t rows = TriangularLattice::rows_across(kind);
+    const std::ptrdiff_t columns =
+      lattice_.shift_into(kind, static_cast<std::size_t>(row)) - rows * static_cast<std::ptrdiff_t>(lattice_.stride());
+    for (std::size_t component = 0; component < 2; ++component)
+    {
+      start[component][kind] = scratch.bonds.at(row, kind, component);
+      end[component][kind] = scratch.bonds.at(row - rows, kind, component) - columns;
+    }
   }
+  kernels::gather_row(lattice_.columns(), n_kinds_, start[0], end[0], scratch.fx.data());
+  kernels::gather_row(lattice_.columns(), n_kinds_, start[1], end[1], scratch.fy.data());
 }
 
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
@@ -315,8 +300,8 @@ void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, s
 
 kernels::Overstress Forces::overstress(const State &state, std::size_t place, std::size_t kind, double stretch) const
 {
-  kernels::Overstress over = kernels::overstress(memory_steps_[shell_of(kind)], constants_.shell(kind), stretch, place,
-                                                 remembered_from<const double *>(state.history.kinds[kind], 0));
+  kernels::Overstress over = kernels::overstress(memory_steps_[shell_of(kind)], constants_[shell_of(kind)], stretch,
+                                                 place, remembered_from<const double *>(state.history.kinds[kind], 0));
   const double factor = state.stiffness.of(place, kind);
   over.axial *= factor;
   for (double &power : over.dissipation)
@@ -329,7 +314,7 @@ kernels::BondForce Forces::single_bond(const Motion &motion, std::size_t place, 
   const State &state = motion.state;
   const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
   kernels::BondForce bond = kernels::bond_force(
-    laws_[shell_of(kind)], constants_.shell(kind), state.stiffness.of(place, kind), state.x[far] - state.x[place],
+    laws_[shell_of(kind)], constants_[shell_of(kind)], state.stiffness.of(place, kind), state.x[far] - state.x[place],
     state.y[far] - state.y[place], motion.vx[far] - motion.vx[place], motion.vy[far] - motion.vy[place]);
   if (!state.history.kinds[kind].variables.empty())
   {
@@ -359,12 +344,12 @@ Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field
     note(place, start);
     note(lattice_.canonical_place(place - static_cast<std::size_t>(lattice_.shift_into(kind, row))), end);
   }
-  Eigen::Vector2d force(sum_of_bonds(start[0], end[0]), sum_of_bonds(start[1], end[1]));
-  constexpr std::size_t third = kernels::n_row_kinds;
-  if (n_kinds_ > third)
-    force += Eigen::Vector2d(sum_of_third_shell(&start[0][third], &end[0][third]),
-                             sum_of_third_shell(&start[1][third], &end[1][third]));
-  return force;
+  const auto sum = [&](std::size_t component)
+  {
+    return n_kinds_ == n_bond_kinds ? sum_of_bonds<true>(start[component], end[component])
+                                    : sum_of_bonds<false>(start[component], end[component]);
+  };
+  return {sum(0), sum(1)};
 }
 
 } // namespace latcon::lattice

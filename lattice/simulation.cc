@@ -326,8 +326,7 @@ const State &Simulation::gather(Rows rows)
   for (Field *field : {&state_.x, &state_.y, &state_.vx, &state_.vy})
     band_.gather(*field, rows);
   for (BondStates::Words &words : state_.bonds.storage())
-    if (!words.empty())
-      band_.gather(words, rows);
+    band_.gather(words, rows);
   for (BondHistory::Kind &history : state_.history.kinds)
     if (!history.variables.empty())
     {

@@ -76,7 +76,7 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
     *field = Field(n);
   for (SiteFlags *marks : {&state.held, &state.removed, &state.lost_bonds})
     *marks = SiteFlags(n);
-  state.bonds.clear(n, material.third_nearest.has_value());
+  state.bonds.clear(n, material.n_kinds());
 
   state.periods = F;
   const std::size_t stride = lattice.stride(), below = lattice.index(0, 0) / stride;

@@ -81,8 +81,7 @@ StencilSheet::StencilSheet(const Grid &grid, const Eigen::Vector2d &origin, doub
   for (Field *field : {&x_, &y_, &vx_, &vy_, &fx_, &fy_, &ax_, &ay_, &start_x_, &start_y_, &start_vx_, &start_vy_,
                        &previous_x_, &previous_y_, &previous_vx_, &previous_vy_, &inverse_mass_})
     *field = Field(n_places_);
-  present_.resize((stencil_.size() + 63) / 64 * n_places_);
-  toughened_.resize(present_.size());
+  bonds_.clear(n_places_, stencil_.size());
   lost_.resize(n_places_);
 
   const double tolerance = 1e-9 * grid.spacing;
@@ -118,7 +117,7 @@ StencilSheet::StencilSheet(const Grid &grid, const Eigen::Vector2d &origin, doub
         const bool forward = is_site[place + static_cast<std::size_t>(shift_[k])] != 0;
         whole = whole && forward && is_site[place - static_cast<std::size_t>(shift_[k])] != 0;
         if (forward)
-          present_[k / 64 * n_places_ + place] |= bit(k);
+          bonds_.add(place, k);
       }
       inverse_mass_[place] = whole ? 1. / mass_ : 0.;
       n_free += whole ? 1 : 0;
@@ -174,11 +173,23 @@ void StencilSheet::in_threads(const Work &work) const
   }
 }
 
-kernels::BondsOfHalfBond StencilSheet::bonds_of(const Row &row, std::size_t k) const
+kernels::BondsOfKind StencilSheet::bonds_of(const Row &row, std::size_t k) const
 {
-  const std::size_t words = k / 64 * n_places_ + row.begin;
-  return {row.n(),   &x_[row.begin],   &y_[row.begin],     &vx_[row.begin], &vy_[row.begin],
-          shift_[k], &present_[words], &toughened_[words], bit(k)};
+  return {constants_[k], shift_[k], bonds_.words(k) + row.begin, BondStates::bit(k), BondStates::toughened_bit(k)};
+}
+
+kernels::RowOfBonds StencilSheet::sites_of(const Row &row, const kernels::BondsOfKind &bonds) const
+{
+  return {row.n(),
+          &x_[row.begin],
+          &y_[row.begin],
+          &vx_[row.begin],
+          &vy_[row.begin],
+          breaking_stretch_,
+          toughened_stretch_,
+          std::numeric_limits<double>::infinity(),
+          &bonds,
+          1};
 }
 
 // Sums forces in one order at each point: bonds that start in lower rows first, then by half-bond.
@@ -203,8 +214,11 @@ void StencilSheet::evaluate()
           const std::size_t far = row + static_cast<std::size_t>(stencil_[k].rows);
           if (sites.n() == 0 || far < begin)
             continue;
-          power += kernels::bonds_of_half_bond(material_.in_shell(stencil_[k].shell)->law, constants_[k],
-                                               bonds_of(sites, k), bx.data(), by.data());
+          kernels::BondsOfKind bonds = bonds_of(sites, k);
+          bonds.force = {{bx.data(), by.data()}};
+          kernels::RowSums sums;
+          kernels::bonds_of_stencil(material_.in_shell(stencil_[k].shell)->law, sites_of(sites, bonds), sums);
+          power += sums.viscous_power;
           double *const near_x = &fx_[sites.begin], *const near_y = &fy_[sites.begin];
           if (row >= begin)
             for (std::size_t i = 0; i < sites.n(); ++i)
@@ -297,7 +311,7 @@ double StencilSheet::bond_energy(std::size_t near, std::size_t k) const
 
 void StencilSheet::lose(std::size_t near, std::size_t k)
 {
-  present_[k / 64 * n_places_ + near] &= ~bit(k);
+  bonds_.remove(near, k);
   ++lost_[near];
   ++lost_[near + static_cast<std::size_t>(shift_[k])];
 }
@@ -333,7 +347,7 @@ void StencilSheet::toughen_behind_tip()
             continue;
           for (std::size_t k = 0; k < stencil_.size(); ++k)
             if (X + 0.5 * stencil_[k].vector.x() < boundary)
-              toughened_[k / 64 * n_places_ + near] |= bit(k);
+              bonds_.toughen(near, k);
         }
     });
   toughened_to_ = boundary;
@@ -348,9 +362,7 @@ void StencilSheet::break_bonds()
     {
       for (std::size_t row = begin; row < end; ++row)
         for (std::size_t k = 0; k < stencil_.size() && has_events[row] == 0; ++k)
-          if (rows_[row].n() > 0 &&
-              kernels::any_longer_ahead(bonds_of(rows_[row], k), ahead, breaking_stretch_ * stencil_[k].rest_length,
-                                        toughened_stretch_ * stencil_[k].rest_length))
+          if (rows_[row].n() > 0 && kernels::any_event_ahead(sites_of(rows_[row], bonds_of(rows_[row], k)), ahead))
             has_events[row] = 1;
     });
   broken_.clear();
@@ -359,7 +371,7 @@ void StencilSheet::break_bonds()
       for_each_bond_of_row(row,
                            [&](std::size_t near, std::size_t k, std::size_t far)
                            {
-                             const double limit = has(toughened_, near, k) ? toughened_stretch_ : breaking_stretch_;
+                             const double limit = bonds_.toughened(near, k) ? toughened_stretch_ : breaking_stretch_;
                              if (squared_length_after(ahead, x_[far] - x_[near], y_[far] - y_[near],
                                                       vx_[far] - vx_[near], vy_[far] - vy_[near]) >
                                  squared_length(limit, stencil_[k].rest_length))

@@ -156,6 +156,11 @@ Eigen::Vector2d TriangularLattice::reference(std::size_t place) const
   return from_row_frame(along - 0.5 * static_cast<double>(columns_ - 1), across);
 }
 
+std::ptrdiff_t TriangularLattice::rows_across(std::size_t kind)
+{
+  return bond_directions[kind].rows;
+}
+
 std::ptrdiff_t TriangularLattice::shift(std::size_t kind, std::size_t row) const
 {
   // A bond to a row of the other parity leads half a spacing to one side, and rows of odd numbers begin there.

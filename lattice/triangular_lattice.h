@@ -119,6 +119,8 @@ public:
   /// Reference position (X, Y) [m] of a place; X from 0 to length(), Y centred on 0. Valid in the margin as well.
   Eigen::Vector2d reference(std::size_t place) const;
 
+  /// Rows from the start to the end of a bond of a kind, 0 to 2.
+  static std::ptrdiff_t rows_across(std::size_t kind);
   /// Offset from a site in `row` to its neighbour through bond kind k.
   std::ptrdiff_t shift(std::size_t kind, std::size_t row) const;
   /// Offset to a site in `row` from its neighbour at which the bond of kind k between them starts.
