@@ -11,7 +11,7 @@ namespace latcon::lattice
 namespace
 {
 
-constexpr std::ptrdiff_t reach = 2; // of bonds, in rows
+constexpr auto reach = static_cast<std::ptrdiff_t>(TriangularLattice::reach);
 
 // History of the bonds of one kind that start at a place and the places after it.
 template <class Pointer, class Kind>
@@ -41,7 +41,6 @@ bool has_factors(const State &state)
 
 Forces::Forces(const RowPartition &band, const Material &material)
   : band_(band), lattice_(band.lattice()), laws_(laws_of(material)), n_kinds_(material.n_kinds()),
-    rows_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - lattice_.stride())),
     columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_viscous_power_(lattice_.rows(), 0.),
     row_mechanism_power_(material.n_mechanisms(), Field(lattice_.rows(), 0.)), row_events_(lattice_.rows(), 0),
     row_short_bonds_(lattice_.rows(), 0)
@@ -160,10 +159,8 @@ void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrd
 
 void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, Scratch &scratch) const
 {
-  if (row >= 0)
-    bonds_of_row(motion, static_cast<std::size_t>(row), row, scratch);
-  else if (rows_repeat_)
-    bonds_of_row(motion, lattice_.rows() - static_cast<std::size_t>(-row), row, scratch);
+  if (const auto from = lattice_.row(row))
+    bonds_of_row(motion, *from, row, scratch);
   else
     for (std::size_t kind = 0; kind < n_kinds_; ++kind)
       for (std::size_t component = 0; component < 2; ++component)
@@ -177,7 +174,7 @@ Forces::BondsOfKinds Forces::bonds_of_kinds(const State &state, std::size_t row)
   BondsOfKinds kinds;
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
     kinds[kind] = {constants_[shell_of(kind)],
-                   lattice_.shift(kind, row),
+                   static_cast<std::ptrdiff_t>(lattice_.shift(kind, row)),
                    state.bonds.words(kind) + near,
                    BondStates::bit(kind),
                    BondStates::toughened_bit(kind),
@@ -255,14 +252,14 @@ void Forces::gather_row(std::ptrdiff_t row, Scratch &scratch) const
   std::array<std::array<const double *, n_bond_kinds>, 2> start{}, end{};
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {
-    // Rows and columns from where a bond starts to where it ends.
     const std::ptrdiff_t rows = TriangularLattice::rows_across(kind);
-    const std::ptrdiff_t columns =
-      lattice_.shift_into(kind, static_cast<std::size_t>(row)) - rows * static_cast<std::ptrdiff_t>(lattice_.stride());
+    // From the place of the same column where a bond starts to the one where it ends.
+    const std::size_t columns =
+      lattice_.shift(kind, static_cast<std::size_t>(row + rows)) - static_cast<std::size_t>(rows) * lattice_.stride();
     for (std::size_t component = 0; component < 2; ++component)
     {
       start[component][kind] = scratch.bonds.at(row, kind, component);
-      end[component][kind] = scratch.bonds.at(row - rows, kind, component) - columns;
+      end[component][kind] = scratch.bonds.at(row - rows, kind, component) - static_cast<std::ptrdiff_t>(columns);
     }
   }
   kernels::gather_row(lattice_.columns(), n_kinds_, start[0], end[0], scratch.fx.data());
@@ -281,68 +278,65 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
   evaluate(state, vx, vy, {{}, nullptr, std::ref(keep)});
 }
 
-void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, std::size_t place, std::size_t kind)
+void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, const Bond &bond)
 {
-  if (band_.owns(place))
-  {
-    const std::size_t row = lattice_.row_of(place);
-    const kernels::BondForce bond = single_bond({state, vx, vy}, place, kind);
-    row_viscous_power_[row] -= bond.viscous_power;
-    if (!state.history.kinds[kind].variables.empty())
-    {
-      const std::size_t shell = shell_of(kind);
-      const kernels::Overstress over = overstress(state, place, kind, bond.stretch);
-      for (std::size_t m = 0; m < n_mechanisms(memories_[shell]); ++m)
-        row_mechanism_power_[first_mechanism_[shell] + m][row] -= over.dissipation[m];
-    }
-  }
+  if (!band_.owns(bond.near))
+    return;
+  const std::size_t row = lattice_.row_of(bond.near), shell = shell_of(bond.kind);
+  const kernels::BondForce force = single_bond({state, vx, vy}, bond);
+  row_viscous_power_[row] -= force.viscous_power;
+  if (state.history.kinds[bond.kind].variables.empty())
+    return;
+  const kernels::Overstress over = overstress(state, bond, force.stretch);
+  for (std::size_t m = 0; m < n_mechanisms(memories_[shell]); ++m)
+    row_mechanism_power_[first_mechanism_[shell] + m][row] -= over.dissipation[m];
 }
 
-kernels::Overstress Forces::overstress(const State &state, std::size_t place, std::size_t kind, double stretch) const
+kernels::Overstress Forces::overstress(const State &state, const Bond &bond, double stretch) const
 {
-  kernels::Overstress over = kernels::overstress(memory_steps_[shell_of(kind)], constants_[shell_of(kind)], stretch,
-                                                 place, remembered_from<const double *>(state.history.kinds[kind], 0));
-  const double factor = state.stiffness.of(place, kind);
+  const std::size_t shell = shell_of(bond.kind);
+  kernels::Overstress over = kernels::overstress(memory_steps_[shell], constants_[shell], stretch, bond.near,
+                                                 remembered_from<const double *>(state.history.kinds[bond.kind], 0));
+  const double factor = state.stiffness.of(bond.near, bond.kind);
   over.axial *= factor;
   for (double &power : over.dissipation)
     power *= factor;
   return over;
 }
 
-kernels::BondForce Forces::single_bond(const Motion &motion, std::size_t place, std::size_t kind) const
+kernels::BondForce Forces::single_bond(const Motion &motion, const Bond &bond) const
 {
-  const State &state = motion.state;
-  const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
-  kernels::BondForce bond = kernels::bond_force(
-    laws_[shell_of(kind)], constants_[shell_of(kind)], state.stiffness.of(place, kind), state.x[far] - state.x[place],
-    state.y[far] - state.y[place], motion.vx[far] - motion.vx[place], motion.vy[far] - motion.vy[place]);
+  const auto &[state, vx, vy] = motion;
+  const auto [near, kind, far] = bond;
+  kernels::BondForce force = kernels::bond_force(laws_[shell_of(kind)], constants_[shell_of(kind)],
+                                                 state.stiffness.of(near, kind), state.x[far] - state.x[near],
+                                                 state.y[far] - state.y[near], vx[far] - vx[near], vy[far] - vy[near]);
   if (!state.history.kinds[kind].variables.empty())
   {
-    const kernels::Overstress over = overstress(state, place, kind, bond.stretch);
-    bond.x += over.axial * bond.nx;
-    bond.y += over.axial * bond.ny;
+    const kernels::Overstress over = overstress(state, bond, force.stretch);
+    force.x += over.axial * force.nx;
+    force.y += over.axial * force.ny;
     for (const double power : over.dissipation)
-      bond.viscous_power += power;
+      force.viscous_power += power;
   }
-  return bond;
+  return force;
 }
 
 Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field &vy, std::size_t place) const
 {
-  const std::size_t row = lattice_.row_of(place);
   std::array<std::array<double, n_bond_kinds>, 2> start{}, end{};
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {
-    const auto note = [&](std::size_t near_place, auto &force)
+    const auto note = [&](const Bond &bond, auto &of_kind)
     {
-      if (!state.bonds.present(near_place, kind))
+      if (!state.bonds.present(bond.near, kind))
         return;
-      const kernels::BondForce bond = single_bond({state, vx, vy}, near_place, kind);
-      force[0][kind] = bond.x;
-      force[1][kind] = bond.y;
+      const kernels::BondForce force = single_bond({state, vx, vy}, bond);
+      of_kind[0][kind] = force.x;
+      of_kind[1][kind] = force.y;
     };
-    note(place, start);
-    note(lattice_.canonical_place(place - static_cast<std::size_t>(lattice_.shift_into(kind, row))), end);
+    note(lattice_.bond(place, kind), start);
+    note(lattice_.bond_into(place, kind), end);
   }
   const auto sum = [&](std::size_t component)
   {

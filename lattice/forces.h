@@ -91,7 +91,7 @@ public:
   /// Takes a bond that has just broken out of viscous_power(), if it is there.
   /// @param state as at the last evaluation
   /// @param vx,vy velocities of that evaluation
-  void remove_bond(const State &state, const Field &vx, const Field &vy, std::size_t place, std::size_t kind);
+  void remove_bond(const State &state, const Field &vx, const Field &vy, const Bond &bond);
 
 private:
   /// Forces on the near ends of the bonds that start in the last rows: in as many as the neighbours of a site through
@@ -143,8 +143,8 @@ private:
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
   void add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &row, const BondsOfKinds &kinds,
                       std::vector<double> &mechanism_power) const;
-  kernels::Overstress overstress(const State &state, std::size_t place, std::size_t kind, double stretch) const;
-  kernels::BondForce single_bond(const Motion &motion, std::size_t place, std::size_t kind) const;
+  kernels::Overstress overstress(const State &state, const Bond &bond, double stretch) const;
+  kernels::BondForce single_bond(const Motion &motion, const Bond &bond) const;
 
   RowPartition band_;
   const TriangularLattice &lattice_;
@@ -156,8 +156,7 @@ private:
   std::array<kernels::BondConstants, n_shells> constants_;
   std::array<double, n_bond_kinds> retraction_stretch_{};
   double shortness_limit_ = std::numeric_limits<double>::infinity();
-  bool rows_repeat_;    // periodic across the rows
-  bool columns_repeat_; // periodic along them
+  bool columns_repeat_; // periodic along the rows
 
   std::vector<Scratch> scratch_; // one a thread
   Field fx_, fy_;

@@ -43,11 +43,9 @@ struct RetractionToughening
 using Toughening = std::variant<NoToughening, GivenToughening, BehindTipToughening, RetractionToughening>;
 
 /// A bond that broke.
-struct BrokenBond
+struct BrokenBond : Bond
 {
   double time;              ///< [s]
-  std::size_t near, far;    ///< places of its two ends
-  std::size_t kind;         ///< see n_bond_kinds
   Eigen::Vector2d midpoint; ///< reference [m]
   double stretch;           ///< at breaking [-]
   double energy;            ///< elastic energy it held, per sheet thickness [J/m]
@@ -144,14 +142,14 @@ private:
     broken,   // past the limit
     retracted // to be toughened
   };
-  Event event(const State &state, std::size_t place, std::size_t kind) const;
+  Event event(const State &state, const Bond &bond) const;
   struct Loss;
-  Loss loss(const State &state, std::size_t place, std::size_t kind) const;
+  Loss loss(const State &state, const Bond &bond) const;
   std::vector<BrokenBond> lose_bonds(State &state, const std::vector<Loss> &own, int *number) const;
   void consider_tip(const State &state, std::size_t place);
   void toughen_behind_tip(State &state);
   std::pair<Rows, Rows> strip_around(double from, double to) const;
-  double bond_energy(const State &state, std::size_t place, std::size_t kind) const;
+  double bond_energy(const State &state, const Bond &bond) const;
 
   RowPartition band_;
   const TriangularLattice &lattice_;
@@ -170,12 +168,10 @@ private:
 };
 
 /// A bond that is present.
-struct StretchedBond
+struct StretchedBond : Bond
 {
-  std::size_t near, far; ///< places of its two ends
-  std::size_t kind;      ///< see n_bond_kinds
-  double stretch;        ///< [-]
-  double limit;          ///< stretch beyond which it breaks [-]
+  double stretch; ///< [-]
+  double limit;   ///< stretch beyond which it breaks [-]
 };
 
 /// The bond present whose stretch over its limit is largest, the one stored first of several: why a crack stopped. None

@@ -114,7 +114,7 @@ StencilSheet::StencilSheet(const Grid &grid, const Eigen::Vector2d &origin, doub
       bool whole = true;
       for (std::size_t k = 0; k < stencil_.size(); ++k)
       {
-        const bool forward = is_site[place + static_cast<std::size_t>(shift_[k])] != 0;
+        const bool forward = is_site[bond(place, k).far] != 0;
         whole = whole && forward && is_site[place - static_cast<std::size_t>(shift_[k])] != 0;
         if (forward)
           bonds_.add(place, k);
@@ -160,7 +160,7 @@ void StencilSheet::for_each_bond_of_row(std::size_t row, const Work &work) const
   for (std::size_t near = sites.begin; near < sites.begin + sites.n(); ++near)
     for (std::size_t k = 0; k < stencil_.size(); ++k)
       if (present(near, k))
-        work(near, k, near + static_cast<std::size_t>(shift_[k]));
+        work(bond(near, k));
 }
 
 template <class Work>
@@ -268,14 +268,14 @@ std::size_t StencilSheet::cut(double from, double to, double Y)
   std::size_t n = 0;
   for (std::size_t row = 0; row < rows_.size(); ++row)
     for_each_bond_of_row(row,
-                         [&](std::size_t near, std::size_t k, std::size_t)
+                         [&](const Bond &bond)
                          {
-                           const Eigen::Vector2d X = reference(near), &R = stencil_[k].vector;
+                           const Eigen::Vector2d X = reference(bond.near), &R = stencil_[bond.kind].vector;
                            const double share = (Y - X.y()) / R.y(), at = X.x() + share * R.x();
                            if (!(share > 0. && share <= 1. && at >= from && at <= to))
                              return;
-                           broken_energy_ += bond_energy(near, k);
-                           lose(near, k);
+                           broken_energy_ += bond_energy(bond);
+                           lose(bond);
                            ++n;
                          });
   for (const Row &row : rows_)
@@ -298,22 +298,23 @@ void StencilSheet::let_break(double breaking_stretch, BehindTipToughening toughe
   toughen_behind_tip();
 }
 
-double StencilSheet::stretch_of(std::size_t near, std::size_t k) const
+double StencilSheet::stretch_of(const Bond &bond) const
 {
-  return (position(near + static_cast<std::size_t>(shift_[k])) - position(near)).norm() / stencil_[k].rest_length;
+  return (position(bond.far) - position(bond.near)).norm() / stencil_[bond.kind].rest_length;
 }
 
-double StencilSheet::bond_energy(std::size_t near, std::size_t k) const
+double StencilSheet::bond_energy(const Bond &bond) const
 {
-  return constants_[k].cross_section * stencil_[k].rest_length *
-         energy(material_.in_shell(stencil_[k].shell)->law, stretch_of(near, k));
+  const HalfBond &half = stencil_[bond.kind];
+  return constants_[bond.kind].cross_section * half.rest_length *
+         energy(material_.in_shell(half.shell)->law, stretch_of(bond));
 }
 
-void StencilSheet::lose(std::size_t near, std::size_t k)
+void StencilSheet::lose(const Bond &bond)
 {
-  bonds_.remove(near, k);
-  ++lost_[near];
-  ++lost_[near + static_cast<std::size_t>(shift_[k])];
+  bonds_.remove(bond.near, bond.kind);
+  ++lost_[bond.near];
+  ++lost_[bond.far];
 }
 
 void StencilSheet::consider_tip(std::size_t place)
@@ -369,14 +370,15 @@ void StencilSheet::break_bonds()
   for (std::size_t row = 0; row < rows_.size(); ++row)
     if (has_events[row] != 0)
       for_each_bond_of_row(row,
-                           [&](std::size_t near, std::size_t k, std::size_t far)
+                           [&](const Bond &bond)
                            {
+                             const auto [near, k, far] = bond;
                              const double limit = bonds_.toughened(near, k) ? toughened_stretch_ : breaking_stretch_;
                              if (squared_length_after(ahead, x_[far] - x_[near], y_[far] - y_[near],
                                                       vx_[far] - vx_[near], vy_[far] - vy_[near]) >
                                  squared_length(limit, stencil_[k].rest_length))
-                               broken_.push_back({time_, near, far, k, reference(near) + 0.5 * stencil_[k].vector,
-                                                  stretch_of(near, k), bond_energy(near, k)});
+                               broken_.push_back({bond, time_, reference(near) + 0.5 * stencil_[k].vector,
+                                                  stretch_of(bond), bond_energy(bond)});
                            });
   if (broken_.empty())
     return;
@@ -386,7 +388,7 @@ void StencilSheet::break_bonds()
   for (const BrokenBond &bond : broken_)
   {
     broken_energy_ += bond.energy;
-    lose(bond.near, bond.kind);
+    lose(bond);
   }
   for (const BrokenBond &bond : broken_)
   {
@@ -450,8 +452,7 @@ EnergyBalance StencilSheet::energies() const
   EnergyBalance balance{0., 0., viscous_, broken_energy_, 0., 0., initial_};
   for (std::size_t row = 0; row < rows_.size(); ++row)
   {
-    for_each_bond_of_row(row, [&](std::size_t near, std::size_t k, std::size_t)
-                         { balance.elastic += bond_energy(near, k); });
+    for_each_bond_of_row(row, [&](const Bond &bond) { balance.elastic += bond_energy(bond); });
     for (std::size_t place = rows_[row].begin; place < rows_[row].begin + rows_[row].n(); ++place)
       if (!held(place))
         balance.kinetic += 0.5 * mass_ * (vx_[place] * vx_[place] + vy_[place] * vy_[place]);

@@ -75,14 +75,15 @@ private:
 
   kernels::BondsOfKind bonds_of(const Row &row, std::size_t half_bond) const;
   kernels::RowOfBonds sites_of(const Row &row, const kernels::BondsOfKind &bonds) const;
-  template <class Work> // work(row, place, half-bond, far)
+  Bond bond(std::size_t near, std::size_t k) const { return {near, k, near + static_cast<std::size_t>(shift_[k])}; }
+  template <class Work> // work(bond)
   void for_each_bond_of_row(std::size_t row, const Work &work) const;
   template <class Work> // work(first row, end row)
   void in_threads(const Work &work) const;
   void evaluate();
-  double bond_energy(std::size_t near, std::size_t k) const;
-  double stretch_of(std::size_t near, std::size_t k) const;
-  void lose(std::size_t near, std::size_t k);
+  double bond_energy(const Bond &bond) const;
+  double stretch_of(const Bond &bond) const;
+  void lose(const Bond &bond);
   void consider_tip(std::size_t place);
   void toughen_behind_tip();
   void break_bonds();

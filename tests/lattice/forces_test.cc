@@ -298,8 +298,7 @@ State random_state(const TriangularLattice &sheet, const Material &material, uns
   }
   const std::size_t removed = sheet.index(sheet.rows() / 2, 1), neighbour = removed + 1;
   std::vector<std::pair<std::size_t, std::size_t>> bonds;
-  for_each_bond_of_site(state, sheet, removed,
-                        [&](std::size_t near, std::size_t kind) { bonds.emplace_back(near, kind); });
+  for_each_bond_of_site(state, sheet, removed, [&](const Bond &bond) { bonds.emplace_back(bond.near, bond.kind); });
   for (const auto &[near, kind] : bonds)
     state.bonds.remove(near, kind);
   state.x[removed] = state.x[neighbour];
@@ -361,12 +360,12 @@ TEST(Forces, ReportRowsWithShortBonds)
       EXPECT_FALSE(forces.row_has_short_bonds(row)); // none are watched
     std::vector<double> shortest(sheet.rows(), 1e9);
     for_each_bond(state, sheet,
-                  [&](std::size_t near, std::size_t kind, std::size_t)
+                  [&](const Bond &bond)
                   {
-                    if (std::holds_alternative<LinearBond>(subject.material.shell(kind)->law))
+                    if (std::holds_alternative<LinearBond>(subject.material.shell(bond.kind)->law))
                       return;
-                    double &of_row = shortest[sheet.row_of(near)];
-                    of_row = std::min(of_row, stretch(state, sheet, near, kind));
+                    double &of_row = shortest[sheet.row_of(bond.near)];
+                    of_row = std::min(of_row, stretch(state, sheet, bond));
                   });
     for (const double limit : {0.9, 1., 1.1, 1.2})
     {
@@ -463,10 +462,10 @@ TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
     const State before = random_state(sheet, subject.material, 3);
     std::vector<std::pair<std::size_t, std::size_t>> bonds;
     for_each_bond(before, sheet,
-                  [&](std::size_t place, std::size_t kind, std::size_t)
+                  [&](const Bond &bond)
                   {
-                    if ((7 * place + kind) % 10 < 3)
-                      bonds.emplace_back(place, kind);
+                    if ((7 * bond.near + bond.kind) % 10 < 3)
+                      bonds.emplace_back(bond.near, bond.kind);
                   });
     std::mt19937 random(4);
     std::shuffle(bonds.begin(), bonds.end(), random);
@@ -477,7 +476,7 @@ TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
     for (const auto &[place, kind] : bonds)
     {
       state.bonds.remove(place, kind);
-      forces.remove_bond(state, state.vx, state.vy, place, kind);
+      forces.remove_bond(state, state.vx, state.vy, sheet.bond(place, kind));
     }
     without.evaluate(state, state.vx, state.vy);
     for (std::size_t place = 0; place < sheet.n_places(); ++place)

@@ -42,14 +42,14 @@ struct TenSites
   std::size_t n_bonds() const
   {
     std::size_t n = 0;
-    for_each_bond(state, sheet, [&](std::size_t, std::size_t, std::size_t) { ++n; });
+    for_each_bond(state, sheet, [&](const Bond &) { ++n; });
     return n;
   }
 
   double limit(std::size_t row, std::size_t column, std::size_t kind) const
   {
     const std::size_t place = sheet.index(row, column);
-    return state.bonds.present(place, kind) ? lattice::breaking_stretch_of(state, place, kind) : 0.;
+    return state.bonds.present(place, kind) ? lattice::breaking_stretch_of(state, sheet.bond(place, kind)) : 0.;
   }
 
   TriangularLattice sheet;
@@ -151,7 +151,7 @@ TEST(Fracture, FlagsARowIfAndOnlyIfOneOfItsBondsHasAnEvent)
         const double strength = bond_factors(sheet, material, BondProperty::strength).of(near, kind);
         // 1.5 is the limit of a bond of mean strength, 0.8 the fraction of retraction.
         const double limit = breaks ? 1.5 * strength : 0.8, l = sheet.rest_length(kind);
-        const std::size_t far = near + static_cast<std::size_t>(sheet.shift(kind, row));
+        const std::size_t far = sheet.bond(near, kind).far;
         for (int direction = 0; direction < 60; ++direction)
           for (int ulps = -3; ulps <= 3; ++ulps)
           {
@@ -234,11 +234,11 @@ TEST(Fracture, LeavesHeldSitesHeld)
   const Eigen::Matrix2d F = 2. * Eigen::Matrix2d::Identity();
   const State whole = homogeneous_state(sheet, material, F, Edges::held);
   for_each_bond(whole, sheet,
-                [&](std::size_t place, std::size_t kind, std::size_t)
+                [&](const Bond &bond)
                 {
                   State state = whole;
                   state.bonds.clear(sheet.n_places());
-                  state.bonds.add(place, kind);
+                  state.bonds.add(bond.near, bond.kind);
                   Forces forces(sheet, material);
                   Fracture fracture(sheet, material, 1.5, NoToughening{}, F);
                   fracture.configure(state, forces);
@@ -277,7 +277,7 @@ TEST(Fracture, OwnsTheBreakingStretch)
   const Eigen::Matrix2d F = sheets::stretched(1.4, 1.4);
   State state = homogeneous_state(sheet, material, F, Edges::held);
   const std::size_t near = sheet.index(4, 3), far = near + 1;
-  EXPECT_EQ(breaking_stretch_of(state, near, 0), unbreakable);
+  EXPECT_EQ(breaking_stretch_of(state, sheet.bond(near, 0)), unbreakable);
   state.x[far] += 0.2 * sheets::spacing;
   state.bonds.toughen(near, 0);
   const auto n_broken = [&](const Toughening &toughening)

@@ -124,8 +124,8 @@ struct Recoil
     {
       simulation->step();
       for_each_bond(simulation->state(), sheet,
-                    [&](std::size_t place, std::size_t kind, std::size_t)
-                    { shortest = std::min(shortest, stretch(simulation->state(), sheet, place, kind)); });
+                    [&](const Bond &bond)
+                    { shortest = std::min(shortest, stretch(simulation->state(), sheet, bond)); });
     }
     const EnergyBalance e = simulation->energies();
     imbalance = std::abs(e.imbalance()) / e.initial;
