@@ -4,8 +4,6 @@
 
 #include <omp.h>
 
-#include "lattice/stencil_kernels.h"
-
 namespace latcon::lattice
 {
 namespace

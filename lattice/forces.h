@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "lattice/memory_kernels.h"
-#include "lattice/row_kernels.h"
 #include "lattice/state.h"
+#include "lattice/stencil_kernels.h"
 
 namespace latcon::lattice
 {

@@ -191,15 +191,14 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
   for (const BrokenBond &bond : broken_)
     forces.remove_bond(state, evaluated_vx, evaluated_vy, bond);
 
-  const std::optional<std::size_t> previous_tip = tip_;
-  if (tip_)
-    tip_y_ = lattice_.reference(*tip_).y();
+  const std::optional<std::size_t> previous_tip = tip_.place;
+  tip_.begin_step();
   for (const BrokenBond &bond : broken_)
   {
     consider_tip(state, bond.near);
     consider_tip(state, bond.far);
   }
-  if (tip_ != previous_tip)
+  if (tip_.place != previous_tip)
     toughen_behind_tip(state);
   return broken_;
 }
@@ -217,28 +216,15 @@ void Fracture::consider_tip(const State &state, std::size_t place)
 {
   if (state.lost_bonds[place] < tip_losses_ || state.held[place] != 0 || state.removed[place] != 0)
     return;
-  const Eigen::Vector2d reference = lattice_.reference(place);
-  if (tip_)
-  {
-    if (reference.x() < tip_x_)
-      return;
-    if (reference.x() == tip_x_)
-    {
-      const double rival = std::abs(lattice_.reference(*tip_).y() - tip_y_);
-      if (!(std::abs(reference.y() - tip_y_) < rival))
-        return;
-    }
-  }
-  tip_ = place;
-  tip_x_ = reference.x();
+  tip_.consider(place, lattice_.reference(place));
 }
 
 void Fracture::toughen_behind_tip(State &state)
 {
   const auto *behind = std::get_if<BehindTipToughening>(&toughening_);
-  if (behind == nullptr || !tip_)
+  if (behind == nullptr || !tip_.place)
     return;
-  const double boundary = tip_x_ - behind->distance;
+  const double boundary = tip_.X.x() - behind->distance;
   // The tip never retreats: bonds behind the last boundary are toughened already.
   const auto [rows, columns] = strip_around(toughened_to_, boundary);
   for (std::size_t row = rows.begin; row < rows.end; ++row)

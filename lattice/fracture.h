@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lattice/archive_rows.h"
+#include "lattice/crack_tip.h"
 #include "lattice/forces.h"
 
 namespace latcon::lattice
@@ -115,22 +116,24 @@ public:
   void locate_tip(State &state);
 
   /// Place of the tip; none before anything was cut or broken.
-  std::optional<std::size_t> tip() const { return tip_; }
+  std::optional<std::size_t> tip() const { return tip_.place; }
 
   /// Saves or loads what changes while a crack runs, besides the state; see Simulation.
   /// @throws std::invalid_argument for a tip that is none of the sheet
   template <class Archive>
   void archive(Archive &archive)
   {
-    archive("tip", tip_);
-    archive("tip_x", tip_x_);
-    archive("tip_y", tip_y_);
+    archive("tip", tip_.place);
+    archive("tip_x", tip_.X.x());
+    archive("tip_y", tip_.Y_before);
     if constexpr (Archive::loads)
     {
       toughened_to_ = -std::numeric_limits<double>::infinity();
-      require_archived(
-        !tip_ || (*tip_ < lattice_.n_places() && lattice_.is_site(*tip_) && tip_x_ == lattice_.reference(*tip_).x()),
-        "`tip` is no site of the sheet, or `tip_x` not where it is");
+      const std::size_t place = tip_.place.value_or(lattice_.index(0, 0));
+      const bool is_site = place < lattice_.n_places() && lattice_.is_site(place);
+      require_archived(is_site && (!tip_.place || tip_.X.x() == lattice_.reference(place).x()),
+                       "`tip` is no site of the sheet, or `tip_x` not where it is");
+      tip_.X.y() = lattice_.reference(place).y();
     }
   }
 
@@ -160,9 +163,7 @@ private:
   std::array<double, n_bond_kinds> retraction_stretch_{};
   double lookahead_ = 0.; // [s]
   unsigned int tip_losses_;
-  std::optional<std::size_t> tip_;
-  double tip_x_ = 0.;                                              // reference X of the tip
-  double tip_y_ = 0.;                                              // reference Y of the tip before this step
+  CrackTip tip_;
   double toughened_to_ = -std::numeric_limits<double>::infinity(); // X [m] behind which all bonds are toughened
   std::vector<BrokenBond> broken_;
 };

@@ -444,22 +444,5 @@ std::string instruction_set()
   return HWY_DYNAMIC_DISPATCH(InstructionSet)();
 }
 
-BondForce bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx, double dy, double dvx,
-                     double dvy)
-{
-  const double distance = std::sqrt(dx * dx + dy * dy);
-  const double inverse = 1. / distance;
-  const double nx = dx * inverse, ny = dy * inverse;
-  const double rate = dvx * nx + dvy * ny;
-  const double stretch = (1. / bond.rest_length) * distance;
-  const double viscous = bond.damping * rate;
-  const double axial =
-    factor * (bond.cross_section * std::visit([&](const auto &of_kind)
-                                              { return formulas::force(of_kind, stretch, bond.rest_length * inverse); },
-                                              law) +
-              viscous);
-  return {axial * nx, axial * ny, nx, ny, stretch, factor * (viscous * rate)};
-}
-
 } // namespace latcon::lattice::kernels
 #endif

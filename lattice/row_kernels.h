@@ -120,17 +120,4 @@ void use_instruction_set(const std::string &name);
 /// Name of the one in use.
 std::string instruction_set();
 
-/// A bond's force, one at a time: the operations of bonds_of_row, so that both have the same bits.
-struct BondForce
-{
-  double x, y;   ///< on the near end [N/m], the opposite on the far end
-  double nx, ny; ///< direction from the near to the far end
-  double stretch;
-  double viscous_power; ///< [W/m]
-};
-/// Returns the force of a bond whose ends are at a distance (dx, dy) [m] and move apart with (dvx, dvy) [m/s].
-/// @param factor of its cross-section
-BondForce bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx, double dy, double dvx,
-                     double dvy);
-
 } // namespace latcon::lattice::kernels

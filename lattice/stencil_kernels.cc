@@ -1,5 +1,6 @@
 #include "lattice/stencil_kernels.h"
 
+#include <cmath>
 #include <variant>
 
 #include "lattice/instruction_sets.h"
@@ -109,6 +110,23 @@ void bonds_of_stencil(const BondLaw &law, const RowOfBonds &row, RowSums &sums)
 bool any_event_ahead(const RowOfBonds &row, double ahead)
 {
   return HWY_DYNAMIC_DISPATCH(AnyEventAhead)(row, ahead);
+}
+
+BondForce bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx, double dy, double dvx,
+                     double dvy)
+{
+  const double distance = std::sqrt(dx * dx + dy * dy);
+  const double inverse = 1. / distance;
+  const double nx = dx * inverse, ny = dy * inverse;
+  const double rate = dvx * nx + dvy * ny;
+  const double stretch = (1. / bond.rest_length) * distance;
+  const double viscous = bond.damping * rate;
+  const double axial =
+    factor * (bond.cross_section * std::visit([&](const auto &of_kind)
+                                              { return formulas::force(of_kind, stretch, bond.rest_length * inverse); },
+                                              law) +
+              viscous);
+  return {axial * nx, axial * ny, nx, ny, stretch, factor * (viscous * rate)};
 }
 
 } // namespace latcon::lattice::kernels

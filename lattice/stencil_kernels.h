@@ -16,4 +16,17 @@ void bonds_of_stencil(const BondLaw &law, const RowOfBonds &row, RowSums &sums);
 /// ends have moved for `ahead` [s] at their velocities. Does not use the forces.
 bool any_event_ahead(const RowOfBonds &row, double ahead);
 
+/// A bond's force, one at a time: the operations of the loops, so that both have the same bits.
+struct BondForce
+{
+  double x, y;   ///< on the near end [N/m], the opposite on the far end
+  double nx, ny; ///< direction from the near to the far end
+  double stretch;
+  double viscous_power; ///< [W/m]
+};
+/// Returns the force of a bond whose ends are at a distance (dx, dy) [m] and move apart with (dvx, dvy) [m/s].
+/// @param factor of its cross-section
+BondForce bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx, double dy, double dvx,
+                     double dvy);
+
 } // namespace latcon::lattice::kernels

@@ -180,16 +180,11 @@ kernels::BondsOfKind StencilSheet::bonds_of(const Row &row, std::size_t k) const
 
 kernels::RowOfBonds StencilSheet::sites_of(const Row &row, const kernels::BondsOfKind &bonds) const
 {
-  return {row.n(),
-          &x_[row.begin],
-          &y_[row.begin],
-          &vx_[row.begin],
-          &vy_[row.begin],
-          breaking_stretch_,
-          toughened_stretch_,
-          std::numeric_limits<double>::infinity(),
-          &bonds,
-          1};
+  kernels::RowOfBonds sites{row.n(),         &x_[row.begin],    &y_[row.begin],    &vx_[row.begin],
+                            &vy_[row.begin], breaking_stretch_, toughened_stretch_};
+  sites.kinds = &bonds;
+  sites.n_kinds = 1;
+  return sites;
 }
 
 // Sums forces in one order at each point: bonds that start in lower rows first, then by half-bond.
@@ -274,7 +269,6 @@ std::size_t StencilSheet::cut(double from, double to, double Y)
                            const double share = (Y - X.y()) / R.y(), at = X.x() + share * R.x();
                            if (!(share > 0. && share <= 1. && at >= from && at <= to))
                              return;
-                           broken_energy_ += bond_energy(bond);
                            lose(bond);
                            ++n;
                          });
@@ -312,6 +306,7 @@ double StencilSheet::bond_energy(const Bond &bond) const
 
 void StencilSheet::lose(const Bond &bond)
 {
+  broken_energy_ += bond_energy(bond);
   bonds_.remove(bond.near, bond.kind);
   ++lost_[bond.near];
   ++lost_[bond.far];
@@ -321,20 +316,15 @@ void StencilSheet::consider_tip(std::size_t place)
 {
   if (held(place) || 4 * lost_[place] < 2 * stencil_.size())
     return;
-  const Eigen::Vector2d X = reference(place);
-  if (tip_ &&
-      (X.x() < tip_x_ || (X.x() == tip_x_ && !(std::abs(X.y() - tip_y_) < std::abs(reference(*tip_).y() - tip_y_)))))
-    return;
-  tip_ = place;
-  tip_x_ = X.x();
+  tip_.consider(place, reference(place));
 }
 
 void StencilSheet::toughen_behind_tip()
 {
-  if (!tip_)
+  if (!tip_.place)
     return;
   // The tip never retreats: bonds behind the last boundary are toughened already.
-  const double boundary = tip_x_ - toughening_distance_;
+  const double boundary = tip_.X.x() - toughening_distance_;
   const auto shorter = [](const HalfBond &a, const HalfBond &b) { return a.rest_length < b.rest_length; };
   const double longest = std::max_element(stencil_.begin(), stencil_.end(), shorter)->rest_length;
   in_threads(
@@ -382,20 +372,16 @@ void StencilSheet::break_bonds()
                            });
   if (broken_.empty())
     return;
-  const std::optional<std::size_t> previous = tip_;
-  if (tip_)
-    tip_y_ = reference(*tip_).y();
+  const std::optional<std::size_t> previous = tip_.place;
+  tip_.begin_step();
   for (const BrokenBond &bond : broken_)
-  {
-    broken_energy_ += bond.energy;
     lose(bond);
-  }
   for (const BrokenBond &bond : broken_)
   {
     consider_tip(bond.near);
     consider_tip(bond.far);
   }
-  if (tip_ != previous)
+  if (tip_.place != previous)
     toughen_behind_tip();
   evaluate();
 }

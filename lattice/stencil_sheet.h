@@ -61,7 +61,7 @@ public:
 
   double time() const { return time_; } ///< [s]
   /// Right-most free point that has lost at least a quarter of its bonds, as Fracture has it.
-  std::optional<std::size_t> tip() const { return tip_; }
+  std::optional<std::size_t> tip() const { return tip_.place; }
   /// Contact and boundary work are 0: there is none.
   EnergyBalance energies() const;
 
@@ -110,8 +110,7 @@ private:
   double viscous_ = 0., broken_energy_ = 0., initial_ = 0.;
   double breaking_stretch_ = unbreakable, toughened_stretch_ = unbreakable, toughening_distance_ = 0.;
   double toughened_to_ = -unbreakable; // X behind which all bonds are toughened
-  std::optional<std::size_t> tip_;
-  double tip_x_ = 0., tip_y_ = 0.; // as in Fracture
+  CrackTip tip_;
   std::vector<BrokenBond> broken_;
 };
 
