@@ -264,8 +264,7 @@ TEST(Fracture, ToughensBehindTheTip)
   EXPECT_TRUE(sheet.apply().empty());
   EXPECT_EQ(sheet.limit(2, 0, 0), 4.5); // toughened once, not once more
   sheet.state.x[sheet.sheet.index(2, 0)] -= 3.;
-  const std::vector<BrokenBond> broken = sheet.apply();
-  EXPECT_EQ(broken.size(), 1u);
+  EXPECT_EQ(sheet.apply().size(), 1u);
 }
 
 // A state has bonds that never break until a Fracture sets their limits. A site is pulled aside: the bond that is
@@ -453,30 +452,6 @@ TEST(EnergyBalance, ClosesThroughFracture)
   EXPECT_GT(e.viscous, 1e-3 * e.initial);
   EXPECT_GT(e.broken, 1e-3 * e.initial);
   EXPECT_LT(std::abs(e.imbalance()), 1e-6 * e.initial);
-}
-
-// A sheet drawn out by its edges at 40 % a millisecond, dashpots at work: the edges' work goes into springs and
-// dashpots.
-TEST(EnergyBalance, ClosesWithMovingEdges)
-{
-  const TriangularLattice sheet = sheets::square(20);
-  const Material material = sheets::rubber();
-  const auto relative_imbalance = [&](double time_step)
-  {
-    State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
-    Simulation simulation(sheet, material, std::move(state), time_step);
-    simulation.move_edges(sheets::stretched(400., 200.));
-    const auto steps = static_cast<std::size_t>(std::lround(2e-4 / time_step));
-    for (std::size_t step = 0; step < steps; ++step)
-      simulation.step();
-    const EnergyBalance e = simulation.energies();
-    EXPECT_GT(e.boundary_work, 0.);
-    EXPECT_GT(e.viscous, 0.1 * e.boundary_work);
-    return std::abs(e.imbalance()) / e.boundary_work;
-  };
-  const double fine = relative_imbalance(2.5e-8);
-  EXPECT_LT(fine, 1e-5);
-  EXPECT_NEAR(std::log2(relative_imbalance(1e-7) / fine) / 2., 2., 0.3);
 }
 
 } // namespace fracture_test

@@ -201,4 +201,28 @@ TEST(TimeStepLimits, CountTheSpringsOfAllBranches)
   EXPECT_DOUBLE_EQ(chebyshev_step(sheet, material, 0.5), 1e-3 / 8e5);
 }
 
+// A sheet drawn out by its edges at 40 % a millisecond, dashpots at work: the edges' work goes into springs and
+// dashpots.
+TEST(EnergyBalance, ClosesWithMovingEdges)
+{
+  const TriangularLattice sheet = sheets::square(20);
+  const Material material = sheets::rubber();
+  const auto relative_imbalance = [&](double time_step)
+  {
+    State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
+    Simulation simulation(sheet, material, std::move(state), time_step);
+    simulation.move_edges(sheets::stretched(400., 200.));
+    const auto steps = static_cast<std::size_t>(std::lround(2e-4 / time_step));
+    for (std::size_t step = 0; step < steps; ++step)
+      simulation.step();
+    const EnergyBalance e = simulation.energies();
+    EXPECT_GT(e.boundary_work, 0.);
+    EXPECT_GT(e.viscous, 0.1 * e.boundary_work);
+    return std::abs(e.imbalance()) / e.boundary_work;
+  };
+  const double fine = relative_imbalance(2.5e-8);
+  EXPECT_LT(fine, 1e-5);
+  EXPECT_NEAR(std::log2(relative_imbalance(1e-7) / fine) / 2., 2., 0.3);
+}
+
 } // namespace simulation_test
