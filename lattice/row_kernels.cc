@@ -89,28 +89,6 @@ bool any_event(const RowOfBonds &row, std::size_t site, const Lengths &lengths)
   return !hn::AllFalse(D(), events);
 }
 
-// Forces of the bonds of a kind. @return their stretch
-template <std::size_t kind, class Law>
-HWY_INLINE Lanes bonds_of_kind(const Law &law, const BondConstants &bond, const RowOfBonds &row, const Sites &near,
-                               Lanes vx, Lanes vy, const Lengths &lengths, Lanes &power, Lanes &shortness)
-{
-  const std::size_t far = near.first + static_cast<std::size_t>(row.kinds[kind].shift);
-  const Lanes inverse = load(lengths.inverse[kind]);
-  const Lanes nx = (load(row.x + far) - near.x) * inverse, ny = (load(row.y + far) - near.y) * inverse;
-  const Lanes rate = (load(row.vx + far) - vx) * nx + (load(row.vy + far) - vy) * ny;
-  const Lanes stretch = stretch_of(bond, kind, lengths);
-  const Lanes viscous = bond.damping * rate;
-  const Lanes inverse_stretch = bond.rest_length * inverse;
-  const Lanes axial = bond.cross_section * force(law, stretch, inverse_stretch) + viscous;
-  store(axial * nx, row.kinds[kind].force[0] + near.first);
-  store(axial * ny, row.kinds[kind].force[1] + near.first);
-  power = power + viscous * rate;
-  // It is 0 for absent bonds.
-  if constexpr (Law::stiffens_when_short)
-    shortness.v = hn::Max(shortness.v, inverse_stretch.v);
-  return stretch;
-}
-
 // Quick test whether one of several bonds may be past a limit.
 template <bool watches_retraction>
 struct Extremes
@@ -133,6 +111,29 @@ struct Extremes
   }
 };
 
+// Forces of the bonds of a kind.
+template <std::size_t kind, class Law, class Monitor>
+HWY_INLINE void bonds_of_kind(const Law &law, const BondConstants &bond, const RowOfBonds &row, const Sites &near,
+                              Lanes vx, Lanes vy, const Lengths &lengths, Lanes &power, Lanes &shortness,
+                              Monitor &extremes)
+{
+  const std::size_t far = near.first + static_cast<std::size_t>(row.kinds[kind].shift);
+  const Lanes inverse = load(lengths.inverse[kind]);
+  const Lanes nx = (load(row.x + far) - near.x) * inverse, ny = (load(row.y + far) - near.y) * inverse;
+  const Lanes rate = (load(row.vx + far) - vx) * nx + (load(row.vy + far) - vy) * ny;
+  const Lanes stretch = stretch_of(bond, kind, lengths);
+  const Lanes viscous = bond.damping * rate;
+  const Lanes inverse_stretch = bond.rest_length * inverse;
+  const Lanes axial = bond.cross_section * force(law, stretch, inverse_stretch) + viscous;
+  store(axial * nx, row.kinds[kind].force[0] + near.first);
+  store(axial * ny, row.kinds[kind].force[1] + near.first);
+  power = power + viscous * rate;
+  // It is 0 for absent bonds.
+  if constexpr (Law::stiffens_when_short)
+    shortness.v = hn::Max(shortness.v, inverse_stretch.v);
+  extremes.add(stretch, row.kinds[kind].retraction_stretch);
+}
+
 struct NoBonds
 {
 };
@@ -143,7 +144,7 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
 {
   constexpr bool has_next_nearest = !std::is_same_v<NextNearest, NoBonds>;
   constexpr std::size_t n_kinds = has_next_nearest ? 2 * n_kinds_per_shell : n_kinds_per_shell;
-  // Copies, which no store can change.
+  // Copies, which no store can change, as their addresses stay here.
   std::array<BondsOfKind, n_kinds> kinds;
   std::copy_n(given.kinds, n_kinds, kinds.begin());
   RowOfBonds row = given;
@@ -173,24 +174,18 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
     Lanes &sum = power[site % block / width()];
     const Lengths &here = lengths[turn];
     Extremes<watches_retraction> extremes{lanes(0.), lanes(1e30)};
-    extremes.add(bonds_of_kind<0>(nearest, first, row, near, vx, vy, here, sum, shortness),
-                 kinds[0].retraction_stretch);
-    extremes.add(bonds_of_kind<1>(nearest, first, row, near, vx, vy, here, sum, shortness),
-                 kinds[1].retraction_stretch);
-    extremes.add(bonds_of_kind<2>(nearest, first, row, near, vx, vy, here, sum, shortness),
-                 kinds[2].retraction_stretch);
+    bonds_of_kind<0>(nearest, first, row, near, vx, vy, here, sum, shortness, extremes);
+    bonds_of_kind<1>(nearest, first, row, near, vx, vy, here, sum, shortness, extremes);
+    bonds_of_kind<2>(nearest, first, row, near, vx, vy, here, sum, shortness, extremes);
     if constexpr (has_next_nearest)
     {
-      extremes.add(bonds_of_kind<3>(next_nearest, second, row, near, vx, vy, here, sum, shortness),
-                   kinds[3].retraction_stretch);
-      extremes.add(bonds_of_kind<4>(next_nearest, second, row, near, vx, vy, here, sum, shortness),
-                   kinds[4].retraction_stretch);
-      extremes.add(bonds_of_kind<5>(next_nearest, second, row, near, vx, vy, here, sum, shortness),
-                   kinds[5].retraction_stretch);
+      bonds_of_kind<3>(next_nearest, second, row, near, vx, vy, here, sum, shortness, extremes);
+      bonds_of_kind<4>(next_nearest, second, row, near, vx, vy, here, sum, shortness, extremes);
+      bonds_of_kind<5>(next_nearest, second, row, near, vx, vy, here, sum, shortness, extremes);
     }
     // Few bonds are near a limit, so whose it is can be asked then.
     if (HWY_UNLIKELY(!has_events && extremes.may_be_events(first_limit)))
-      has_events = any_event(row, site, here);
+      has_events = any_event(given, site, here);
     turn = 1 - turn;
   }
   alignas(64) double sums[block];
