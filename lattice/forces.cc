@@ -161,8 +161,8 @@ void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, Scratch 
     bonds_of_row(motion, *from, row, scratch);
   else
     for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-      for (std::size_t component = 0; component < 2; ++component)
-        std::fill_n(scratch.bonds.at(row, kind, component) - TriangularLattice::row_alignment, lattice_.stride(), 0.);
+      for (double *component : scratch.bonds.at(row, kind))
+        std::fill_n(component - TriangularLattice::row_alignment, lattice_.stride(), 0.);
 }
 
 Forces::BondsOfKinds Forces::bonds_of_kinds(const State &state, std::size_t row) const
@@ -171,15 +171,18 @@ Forces::BondsOfKinds Forces::bonds_of_kinds(const State &state, std::size_t row)
   const auto from = [near](const Field &factors) { return factors.empty() ? nullptr : factors.data() + near; };
   BondsOfKinds kinds;
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-    kinds[kind] = {constants_[shell_of(kind)],
-                   static_cast<std::ptrdiff_t>(lattice_.shift(kind, row)),
-                   state.bonds.words(kind) + near,
-                   BondStates::bit(kind),
-                   BondStates::toughened_bit(kind),
-                   retraction_stretch_[kind],
-                   from(state.stiffness.kinds[kind]),
-                   from(state.strength.kinds[kind]),
-                   {}};
+  {
+    // One by one: a whole that is copied would wait for its parts.
+    kernels::BondsOfKind &bonds = kinds[kind];
+    bonds.constants = constants_[shell_of(kind)];
+    bonds.shift = static_cast<std::ptrdiff_t>(lattice_.shift(kind, row));
+    bonds.states = state.bonds.words(kind) + near;
+    bonds.present = BondStates::bit(kind);
+    bonds.toughened = BondStates::toughened_bit(kind);
+    bonds.retraction_stretch = retraction_stretch_[kind];
+    bonds.stiffness = from(state.stiffness.kinds[kind]);
+    bonds.strength = from(state.strength.kinds[kind]);
+  }
   return kinds;
 }
 
@@ -206,7 +209,7 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
 {
   BondsOfKinds kinds = bonds_of_kinds(motion.state, from);
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-    kinds[kind].force = {{scratch.bonds.at(row, kind, 0), scratch.bonds.at(row, kind, 1)}};
+    kinds[kind].force = scratch.bonds.at(row, kind);
   kernels::RowOfBonds bonds = sites_of_row(motion, from);
   bonds.ahead = scratch.ahead.data();
   bonds.n_ahead = scratch.ahead.size();
@@ -252,12 +255,13 @@ void Forces::gather_row(std::ptrdiff_t row, Scratch &scratch) const
   {
     const std::ptrdiff_t rows = TriangularLattice::rows_across(kind);
     // From the place of the same column where a bond starts to the one where it ends.
-    const std::size_t columns =
-      lattice_.shift(kind, static_cast<std::size_t>(row + rows)) - static_cast<std::size_t>(rows) * lattice_.stride();
+    const auto columns = static_cast<std::ptrdiff_t>(lattice_.shift(kind, static_cast<std::size_t>(row + rows)) -
+                                                     static_cast<std::size_t>(rows) * lattice_.stride());
+    const std::array<double *, 2> starting = scratch.bonds.at(row, kind), ending = scratch.bonds.at(row - rows, kind);
     for (std::size_t component = 0; component < 2; ++component)
     {
-      start[component][kind] = scratch.bonds.at(row, kind, component);
-      end[component][kind] = scratch.bonds.at(row - rows, kind, component) - static_cast<std::ptrdiff_t>(columns);
+      start[component][kind] = starting[component];
+      end[component][kind] = ending[component] - columns;
     }
   }
   kernels::gather_row(lattice_.columns(), n_kinds_, start[0], end[0], scratch.fx.data());

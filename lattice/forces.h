@@ -101,12 +101,13 @@ private:
   public:
     BondRows(std::size_t stride, std::size_t n_kinds) : stride_(stride), values_(first[n_kinds] * 2 * stride, 0.) {}
 
-    /// The x (0) or y (1) component for the bonds of a kind that start in a row >= -2: column 0, with
+    /// The components along x and y for the bonds of a kind that start in a row >= -2: column 0, with
     /// TriangularLattice::row_alignment places before it.
-    double *at(std::ptrdiff_t row, std::size_t kind, std::size_t component)
+    std::array<double *, 2> at(std::ptrdiff_t row, std::size_t kind)
     {
       const std::size_t slot = first[kind] + static_cast<std::size_t>(row + 6) % (first[kind + 1] - first[kind]);
-      return &values_[(2 * slot + component) * stride_ + TriangularLattice::row_alignment];
+      double *const x = &values_[2 * slot * stride_ + TriangularLattice::row_alignment];
+      return {{x, x + stride_}};
     }
 
   private:
