@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -10,9 +9,9 @@
 namespace latcon::lattice
 {
 
-/// Bonds that are present and bonds that are toughened, two bits per bond: one word for six of the bonds that start at
-/// a place, with the present kinds in the lower byte and the toughened kinds in the upper one. The words of the third-
-/// nearest neighbours are stored apart, and only if there are any.
+/// Bonds that are present and bonds that are toughened, two bits per bond: one word for each six kinds of bonds that
+/// start at a place, with the present kinds in the lower byte and the toughened kinds in the upper one. The first word
+/// of all places comes first, then the second: on the lattice that of the third-nearest neighbours.
 class BondStates
 {
 public:
@@ -20,10 +19,15 @@ public:
   using Words = std::vector<Word, ZeroPages<Word>>;
   static constexpr std::size_t kinds_per_word = 2 * n_kinds_per_shell;
 
-  /// No bonds at all at n places. @param has_third_nearest whether bonds of the third shell may be added
-  void clear(std::size_t n, bool has_third_nearest = false) { words_ = {Words(n), Words(has_third_nearest ? n : 0)}; }
-  /// Kinds of bonds that may be there: the first so many.
-  std::size_t n_kinds() const { return words_[1].empty() ? kinds_per_word : n_bond_kinds; }
+  /// No bonds at all at n places. @param n_kinds kinds of bonds that may be added: the first so many
+  void clear(std::size_t n, std::size_t n_kinds = kinds_per_word)
+  {
+    n_kinds_ = n_kinds;
+    words_.clear();
+    for (std::size_t first = 0; first < n_kinds; first += kinds_per_word)
+      words_.emplace_back(n);
+  }
+  std::size_t n_kinds() const { return n_kinds_; } ///< kinds of bonds that may be there
 
   bool present(std::size_t place, std::size_t kind) const { return has(place, kind, bit(kind)); }
   bool toughened(std::size_t place, std::size_t kind) const { return has(place, kind, toughened_bit(kind)); }
@@ -49,13 +53,10 @@ public:
     word = static_cast<Word>(word | toughened_bit(kind));
   }
 
-  /// The words that hold a kind of bonds, one a place; nullptr for kinds of n_kinds() on.
-  const Word *words(std::size_t kind = 0) const
-  {
-    return kind < n_kinds() ? words_[kind / kinds_per_word].data() : nullptr;
-  }
-  /// Of the first two shells, and of the third: for other ranks and for files to fill.
-  std::array<Words, 2> &storage() { return words_; }
+  /// The words that hold a kind of bonds below n_kinds(), one a place.
+  const Word *words(std::size_t kind) const { return words_[kind / kinds_per_word].data(); }
+  /// All words: for other ranks and for files to fill.
+  std::vector<Words> &storage() { return words_; }
   static constexpr Word bit(std::size_t kind) { return static_cast<Word>(1u << kind % kinds_per_word); }
   static constexpr Word toughened_bit(std::size_t kind) { return static_cast<Word>(0x100u << kind % kinds_per_word); }
 
@@ -65,7 +66,8 @@ private:
     return kind < n_kinds() && (words_[kind / kinds_per_word][place] & mask) != 0;
   }
 
-  std::array<Words, 2> words_;
+  std::size_t n_kinds_ = 0;
+  std::vector<Words> words_;
 };
 
 } // namespace latcon::lattice

@@ -169,7 +169,7 @@ bool Contact::may_touch(const State &state, std::size_t first, std::size_t secon
     return false;
   for (const auto &[near, far] : {std::pair(first, second), std::pair(second, first)})
     for (std::size_t kind = 0; kind < state.bonds.n_kinds(); ++kind)
-      if (near + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(near))) == far)
+      if (lattice_.bond(near, kind).far == far)
         return !state.bonds.present(near, kind);
   return true;
 }

@@ -57,11 +57,11 @@ void cut_out(State &state, const TriangularLattice &lattice, const Cutout &cutou
       state.inverse_mass[place] = 0.;
     }
   for_each_bond(state, lattice,
-                [&](std::size_t near, std::size_t kind, std::size_t far)
+                [&](const Bond &bond)
                 {
-                  if (state.removed[near] != 0 || state.removed[far] != 0 ||
-                      shape.crosses(lattice.reference(near), lattice.bond_vector(kind)))
-                    state.bonds.remove(near, kind);
+                  if (state.removed[bond.near] != 0 || state.removed[bond.far] != 0 ||
+                      shape.crosses(lattice.reference(bond.near), lattice.bond_vector(bond.kind)))
+                    state.bonds.remove(bond.near, bond.kind);
                 });
 }
 

@@ -39,7 +39,6 @@ Eigen::Matrix2d fast_tangent_along_x(const TriangularLattice &lattice, const Mat
 Eigen::Vector2d missing_force(const TriangularLattice &lattice, const Material &material, std::size_t place,
                               const Eigen::Matrix2d &F)
 {
-  const std::size_t row = lattice.row_of(place);
   Eigen::Vector2d force = Eigen::Vector2d::Zero();
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
   {
@@ -50,9 +49,9 @@ Eigen::Vector2d missing_force(const TriangularLattice &lattice, const Material &
     const double length = bond.norm();
     const double axial =
       cross_section(*shell, lattice) * lattice::force(shell->law, length / lattice.rest_length(kind));
-    if (!lattice.is_occupied(place + static_cast<std::size_t>(lattice.shift(kind, row))))
+    if (!lattice.is_occupied(lattice.bond(place, kind).far))
       force += axial / length * bond;
-    if (!lattice.is_occupied(place - static_cast<std::size_t>(lattice.shift_into(kind, row))))
+    if (!lattice.is_occupied(lattice.bond_into(place, kind).near))
       force -= axial / length * bond;
   }
   return force;
@@ -98,7 +97,7 @@ EndLoads::EndLoads(const RowPartition &band, const Material &material, const Sta
       if (state.held[place] != 0 || end == End::held)
         continue;
       unsigned int bonds = 0;
-      for_each_bond_of_site(state, lattice, place, [&](std::size_t, std::size_t) { ++bonds; });
+      for_each_bond_of_site(state, lattice, place, [&](const Bond &) { ++bonds; });
       if (bonds == material.coordination())
         continue;
       dead_.push_back({place, missing_force(lattice, material, place, F)});

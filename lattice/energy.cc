@@ -6,7 +6,7 @@ namespace latcon::lattice
 namespace
 {
 
-// Sum of energy(place, kind) over all bonds. Each row is summed by one thread.
+// Sum of energy(bond) over all bonds. Each row is summed by one thread.
 template <class Energy>
 double sum_over_bonds(const State &state, const RowPartition &band, const Energy &energy)
 {
@@ -15,8 +15,7 @@ double sum_over_bonds(const State &state, const RowPartition &band, const Energy
                [&](std::size_t row)
                {
                  double sum = 0.;
-                 for_each_bond(state, band.lattice(), {row, row + 1},
-                               [&](std::size_t place, std::size_t kind, std::size_t) { sum += energy(place, kind); });
+                 for_each_bond(state, band.lattice(), {row, row + 1}, [&](const Bond &bond) { sum += energy(bond); });
                  of_rows[row] = sum;
                });
   return band.sum(of_rows);
@@ -32,11 +31,11 @@ double elastic_energy(const State &state, const RowPartition &band, const Materi
     if (const Shell *shell = material.shell(kind))
       volume[kind] = cross_section(*shell, lattice) * lattice.rest_length(kind);
   return sum_over_bonds(state, band,
-                        [&](std::size_t place, std::size_t kind)
+                        [&](const Bond &bond)
                         {
-                          return state.stiffness.of(place, kind) *
-                                 (volume[kind] *
-                                  energy(material.shell(kind)->law, stretch(state, lattice, place, kind)));
+                          return state.stiffness.of(bond.near, bond.kind) *
+                                 (volume[bond.kind] *
+                                  energy(material.shell(bond.kind)->law, stretch(state, lattice, bond)));
                         });
 }
 
@@ -46,8 +45,9 @@ namespace
 // Calls add(mechanism of the shell, energy [J/m]) for the memory of one bond.
 template <class Add>
 void for_each_mechanism(const State &state, const TriangularLattice &lattice, const Material &material,
-                        std::size_t place, std::size_t kind, const Add &add)
+                        const Bond &bond, const Add &add)
 {
+  const std::size_t place = bond.near, kind = bond.kind;
   const BondHistory::Kind &history = state.history.kinds[kind];
   if (history.variables.empty())
     return;
@@ -66,8 +66,7 @@ double memory_energy(const State &state, const RowPartition &band, const Materia
   if (state.history.empty())
     return 0.;
   return sum_over_bonds(state, band,
-                        [&](std::size_t place, std::size_t kind)
-                        { return memory_energy(state, band.lattice(), material, place, kind); });
+                        [&](const Bond &bond) { return memory_energy(state, band.lattice(), material, bond); });
 }
 
 std::vector<double> memory_energies(const State &state, const RowPartition &band, const Material &material)
@@ -83,11 +82,11 @@ std::vector<double> memory_energies(const State &state, const RowPartition &band
                [&](std::size_t row)
                {
                  for_each_bond(state, lattice, {row, row + 1},
-                               [&](std::size_t place, std::size_t kind, std::size_t)
+                               [&](const Bond &bond)
                                {
-                                 for_each_mechanism(state, lattice, material, place, kind,
+                                 for_each_mechanism(state, lattice, material, bond,
                                                     [&](std::size_t m, double energy)
-                                                    { of_rows[first[shell_of(kind)] + m][row] += energy; });
+                                                    { of_rows[first[shell_of(bond.kind)] + m][row] += energy; });
                                });
                });
   std::vector<double> energies;
@@ -96,11 +95,10 @@ std::vector<double> memory_energies(const State &state, const RowPartition &band
   return energies;
 }
 
-double memory_energy(const State &state, const TriangularLattice &lattice, const Material &material, std::size_t place,
-                     std::size_t kind)
+double memory_energy(const State &state, const TriangularLattice &lattice, const Material &material, const Bond &bond)
 {
   double sum = 0.;
-  for_each_mechanism(state, lattice, material, place, kind, [&](std::size_t, double energy) { sum += energy; });
+  for_each_mechanism(state, lattice, material, bond, [&](std::size_t, double energy) { sum += energy; });
   return sum;
 }
 

@@ -19,8 +19,7 @@ double memory_energy(const State &state, const RowPartition &band, const Materia
 std::vector<double> memory_energies(const State &state, const RowPartition &band, const Material &material);
 
 /// Energy in the memory of one bond.
-double memory_energy(const State &state, const TriangularLattice &lattice, const Material &material, std::size_t place,
-                     std::size_t kind);
+double memory_energy(const State &state, const TriangularLattice &lattice, const Material &material, const Bond &bond);
 
 /// Kinetic energy of all free sites, per sheet thickness [J/m]. Collective.
 double kinetic_energy(const State &state, const RowPartition &band);

@@ -4,17 +4,12 @@
 
 #include <omp.h>
 
-#include "lattice/shell_kernels.h"
-
 namespace latcon::lattice
 {
 namespace
 {
 
-constexpr std::ptrdiff_t reach = 2; // of bonds, in rows
-
-// The first shell that is not among n_row_kinds.
-constexpr std::size_t first_further_shell = kernels::n_row_kinds / n_kinds_per_shell;
+constexpr auto reach = static_cast<std::ptrdiff_t>(TriangularLattice::reach);
 
 // History of the bonds of one kind that start at a place and the places after it.
 template <class Pointer, class Kind>
@@ -43,9 +38,7 @@ bool has_factors(const State &state)
 } // namespace
 
 Forces::Forces(const RowPartition &band, const Material &material)
-  : band_(band), lattice_(band.lattice()), laws_(laws_of(material)),
-    n_kinds_(material.third_nearest ? n_bond_kinds : kernels::n_row_kinds),
-    rows_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - lattice_.stride())),
+  : band_(band), lattice_(band.lattice()), laws_(laws_of(material)), n_kinds_(material.n_kinds()),
     columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_viscous_power_(lattice_.rows(), 0.),
     row_mechanism_power_(material.n_mechanisms(), Field(lattice_.rows(), 0.)), row_events_(lattice_.rows(), 0),
     row_short_bonds_(lattice_.rows(), 0)
@@ -56,7 +49,7 @@ Forces::Forces(const RowPartition &band, const Material &material)
     {
       const double rest_length = lattice_.rest_length(number * n_kinds_per_shell);
       const double section = cross_section(*shell, lattice_);
-      constants_.shells[number] = {rest_length, section, section * shell->viscosity / rest_length};
+      constants_[number] = {rest_length, section, section * shell->viscosity / rest_length};
       memories_[number] = shell->memory;
       first_mechanism_[number] = material.first_mechanism(number);
     }
@@ -79,24 +72,25 @@ void Forces::update_memory(State &state)
   for (std::ptrdiff_t i = 0; i < n; ++i)
   {
     const std::size_t row = rows[static_cast<std::size_t>(i)];
-    const kernels::RowOfBonds bonds = row_of_bonds({state, state.vx, state.vy}, row);
+    const kernels::RowOfBonds sites = sites_of_row({state, state.vx, state.vy}, row);
+    const BondsOfKinds kinds = bonds_of_kinds(state, row);
     for (std::size_t kind = 0; kind < n_kinds_; ++kind)
       if (BondHistory::Kind &history = state.history.kinds[kind]; !history.variables.empty())
-        kernels::update_memory(memory_steps_[shell_of(kind)], constants_.shell(kind), of_kind(bonds, state, row, kind),
-                               kind, remembered_from<double *>(history, lattice_.index(row, 0)));
+        kernels::update_memory(memory_steps_[shell_of(kind)], sites, kinds[kind],
+                               remembered_from<double *>(history, lattice_.index(row, 0)));
   }
   set_elapsed(0.);
 }
 
 // Adds the overstress of the bonds that start in row `from` to what their laws give.
-void Forces::add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &bonds,
-                            std::vector<double> &mechanism_power) const
+void Forces::add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &row,
+                            const BondsOfKinds &kinds, std::vector<double> &mechanism_power) const
 {
   mechanism_power.assign(row_mechanism_power_.size(), 0.);
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
     if (const BondHistory::Kind &history = state.history.kinds[kind]; !history.variables.empty())
-      kernels::add_overstress(memory_steps_[shell_of(kind)], constants_.shell(kind), of_kind(bonds, state, from, kind),
-                              kind, remembered_from<const double *>(history, lattice_.index(from, 0)),
+      kernels::add_overstress(memory_steps_[shell_of(kind)], row, kinds[kind],
+                              remembered_from<const double *>(history, lattice_.index(from, 0)),
                               &mechanism_power[first_mechanism_[shell_of(kind)]]);
 }
 
@@ -163,84 +157,82 @@ void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrd
 
 void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, Scratch &scratch) const
 {
-  if (row >= 0)
-    bonds_of_row(motion, static_cast<std::size_t>(row), row, scratch);
-  else if (rows_repeat_)
-    bonds_of_row(motion, lattice_.rows() - static_cast<std::size_t>(-row), row, scratch);
+  if (const auto from = lattice_.row(row))
+    bonds_of_row(motion, *from, row, scratch);
   else
     for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-      for (std::size_t component = 0; component < 2; ++component)
-        std::fill_n(scratch.bonds.at(row, kind, component) - TriangularLattice::row_alignment, lattice_.stride(), 0.);
+      for (double *component : scratch.bonds.at(row, kind))
+        std::fill_n(component - TriangularLattice::row_alignment, lattice_.stride(), 0.);
 }
 
-kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row) const
+Forces::BondsOfKinds Forces::bonds_of_kinds(const State &state, std::size_t row) const
+{
+  const std::size_t near = lattice_.index(row, 0);
+  const auto from = [near](const Field &factors) { return factors.empty() ? nullptr : factors.data() + near; };
+  BondsOfKinds kinds;
+  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
+  {
+    // One by one: a whole that is copied would wait for its parts.
+    kernels::BondsOfKind &bonds = kinds[kind];
+    bonds.constants = constants_[shell_of(kind)];
+    bonds.shift = static_cast<std::ptrdiff_t>(lattice_.shift(kind, row));
+    bonds.states = state.bonds.words(kind) + near;
+    bonds.present = BondStates::bit(kind);
+    bonds.toughened = BondStates::toughened_bit(kind);
+    bonds.retraction_stretch = retraction_stretch_[kind];
+    bonds.stiffness = from(state.stiffness.kinds[kind]);
+    bonds.strength = from(state.strength.kinds[kind]);
+  }
+  return kinds;
+}
+
+kernels::RowOfBonds Forces::sites_of_row(const Motion &motion, std::size_t row) const
 {
   const std::size_t near = lattice_.index(row, 0);
   const State &state = motion.state;
-  kernels::RowOfBonds bonds{lattice_.columns(),
-                            &state.x[near],
-                            &state.y[near],
-                            &motion.vx[near],
-                            &motion.vy[near],
-                            state.bonds.words() + near,
-                            {},
-                            state.breaking_stretch,
-                            state.toughened_stretch,
-                            {},
-                            nullptr,
-                            0};
-  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-  {
-    bonds.shift[kind] = lattice_.shift(kind, row);
-    const auto from = [near](const Field &factors) { return factors.empty() ? nullptr : factors.data() + near; };
-    bonds.stiffness[kind] = from(state.stiffness.kinds[kind]);
-    bonds.strength[kind] = from(state.strength.kinds[kind]);
-  }
-  return bonds;
-}
-
-// The same row with the words that hold a kind of its bonds.
-kernels::RowOfBonds Forces::of_kind(kernels::RowOfBonds bonds, const State &state, std::size_t row,
-                                    std::size_t kind) const
-{
-  bonds.bonds = state.bonds.words(kind) + lattice_.index(row, 0);
-  return bonds;
+  return {lattice_.columns(), &state.x[near],         &state.y[near],          &motion.vx[near],
+          &motion.vy[near],   state.breaking_stretch, state.toughened_stretch, shortness_limit_};
 }
 
 bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ahead) const
 {
-  const kernels::RowOfBonds bonds = row_of_bonds({state, state.vx, state.vy}, row);
-  const bool one_by_one = has_factors(state);
-  if (!one_by_one && kernels::any_event_ahead(constants_, bonds, ahead))
-    return true;
-  for (std::size_t shell = one_by_one ? 0 : first_further_shell; shell < n_shells; ++shell)
-    if (has_shell(shell) && kernels::any_event_ahead_in_shell(
-                              constants_, of_kind(bonds, state, row, shell * n_kinds_per_shell), shell, ahead))
-      return true;
-  return false;
+  const BondsOfKinds kinds = bonds_of_kinds(state, row);
+  kernels::RowOfBonds bonds = sites_of_row({state, state.vx, state.vy}, row);
+  bonds.kinds = kinds.data();
+  bonds.n_kinds = n_kinds_;
+  return kernels::any_event_ahead(bonds, ahead);
 }
 
 // The bonds of row `from` as those of `row`: the same, or below the edge of a periodic sheet.
 kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row,
                                       Scratch &scratch) const
 {
-  kernels::RowOfBonds all = row_of_bonds(motion, from);
-  all.ahead = scratch.ahead.data();
-  all.n_ahead = scratch.ahead.size();
+  BondsOfKinds kinds = bonds_of_kinds(motion.state, from);
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-    for (std::size_t component = 0; component < 2; ++component)
-      all.force[kind][component] = scratch.bonds.at(row, kind, component);
+    kinds[kind].force = scratch.bonds.at(row, kind);
+  kernels::RowOfBonds bonds = sites_of_row(motion, from);
+  bonds.ahead = scratch.ahead.data();
+  bonds.n_ahead = scratch.ahead.size();
   kernels::RowSums sums;
-  const bool one_by_one = has_factors(motion.state);
-  if (!one_by_one)
-    sums = kernels::bonds_of_row(laws_, constants_, all);
-  for (std::size_t shell = one_by_one ? 0 : first_further_shell; shell < n_shells; ++shell)
+  std::size_t shell = 0;
+  if (!has_factors(motion.state))
+  {
+    // The first two at once.
+    bonds.kinds = kinds.data();
+    bonds.n_kinds = (has_shell(1) ? 2 : 1) * n_kinds_per_shell;
+    sums = kernels::bonds_of_row(laws_, bonds);
+    shell = 2;
+  }
+  for (; shell < n_shells; ++shell)
     if (has_shell(shell))
-      kernels::bonds_of_shell(laws_[shell], constants_, of_kind(all, motion.state, from, shell * n_kinds_per_shell),
-                              shell, sums);
+    {
+      bonds.kinds = &kinds[shell * n_kinds_per_shell];
+      bonds.n_kinds = n_kinds_per_shell;
+      kernels::bonds_of_stencil(laws_[shell], bonds, sums);
+    }
   if (!row_mechanism_power_.empty())
   {
-    add_overstress(motion.state, from, all, scratch.mechanism_power);
+    add_overstress(motion.state, from, bonds, kinds, scratch.mechanism_power);
     for (const double power : scratch.mechanism_power)
       sums.viscous_power += power;
   }
@@ -248,7 +240,7 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   const std::size_t columns = lattice_.columns();
   if (columns_repeat_)
     for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-      for (double *component : all.force[kind])
+      for (double *component : kinds[kind].force)
       {
         std::copy_n(component, 2, component + columns);
         std::copy_n(component + columns - 2, 2, component - 2);
@@ -258,30 +250,22 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
 
 void Forces::gather_row(std::ptrdiff_t row, Scratch &scratch) const
 {
-  BondRows &bonds = scratch.bonds;
-  const auto index = static_cast<std::size_t>(row);
-  for (std::size_t component = 0; component < 2; ++component)
+  std::array<std::array<const double *, n_bond_kinds>, 2> start{}, end{};
+  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {
-    std::array<const double *, kernels::n_row_kinds> start, end;
-    for (std::size_t kind = 0; kind < kernels::n_row_kinds; ++kind)
-      start[kind] = bonds.at(row, kind, component);
-    end[0] = start[0] - 1;
-    end[5] = bonds.at(row - 2, 5, component);
-    // The others come from a row of the other parity, where the same shift leads from the site's column to their start.
-    for (std::size_t kind = 1; kind < 5; ++kind)
-      end[kind] = bonds.at(row - 1, kind, component) + static_cast<std::ptrdiff_t>(lattice_.stride()) -
-                  lattice_.shift(kind, index + 1);
-    double *const total = (component == 0 ? scratch.fx : scratch.fy).data();
-    kernels::gather_row(lattice_.columns(), start, end, total);
-    if (n_kinds_ == kernels::n_row_kinds)
-      continue;
-    constexpr std::size_t first = kernels::n_row_kinds;
-    const std::array<const double *, n_kinds_per_shell> third_start{
-      {bonds.at(row, first, component), bonds.at(row, first + 1, component), bonds.at(row, first + 2, component)}};
-    const std::array<const double *, n_kinds_per_shell> third_end{
-      {third_start[0] - 2, bonds.at(row - 2, first + 1, component) - 1, bonds.at(row - 2, first + 2, component) + 1}};
-    kernels::add_third_shell(lattice_.columns(), third_start, third_end, total);
+    const std::ptrdiff_t rows = TriangularLattice::rows_across(kind);
+    // From the place of the same column where a bond starts to the one where it ends.
+    const auto columns = static_cast<std::ptrdiff_t>(lattice_.shift(kind, static_cast<std::size_t>(row + rows)) -
+                                                     static_cast<std::size_t>(rows) * lattice_.stride());
+    const std::array<double *, 2> starting = scratch.bonds.at(row, kind), ending = scratch.bonds.at(row - rows, kind);
+    for (std::size_t component = 0; component < 2; ++component)
+    {
+      start[component][kind] = starting[component];
+      end[component][kind] = ending[component] - columns;
+    }
   }
+  kernels::gather_row(lattice_.columns(), n_kinds_, start[0], end[0], scratch.fx.data());
+  kernels::gather_row(lattice_.columns(), n_kinds_, start[1], end[1], scratch.fy.data());
 }
 
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
@@ -296,75 +280,72 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
   evaluate(state, vx, vy, {{}, nullptr, std::ref(keep)});
 }
 
-void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, std::size_t place, std::size_t kind)
+void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, const Bond &bond)
 {
-  if (band_.owns(place))
-  {
-    const std::size_t row = lattice_.row_of(place);
-    const kernels::BondForce bond = single_bond({state, vx, vy}, place, kind);
-    row_viscous_power_[row] -= bond.viscous_power;
-    if (!state.history.kinds[kind].variables.empty())
-    {
-      const std::size_t shell = shell_of(kind);
-      const kernels::Overstress over = overstress(state, place, kind, bond.stretch);
-      for (std::size_t m = 0; m < n_mechanisms(memories_[shell]); ++m)
-        row_mechanism_power_[first_mechanism_[shell] + m][row] -= over.dissipation[m];
-    }
-  }
+  if (!band_.owns(bond.near))
+    return;
+  const std::size_t row = lattice_.row_of(bond.near), shell = shell_of(bond.kind);
+  const kernels::BondForce force = single_bond({state, vx, vy}, bond);
+  row_viscous_power_[row] -= force.viscous_power;
+  if (state.history.kinds[bond.kind].variables.empty())
+    return;
+  const kernels::Overstress over = overstress(state, bond, force.stretch);
+  for (std::size_t m = 0; m < n_mechanisms(memories_[shell]); ++m)
+    row_mechanism_power_[first_mechanism_[shell] + m][row] -= over.dissipation[m];
 }
 
-kernels::Overstress Forces::overstress(const State &state, std::size_t place, std::size_t kind, double stretch) const
+kernels::Overstress Forces::overstress(const State &state, const Bond &bond, double stretch) const
 {
-  kernels::Overstress over = kernels::overstress(memory_steps_[shell_of(kind)], constants_.shell(kind), stretch, place,
-                                                 remembered_from<const double *>(state.history.kinds[kind], 0));
-  const double factor = state.stiffness.of(place, kind);
+  const std::size_t shell = shell_of(bond.kind);
+  kernels::Overstress over = kernels::overstress(memory_steps_[shell], constants_[shell], stretch, bond.near,
+                                                 remembered_from<const double *>(state.history.kinds[bond.kind], 0));
+  const double factor = state.stiffness.of(bond.near, bond.kind);
   over.axial *= factor;
   for (double &power : over.dissipation)
     power *= factor;
   return over;
 }
 
-kernels::BondForce Forces::single_bond(const Motion &motion, std::size_t place, std::size_t kind) const
+kernels::BondForce Forces::single_bond(const Motion &motion, const Bond &bond) const
 {
-  const State &state = motion.state;
-  const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
-  kernels::BondForce bond = kernels::bond_force(
-    laws_[shell_of(kind)], constants_.shell(kind), state.stiffness.of(place, kind), state.x[far] - state.x[place],
-    state.y[far] - state.y[place], motion.vx[far] - motion.vx[place], motion.vy[far] - motion.vy[place]);
+  const auto &[state, vx, vy] = motion;
+  const auto [near, kind, far] = bond;
+  kernels::BondForce force = kernels::bond_force(laws_[shell_of(kind)], constants_[shell_of(kind)],
+                                                 state.stiffness.of(near, kind), state.x[far] - state.x[near],
+                                                 state.y[far] - state.y[near], vx[far] - vx[near], vy[far] - vy[near]);
   if (!state.history.kinds[kind].variables.empty())
   {
-    const kernels::Overstress over = overstress(state, place, kind, bond.stretch);
-    bond.x += over.axial * bond.nx;
-    bond.y += over.axial * bond.ny;
+    const kernels::Overstress over = overstress(state, bond, force.stretch);
+    force.x += over.axial * force.nx;
+    force.y += over.axial * force.ny;
     for (const double power : over.dissipation)
-      bond.viscous_power += power;
+      force.viscous_power += power;
   }
-  return bond;
+  return force;
 }
 
 Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field &vy, std::size_t place) const
 {
-  const std::size_t row = lattice_.row_of(place);
   std::array<std::array<double, n_bond_kinds>, 2> start{}, end{};
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {
-    const auto note = [&](std::size_t near_place, auto &force)
+    const auto note = [&](const Bond &bond, auto &of_kind)
     {
-      if (!state.bonds.present(near_place, kind))
+      if (!state.bonds.present(bond.near, kind))
         return;
-      const kernels::BondForce bond = single_bond({state, vx, vy}, near_place, kind);
-      force[0][kind] = bond.x;
-      force[1][kind] = bond.y;
+      const kernels::BondForce force = single_bond({state, vx, vy}, bond);
+      of_kind[0][kind] = force.x;
+      of_kind[1][kind] = force.y;
     };
-    note(place, start);
-    note(lattice_.canonical_place(place - static_cast<std::size_t>(lattice_.shift_into(kind, row))), end);
+    note(lattice_.bond(place, kind), start);
+    note(lattice_.bond_into(place, kind), end);
   }
-  Eigen::Vector2d force(sum_of_bonds(start[0], end[0]), sum_of_bonds(start[1], end[1]));
-  constexpr std::size_t third = kernels::n_row_kinds;
-  if (n_kinds_ > third)
-    force += Eigen::Vector2d(sum_of_third_shell(&start[0][third], &end[0][third]),
-                             sum_of_third_shell(&start[1][third], &end[1][third]));
-  return force;
+  const auto sum = [&](std::size_t component)
+  {
+    return n_kinds_ == n_bond_kinds ? sum_of_bonds<true>(start[component], end[component])
+                                    : sum_of_bonds<false>(start[component], end[component]);
+  };
+  return {sum(0), sum(1)};
 }
 
 } // namespace latcon::lattice

@@ -2,11 +2,12 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "lattice/memory_kernels.h"
-#include "lattice/row_kernels.h"
 #include "lattice/state.h"
+#include "lattice/stencil_kernels.h"
 
 namespace latcon::lattice
 {
@@ -27,14 +28,11 @@ public:
 
   /// Bonds below this stretch that are not toughened count as events too, per kind: all positive, or all 0 (no such
   /// event), which is the default. For toughening on retraction.
-  void set_retraction_threshold(const std::array<double, n_bond_kinds> &stretch)
-  {
-    constants_.retraction_stretch = stretch;
-  }
+  void set_retraction_threshold(const std::array<double, n_bond_kinds> &stretch) { retraction_stretch_ = stretch; }
 
   /// Enables row_has_short_bonds() for bonds whose stretch is below `stretch` [-], but for linear ones; 0: for none,
   /// the default.
-  void set_shortness_threshold(double stretch) { constants_.shortness_limit = 1. / stretch; }
+  void set_shortness_threshold(double stretch) { shortness_limit_ = 1. / stretch; }
 
   /// Sets the time since the last update of the memory of bonds, in which they reached the positions at which forces
   /// are evaluated next [s], >= 0; 0 by default.
@@ -93,7 +91,7 @@ public:
   /// Takes a bond that has just broken out of viscous_power(), if it is there.
   /// @param state as at the last evaluation
   /// @param vx,vy velocities of that evaluation
-  void remove_bond(const State &state, const Field &vx, const Field &vy, std::size_t place, std::size_t kind);
+  void remove_bond(const State &state, const Field &vx, const Field &vy, const Bond &bond);
 
 private:
   /// Forces on the near ends of the bonds that start in the last rows: in as many as the neighbours of a site through
@@ -103,12 +101,13 @@ private:
   public:
     BondRows(std::size_t stride, std::size_t n_kinds) : stride_(stride), values_(first[n_kinds] * 2 * stride, 0.) {}
 
-    /// The x (0) or y (1) component for the bonds of a kind that start in a row >= -2: column 0, with
+    /// The components along x and y for the bonds of a kind that start in a row >= -2: column 0, with
     /// TriangularLattice::row_alignment places before it.
-    double *at(std::ptrdiff_t row, std::size_t kind, std::size_t component)
+    std::array<double *, 2> at(std::ptrdiff_t row, std::size_t kind)
     {
       const std::size_t slot = first[kind] + static_cast<std::size_t>(row + 6) % (first[kind + 1] - first[kind]);
-      return &values_[(2 * slot + component) * stride_ + TriangularLattice::row_alignment];
+      double *const x = &values_[2 * slot * stride_ + TriangularLattice::row_alignment];
+      return {{x, x + stride_}};
     }
 
   private:
@@ -136,16 +135,17 @@ private:
 
   void evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
                      const RowCallbacks &work);
-  kernels::RowOfBonds row_of_bonds(const Motion &motion, std::size_t row) const;
-  kernels::RowOfBonds of_kind(kernels::RowOfBonds bonds, const State &state, std::size_t row, std::size_t kind) const;
-  bool has_shell(std::size_t shell) const { return constants_.shells[shell].cross_section > 0.; }
+  using BondsOfKinds = std::array<kernels::BondsOfKind, n_bond_kinds>;
+  BondsOfKinds bonds_of_kinds(const State &state, std::size_t row) const;
+  kernels::RowOfBonds sites_of_row(const Motion &motion, std::size_t row) const;
+  bool has_shell(std::size_t shell) const { return constants_[shell].cross_section > 0.; }
   void bonds_from_below(const Motion &motion, std::ptrdiff_t row, Scratch &scratch) const;
   kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, Scratch &scratch) const;
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
-  void add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &bonds,
+  void add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &row, const BondsOfKinds &kinds,
                       std::vector<double> &mechanism_power) const;
-  kernels::Overstress overstress(const State &state, std::size_t place, std::size_t kind, double stretch) const;
-  kernels::BondForce single_bond(const Motion &motion, std::size_t place, std::size_t kind) const;
+  kernels::Overstress overstress(const State &state, const Bond &bond, double stretch) const;
+  kernels::BondForce single_bond(const Motion &motion, const Bond &bond) const;
 
   RowPartition band_;
   const TriangularLattice &lattice_;
@@ -154,9 +154,10 @@ private:
   std::array<MemoryStep, n_shells> memory_steps_;
   std::array<std::size_t, n_shells> first_mechanism_{}; // of each shell
   std::size_t n_kinds_;                                 // of bonds: the first so many
-  kernels::SheetConstants constants_;
-  bool rows_repeat_;    // periodic across the rows
-  bool columns_repeat_; // periodic along them
+  std::array<kernels::BondConstants, n_shells> constants_;
+  std::array<double, n_bond_kinds> retraction_stretch_{};
+  double shortness_limit_ = std::numeric_limits<double>::infinity();
+  bool columns_repeat_; // periodic along the rows
 
   std::vector<Scratch> scratch_; // one a thread
   Field fx_, fy_;

@@ -77,56 +77,54 @@ std::vector<std::uint8_t> Fracture::rows_with_events_ahead(const State &state, c
 }
 
 // With the expressions of the loops over a row: one that they do not flag has no event, one that they flag has one.
-Fracture::Event Fracture::event(const State &state, std::size_t place, std::size_t kind) const
+Fracture::Event Fracture::event(const State &state, const Bond &bond) const
 {
-  const double longest = breaking_stretch_of(state, place, kind);
-  const double shortest = state.bonds.toughened(place, kind) ? 0. : retraction_stretch_[kind];
+  const auto [near, kind, far] = bond;
+  const double longest = breaking_stretch_of(state, bond);
+  const double shortest = state.bonds.toughened(near, kind) ? 0. : retraction_stretch_[kind];
   const auto among = [](double value, double from, double to) {
     return value > to ? Event::broken : value < from ? Event::retracted : Event::none;
   };
   if (!(lookahead_ > 0.))
-    return among(stretch(state, lattice_, place, kind), shortest, longest);
-  const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
+    return among(stretch(state, lattice_, bond), shortest, longest);
   const double l = lattice_.rest_length(kind);
-  return among(squared_length_after(lookahead_, state.x[far] - state.x[place], state.y[far] - state.y[place],
-                                    state.vx[far] - state.vx[place], state.vy[far] - state.vy[place]),
+  return among(squared_length_after(lookahead_, state.x[far] - state.x[near], state.y[far] - state.y[near],
+                                    state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]),
                squared_length(shortest, l), squared_length(longest, l));
 }
 
-double Fracture::bond_energy(const State &state, std::size_t place, std::size_t kind) const
+double Fracture::bond_energy(const State &state, const Bond &bond) const
 {
-  const Shell &shell = *material_.shell(kind);
+  const Shell &shell = *material_.shell(bond.kind);
   const double elastic =
-    state.stiffness.of(place, kind) * (cross_section(shell, lattice_) * lattice_.rest_length(kind) *
-                                       energy(shell.law, stretch(state, lattice_, place, kind)));
-  return elastic + memory_energy(state, lattice_, material_, place, kind);
+    state.stiffness.of(bond.near, bond.kind) * (cross_section(shell, lattice_) * lattice_.rest_length(bond.kind) *
+                                                energy(shell.law, stretch(state, lattice_, bond)));
+  return elastic + memory_energy(state, lattice_, material_, bond);
 }
 
 // Message between ranks about a broken bond.
 struct Fracture::Loss
 {
-  std::size_t place, kind;
+  Bond bond;
   double stretch, energy;
 };
 
-Fracture::Loss Fracture::loss(const State &state, std::size_t place, std::size_t kind) const
+Fracture::Loss Fracture::loss(const State &state, const Bond &bond) const
 {
-  return {place, kind, stretch(state, lattice_, place, kind), bond_energy(state, place, kind)};
+  return {bond, stretch(state, lattice_, bond), bond_energy(state, bond)};
 }
 
 // Takes bonds out of the sheet. @return those of all ranks in the order of storage, if `own` ones are in it
 std::vector<BrokenBond> Fracture::lose_bonds(State &state, const std::vector<Loss> &own, int *number) const
 {
   std::vector<BrokenBond> lost;
-  for (const Loss &bond : band_.all_gather(own, number))
+  for (const auto &[bond, stretch, energy] : band_.all_gather(own, number))
   {
-    const std::size_t far =
-      bond.place + static_cast<std::size_t>(lattice_.shift(bond.kind, lattice_.row_of(bond.place)));
-    const Eigen::Vector2d midpoint = lattice_.reference(bond.place) + 0.5 * lattice_.bond_vector(bond.kind);
-    state.bonds.remove(bond.place, bond.kind);
-    ++state.lost_bonds[bond.place];
-    ++state.lost_bonds[far];
-    lost.push_back({state.time, bond.place, far, bond.kind, midpoint, bond.stretch, bond.energy});
+    state.bonds.remove(bond.near, bond.kind);
+    ++state.lost_bonds[bond.near];
+    ++state.lost_bonds[bond.far];
+    lost.push_back(
+      {bond, state.time, lattice_.reference(bond.near) + 0.5 * lattice_.bond_vector(bond.kind), stretch, energy});
   }
   return lost;
 }
@@ -139,7 +137,7 @@ double Fracture::remove_bonds(State &state, std::vector<std::pair<std::size_t, s
   std::vector<Loss> own;
   for (const auto &[place, kind] : bonds)
     if (band_.owns(place) && state.bonds.present(place, kind))
-      own.push_back(loss(state, place, kind));
+      own.push_back(loss(state, lattice_.bond(place, kind)));
   double removed_energy = 0.;
   for (const BrokenBond &bond : lose_bonds(state, own, nullptr))
     removed_energy += bond.energy;
@@ -152,8 +150,7 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
   for (const std::size_t place : places)
   {
     require(lattice_.is_site(place), "only a site can be removed");
-    for_each_bond_of_site(state, lattice_, place,
-                          [&](std::size_t near, std::size_t kind) { bonds.emplace_back(near, kind); });
+    for_each_bond_of_site(state, lattice_, place, [&](const Bond &bond) { bonds.emplace_back(bond.near, bond.kind); });
   }
   const double removed_energy = remove_bonds(state, std::move(bonds));
   for (const std::size_t place : places)
@@ -180,34 +177,28 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
   {
     if (lookahead_ > 0. ? ahead[row] == 0 : !forces.row_has_events(row))
       continue;
-    for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
-    {
-      const std::size_t place = lattice_.index(row, column);
-      for (std::size_t kind = 0; kind < state.bonds.n_kinds(); ++kind)
-      {
-        if (!state.bonds.present(place, kind))
-          continue;
-        const Event now = event(state, place, kind);
-        if (now == Event::broken)
-          own.push_back(loss(state, place, kind));
-        else if (now == Event::retracted)
-          state.bonds.toughen(place, kind);
-      }
-    }
+    for_each_bond(state, lattice_, {row, row + 1},
+                  [&](const Bond &bond)
+                  {
+                    const Event now = event(state, bond);
+                    if (now == Event::broken)
+                      own.push_back(loss(state, bond));
+                    else if (now == Event::retracted)
+                      state.bonds.toughen(bond.near, bond.kind);
+                  });
   }
   broken_ = lose_bonds(state, own, number);
   for (const BrokenBond &bond : broken_)
-    forces.remove_bond(state, evaluated_vx, evaluated_vy, bond.near, bond.kind);
+    forces.remove_bond(state, evaluated_vx, evaluated_vy, bond);
 
-  const std::optional<std::size_t> previous_tip = tip_;
-  if (tip_)
-    tip_y_ = lattice_.reference(*tip_).y();
+  const std::optional<std::size_t> previous_tip = tip_.place;
+  tip_.begin_step();
   for (const BrokenBond &bond : broken_)
   {
     consider_tip(state, bond.near);
     consider_tip(state, bond.far);
   }
-  if (tip_ != previous_tip)
+  if (tip_.place != previous_tip)
     toughen_behind_tip(state);
   return broken_;
 }
@@ -225,28 +216,15 @@ void Fracture::consider_tip(const State &state, std::size_t place)
 {
   if (state.lost_bonds[place] < tip_losses_ || state.held[place] != 0 || state.removed[place] != 0)
     return;
-  const Eigen::Vector2d reference = lattice_.reference(place);
-  if (tip_)
-  {
-    if (reference.x() < tip_x_)
-      return;
-    if (reference.x() == tip_x_)
-    {
-      const double rival = std::abs(lattice_.reference(*tip_).y() - tip_y_);
-      if (!(std::abs(reference.y() - tip_y_) < rival))
-        return;
-    }
-  }
-  tip_ = place;
-  tip_x_ = reference.x();
+  tip_.consider(place, lattice_.reference(place));
 }
 
 void Fracture::toughen_behind_tip(State &state)
 {
   const auto *behind = std::get_if<BehindTipToughening>(&toughening_);
-  if (behind == nullptr || !tip_)
+  if (behind == nullptr || !tip_.place)
     return;
-  const double boundary = tip_x_ - behind->distance;
+  const double boundary = tip_.X.x() - behind->distance;
   // The tip never retreats: bonds behind the last boundary are toughened already.
   const auto [rows, columns] = strip_around(toughened_to_, boundary);
   for (std::size_t row = rows.begin; row < rows.end; ++row)
@@ -286,12 +264,11 @@ std::optional<StretchedBond> nearest_to_breaking(const State &state, const Trian
 {
   std::optional<StretchedBond> nearest;
   for_each_bond(state, lattice,
-                [&](std::size_t near, std::size_t kind, std::size_t far)
+                [&](const Bond &bond)
                 {
-                  const StretchedBond bond{near, far, kind, stretch(state, lattice, near, kind),
-                                           breaking_stretch_of(state, near, kind)};
-                  if (!nearest || bond.stretch / bond.limit > nearest->stretch / nearest->limit)
-                    nearest = bond;
+                  const StretchedBond one{bond, stretch(state, lattice, bond), breaking_stretch_of(state, bond)};
+                  if (!nearest || one.stretch / one.limit > nearest->stretch / nearest->limit)
+                    nearest = one;
                 });
   return nearest;
 }

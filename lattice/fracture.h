@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lattice/archive_rows.h"
+#include "lattice/crack_tip.h"
 #include "lattice/forces.h"
 
 namespace latcon::lattice
@@ -43,11 +44,9 @@ struct RetractionToughening
 using Toughening = std::variant<NoToughening, GivenToughening, BehindTipToughening, RetractionToughening>;
 
 /// A bond that broke.
-struct BrokenBond
+struct BrokenBond : Bond
 {
   double time;              ///< [s]
-  std::size_t near, far;    ///< places of its two ends
-  std::size_t kind;         ///< see n_bond_kinds
   Eigen::Vector2d midpoint; ///< reference [m]
   double stretch;           ///< at breaking [-]
   double energy;            ///< elastic energy it held, per sheet thickness [J/m]
@@ -117,22 +116,24 @@ public:
   void locate_tip(State &state);
 
   /// Place of the tip; none before anything was cut or broken.
-  std::optional<std::size_t> tip() const { return tip_; }
+  std::optional<std::size_t> tip() const { return tip_.place; }
 
   /// Saves or loads what changes while a crack runs, besides the state; see Simulation.
   /// @throws std::invalid_argument for a tip that is none of the sheet
   template <class Archive>
   void archive(Archive &archive)
   {
-    archive("tip", tip_);
-    archive("tip_x", tip_x_);
-    archive("tip_y", tip_y_);
+    archive("tip", tip_.place);
+    archive("tip_x", tip_.X.x());
+    archive("tip_y", tip_.Y_before);
     if constexpr (Archive::loads)
     {
       toughened_to_ = -std::numeric_limits<double>::infinity();
-      require_archived(
-        !tip_ || (*tip_ < lattice_.n_places() && lattice_.is_site(*tip_) && tip_x_ == lattice_.reference(*tip_).x()),
-        "`tip` is no site of the sheet, or `tip_x` not where it is");
+      const std::size_t place = tip_.place.value_or(lattice_.index(0, 0));
+      const bool is_site = place < lattice_.n_places() && lattice_.is_site(place);
+      require_archived(is_site && (!tip_.place || tip_.X.x() == lattice_.reference(place).x()),
+                       "`tip` is no site of the sheet, or `tip_x` not where it is");
+      tip_.X.y() = lattice_.reference(place).y();
     }
   }
 
@@ -144,14 +145,14 @@ private:
     broken,   // past the limit
     retracted // to be toughened
   };
-  Event event(const State &state, std::size_t place, std::size_t kind) const;
+  Event event(const State &state, const Bond &bond) const;
   struct Loss;
-  Loss loss(const State &state, std::size_t place, std::size_t kind) const;
+  Loss loss(const State &state, const Bond &bond) const;
   std::vector<BrokenBond> lose_bonds(State &state, const std::vector<Loss> &own, int *number) const;
   void consider_tip(const State &state, std::size_t place);
   void toughen_behind_tip(State &state);
   std::pair<Rows, Rows> strip_around(double from, double to) const;
-  double bond_energy(const State &state, std::size_t place, std::size_t kind) const;
+  double bond_energy(const State &state, const Bond &bond) const;
 
   RowPartition band_;
   const TriangularLattice &lattice_;
@@ -162,20 +163,16 @@ private:
   std::array<double, n_bond_kinds> retraction_stretch_{};
   double lookahead_ = 0.; // [s]
   unsigned int tip_losses_;
-  std::optional<std::size_t> tip_;
-  double tip_x_ = 0.;                                              // reference X of the tip
-  double tip_y_ = 0.;                                              // reference Y of the tip before this step
+  CrackTip tip_;
   double toughened_to_ = -std::numeric_limits<double>::infinity(); // X [m] behind which all bonds are toughened
   std::vector<BrokenBond> broken_;
 };
 
 /// A bond that is present.
-struct StretchedBond
+struct StretchedBond : Bond
 {
-  std::size_t near, far; ///< places of its two ends
-  std::size_t kind;      ///< see n_bond_kinds
-  double stretch;        ///< [-]
-  double limit;          ///< stretch beyond which it breaks [-]
+  double stretch; ///< [-]
+  double limit;   ///< stretch beyond which it breaks [-]
 };
 
 /// The bond present whose stretch over its limit is largest, the one stored first of several: why a crack stopped. None

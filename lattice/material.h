@@ -46,6 +46,9 @@ struct Material
   /// Shell of a bond kind; nullptr where the lattice has no such bonds.
   const Shell *shell(std::size_t kind) const { return in_shell(shell_of(kind)); }
 
+  /// Kinds of bonds that a sheet may have: the first so many.
+  std::size_t n_kinds() const { return third_nearest ? n_bond_kinds : 2 * n_kinds_per_shell; }
+
   /// Returns whether bonds of some kind have a memory.
   bool has_memory() const;
 

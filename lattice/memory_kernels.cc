@@ -26,17 +26,16 @@ namespace latcon::lattice::kernels::HWY_NAMESPACE
 // Stretches and directions of bonds as bonds_of_row computes them; both 0 for absent bonds.
 struct Directions
 {
-  HWY_INLINE Directions(const BondConstants &bond, const RowOfBonds &row, std::size_t site, std::size_t kind)
+  HWY_INLINE Directions(const RowOfBonds &row, const BondsOfKind &bonds, std::size_t site)
   {
-    const Sites near(row, site);
-    const std::size_t far = site + static_cast<std::size_t>(row.shift[kind]);
-    const Lanes dx = load(row.x + far) - near.x, dy = load(row.y + far) - near.y;
+    const std::size_t far = site + static_cast<std::size_t>(bonds.shift);
+    const Lanes dx = load(row.x + far) - load(row.x + site), dy = load(row.y + far) - load(row.y + site);
     const Lanes distance = square_root(dx * dx + dy * dy);
-    present = hn::VecFromMask(D(), near.present(kind));
+    present = hn::VecFromMask(D(), mask_of_bit(load_states(bonds.states + site), bonds.present));
     const Lanes inverse = where_present(reciprocal(distance));
     nx = dx * inverse;
     ny = dy * inverse;
-    stretch = (1. / bond.rest_length) * where_present(distance);
+    stretch = (1. / bonds.constants.rest_length) * where_present(distance);
   }
   HWY_INLINE Lanes where_present(Lanes value) const { return {hn::IfThenElseZero(hn::MaskFromVec(present), value.v)}; }
 
@@ -53,36 +52,36 @@ HWY_INLINE void load_variables(const RememberedRow<Pointer> &remembered, std::si
 }
 
 template <class Step>
-void add_overstress_of(const Step &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+void add_overstress_of(const Step &step, const RowOfBonds &row, const BondsOfKind &bonds,
                        const RememberedRow<const double *> &remembered, double *power)
 {
   // Partial sums whose order does not depend on the width of a vector.
   alignas(64) double sums[max_history_variables][block];
   for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
     std::fill_n(sums[m], block, 0.);
-  const double volume = bond.cross_section * bond.rest_length;
-  double *const fx = row.force[kind][0], *const fy = row.force[kind][1];
+  const double section = bonds.constants.cross_section, volume = section * bonds.constants.rest_length;
+  double *const fx = bonds.force[0], *const fy = bonds.force[1];
   const std::size_t end = (row.n + block - 1) / block * block;
   for (std::size_t site = 0; site < end; site += width())
   {
-    const Directions bonds(bond, row, site, kind);
+    const Directions now(row, bonds, site);
     Lanes variables[max_history_variables], dissipation[max_history_variables];
     load_variables(remembered, step.n, site, variables);
-    const Lanes stress = advance(step, load(remembered.stretch + site), bonds.stretch, variables, dissipation);
-    Lanes axial = bond.cross_section * bonds.where_present(stress);
-    if (row.stiffness[kind] != nullptr)
+    const Lanes stress = advance(step, load(remembered.stretch + site), now.stretch, variables, dissipation);
+    Lanes axial = section * now.where_present(stress);
+    if (bonds.stiffness != nullptr)
     {
-      const Lanes factor = load(row.stiffness[kind] + site);
+      const Lanes factor = load(bonds.stiffness + site);
       axial = factor * axial;
       for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
         dissipation[m] = factor * dissipation[m];
     }
-    store(load(fx + site) + axial * bonds.nx, fx + site);
-    store(load(fy + site) + axial * bonds.ny, fy + site);
+    store(load(fx + site) + axial * now.nx, fx + site);
+    store(load(fy + site) + axial * now.ny, fy + site);
     for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
     {
       double *const sum = sums[m] + site % block;
-      store(load(sum) + bonds.where_present(dissipation[m]), sum);
+      store(load(sum) + now.where_present(dissipation[m]), sum);
     }
   }
   for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
@@ -93,42 +92,41 @@ void add_overstress_of(const Step &step, const BondConstants &bond, const RowOfB
     power[m] += volume * total;
   }
 }
-void add_overstress_of(const NoMemory::Step &, const BondConstants &, const RowOfBonds &, std::size_t,
+void add_overstress_of(const NoMemory::Step &, const RowOfBonds &, const BondsOfKind &,
                        const RememberedRow<const double *> &, double *)
 {
 }
 
 template <class Step>
-void update_memory_of(const Step &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+void update_memory_of(const Step &step, const RowOfBonds &row, const BondsOfKind &bonds,
                       const RememberedRow<double *> &remembered)
 {
   const std::size_t end = (row.n + block - 1) / block * block;
   for (std::size_t site = 0; site < end; site += width())
   {
-    const Directions bonds(bond, row, site, kind);
+    const Directions now(row, bonds, site);
     Lanes variables[max_history_variables], dissipation[max_history_variables];
     load_variables(remembered, step.n, site, variables);
-    advance(step, load(remembered.stretch + site), bonds.stretch, variables, dissipation);
+    advance(step, load(remembered.stretch + site), now.stretch, variables, dissipation);
     for (std::size_t v = 0; v < step.n; ++v)
-      store(bonds.where_present(variables[v]), remembered.variable[v] + site);
-    store(bonds.stretch, remembered.stretch + site);
+      store(now.where_present(variables[v]), remembered.variable[v] + site);
+    store(now.stretch, remembered.stretch + site);
   }
 }
-void update_memory_of(const NoMemory::Step &, const BondConstants &, const RowOfBonds &, std::size_t,
-                      const RememberedRow<double *> &)
+void update_memory_of(const NoMemory::Step &, const RowOfBonds &, const BondsOfKind &, const RememberedRow<double *> &)
 {
 }
 
-void AddOverstress(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+void AddOverstress(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
                    const RememberedRow<const double *> &remembered, double *power)
 {
-  std::visit([&](const auto &of_kind) { add_overstress_of(of_kind, bond, row, kind, remembered, power); }, step);
+  std::visit([&](const auto &of_kind) { add_overstress_of(of_kind, row, bonds, remembered, power); }, step);
 }
 
-void UpdateMemory(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+void UpdateMemory(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
                   const RememberedRow<double *> &remembered)
 {
-  std::visit([&](const auto &of_kind) { update_memory_of(of_kind, bond, row, kind, remembered); }, step);
+  std::visit([&](const auto &of_kind) { update_memory_of(of_kind, row, bonds, remembered); }, step);
 }
 
 } // namespace latcon::lattice::kernels::HWY_NAMESPACE
@@ -141,16 +139,16 @@ namespace latcon::lattice::kernels
 HWY_EXPORT(AddOverstress);
 HWY_EXPORT(UpdateMemory);
 
-void add_overstress(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+void add_overstress(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
                     const RememberedRow<const double *> &remembered, double *power)
 {
-  HWY_DYNAMIC_DISPATCH(AddOverstress)(step, bond, row, kind, remembered, power);
+  HWY_DYNAMIC_DISPATCH(AddOverstress)(step, row, bonds, remembered, power);
 }
 
-void update_memory(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+void update_memory(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
                    const RememberedRow<double *> &remembered)
 {
-  HWY_DYNAMIC_DISPATCH(UpdateMemory)(step, bond, row, kind, remembered);
+  HWY_DYNAMIC_DISPATCH(UpdateMemory)(step, row, bonds, remembered);
 }
 
 Overstress overstress(const MemoryStep &step, const BondConstants &bond, double stretch, std::size_t place,

@@ -17,14 +17,14 @@ struct RememberedRow
   std::array<Pointer, max_history_variables> variable; ///< of BondMemory
 };
 
-/// Adds the overstress of the bonds of one kind that start in a row to `row.force`, the present stretch being reached
+/// Adds the overstress of the bonds of one kind that start in a row to their `force`, the present stretch being reached
 /// in the duration of `step` since the last update.
 /// @param power the power that each mechanism dissipates in them is added [W/m]
-void add_overstress(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+void add_overstress(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
                     const RememberedRow<const double *> &remembered, double *power);
 
 /// Updates what the bonds remember to the present stretch. Absent bonds remember 0.
-void update_memory(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+void update_memory(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
                    const RememberedRow<double *> &remembered);
 
 /// Overstress of one bond.

@@ -32,13 +32,27 @@ namespace latcon::lattice::kernels::HWY_NAMESPACE
 namespace latcon::lattice::kernels::HWY_NAMESPACE
 {
 
+// The consecutive sites of one vector: near ends of bonds of the first two shells.
+struct Sites
+{
+  Sites(const RowOfBonds &row, std::size_t site)
+    : first(site), x(load(row.x + site)), y(load(row.y + site)), states(load_states(row.kinds[0].states + site))
+  {
+  }
+  auto present(std::size_t kind) const { return mask_of_bit(states, BondStates::bit(kind)); }
+
+  std::size_t first;
+  Lanes x, y;
+  hn::Vec<Bits> states;
+};
+
 // Lengths and inverse lengths of the bonds that start at these sites, both 0 for an absent one: it has no direction,
 // hence no force. Root and quotient take as long as all the rest, in units of the processor that do nothing
 // else: they are begun one vector of sites ahead of their use, so that the rest goes on meanwhile.
 struct Lengths
 {
-  alignas(64) double length[n_row_kinds][block];
-  alignas(64) double inverse[n_row_kinds][block];
+  alignas(64) double length[2 * n_kinds_per_shell][block];
+  alignas(64) double inverse[2 * n_kinds_per_shell][block];
 };
 
 template <std::size_t n_kinds>
@@ -48,7 +62,7 @@ HWY_INLINE void find_lengths(const RowOfBonds &row, std::size_t site, Lengths &l
   HWY_UNROLL(6)
   for (std::size_t kind = 0; kind < n_kinds; ++kind)
   {
-    const std::size_t far = site + static_cast<std::size_t>(row.shift[kind]);
+    const std::size_t far = site + static_cast<std::size_t>(row.kinds[kind].shift);
     const Lanes dx = load(row.x + far) - near.x, dy = load(row.y + far) - near.y;
     const Lanes length = square_root(dx * dx + dy * dy);
     const auto present = near.present(kind);
@@ -63,43 +77,16 @@ HWY_INLINE Lanes stretch_of(const BondConstants &bond, std::size_t kind, const L
 }
 
 // Returns whether one of the bonds is past its own limit, or has retracted.
-template <std::size_t n_kinds>
-bool any_event(const SheetConstants &sheet, const RowOfBonds &row, std::size_t site, const Lengths &lengths)
+bool any_event(const RowOfBonds &row, std::size_t site, const Lengths &lengths)
 {
-  const Sites near(row, site);
   auto events = hn::FirstN(D(), 0);
-  for (std::size_t kind = 0; kind < n_kinds; ++kind)
+  for (std::size_t kind = 0; kind < row.n_kinds; ++kind)
   {
-    const auto present = near.present(kind), toughened = near.toughened(kind);
-    const Lanes stretch = stretch_of(sheet.shell(kind), kind, lengths);
-    const Lanes limit{hn::IfThenElse(toughened, lanes(row.toughened_stretch).v, lanes(row.breaking_stretch).v)};
-    const auto retracted = hn::AndNot(toughened, hn::Lt(stretch.v, lanes(sheet.retraction_stretch[kind]).v));
-    events = hn::Or(events, hn::And(present, hn::Or(hn::Gt(stretch.v, limit.v), retracted)));
+    const BondsOfKind &bonds = row.kinds[kind];
+    const Lanes stretch = stretch_of(bonds.constants, kind, lengths);
+    events = hn::Or(events, are_events(row, bonds, site, stretch, [](Lanes limit) { return limit; }));
   }
   return !hn::AllFalse(D(), events);
-}
-
-// Forces of the bonds of a kind. @return their stretch
-template <std::size_t kind, class Law>
-HWY_INLINE Lanes bonds_of_kind(const Law &law, const SheetConstants &sheet, const RowOfBonds &row, const Sites &near,
-                               Lanes vx, Lanes vy, const Lengths &lengths, Lanes &power, Lanes &shortness)
-{
-  const BondConstants &bond = sheet.shells[shell_of(kind)];
-  const std::size_t far = near.first + static_cast<std::size_t>(row.shift[kind]);
-  const Lanes inverse = load(lengths.inverse[kind]);
-  const Lanes nx = (load(row.x + far) - near.x) * inverse, ny = (load(row.y + far) - near.y) * inverse;
-  const Lanes rate = (load(row.vx + far) - vx) * nx + (load(row.vy + far) - vy) * ny;
-  const Lanes stretch = stretch_of(bond, kind, lengths);
-  const Lanes viscous = bond.damping * rate;
-  const Lanes inverse_stretch = bond.rest_length * inverse;
-  const Lanes axial = bond.cross_section * force(law, stretch, inverse_stretch) + viscous;
-  store(axial * nx, row.force[kind][0] + near.first);
-  store(axial * ny, row.force[kind][1] + near.first);
-  power = power + viscous * rate;
-  // It is 0 for absent bonds.
-  if constexpr (Law::stiffens_when_short)
-    shortness.v = hn::Max(shortness.v, inverse_stretch.v);
-  return stretch;
 }
 
 // Quick test whether one of several bonds may be past a limit.
@@ -124,21 +111,47 @@ struct Extremes
   }
 };
 
+// Forces of the bonds of a kind.
+template <std::size_t kind, class Law, class Monitor>
+HWY_INLINE void bonds_of_kind(const Law &law, const BondConstants &bond, const RowOfBonds &row, const Sites &near,
+                              Lanes vx, Lanes vy, const Lengths &lengths, Lanes &power, Lanes &shortness,
+                              Monitor &extremes)
+{
+  const std::size_t far = near.first + static_cast<std::size_t>(row.kinds[kind].shift);
+  const Lanes inverse = load(lengths.inverse[kind]);
+  const Lanes nx = (load(row.x + far) - near.x) * inverse, ny = (load(row.y + far) - near.y) * inverse;
+  const Lanes rate = (load(row.vx + far) - vx) * nx + (load(row.vy + far) - vy) * ny;
+  const Lanes stretch = stretch_of(bond, kind, lengths);
+  const Lanes viscous = bond.damping * rate;
+  const Lanes inverse_stretch = bond.rest_length * inverse;
+  const Lanes axial = bond.cross_section * force(law, stretch, inverse_stretch) + viscous;
+  store(axial * nx, row.kinds[kind].force[0] + near.first);
+  store(axial * ny, row.kinds[kind].force[1] + near.first);
+  power = power + viscous * rate;
+  // It is 0 for absent bonds.
+  if constexpr (Law::stiffens_when_short)
+    shortness.v = hn::Max(shortness.v, inverse_stretch.v);
+  extremes.add(stretch, row.kinds[kind].retraction_stretch);
+}
+
 struct NoBonds
 {
 };
 
 template <bool watches_retraction, class Nearest, class NextNearest>
 // cppcheck-suppress passedByValue ; copies, which no store can change
-RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, const SheetConstants sheet,
-                      const RowOfBonds &given)
+RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, const RowOfBonds &given)
 {
-  const RowOfBonds row = given; // a copy, which no store can change
+  constexpr bool has_next_nearest = !std::is_same_v<NextNearest, NoBonds>;
+  constexpr std::size_t n_kinds = has_next_nearest ? 2 * n_kinds_per_shell : n_kinds_per_shell;
+  // Copies, which no store can change, as their addresses stay here.
+  std::array<BondsOfKind, n_kinds> kinds;
+  std::copy_n(given.kinds, n_kinds, kinds.begin());
+  RowOfBonds row = given;
+  row.kinds = kinds.data();
+  const BondConstants first = kinds[0].constants, second = kinds[n_kinds - 1].constants;
   const double *const *const ahead = row.ahead;
   const std::size_t n_ahead = row.n_ahead;
-  constexpr bool has_next_nearest = !std::is_same_v<NextNearest, NoBonds>;
-  constexpr std::size_t n_kinds = has_next_nearest ? n_row_kinds : n_nearest_kinds;
-  const std::array<double, n_bond_kinds> retraction = sheet.retraction_stretch;
   const double first_limit = std::min(row.breaking_stretch, row.toughened_stretch);
   Lanes power[block];
   for (Lanes &sum : power)
@@ -161,18 +174,18 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
     Lanes &sum = power[site % block / width()];
     const Lengths &here = lengths[turn];
     Extremes<watches_retraction> extremes{lanes(0.), lanes(1e30)};
-    extremes.add(bonds_of_kind<0>(nearest, sheet, row, near, vx, vy, here, sum, shortness), retraction[0]);
-    extremes.add(bonds_of_kind<1>(nearest, sheet, row, near, vx, vy, here, sum, shortness), retraction[1]);
-    extremes.add(bonds_of_kind<2>(nearest, sheet, row, near, vx, vy, here, sum, shortness), retraction[2]);
+    bonds_of_kind<0>(nearest, first, row, near, vx, vy, here, sum, shortness, extremes);
+    bonds_of_kind<1>(nearest, first, row, near, vx, vy, here, sum, shortness, extremes);
+    bonds_of_kind<2>(nearest, first, row, near, vx, vy, here, sum, shortness, extremes);
     if constexpr (has_next_nearest)
     {
-      extremes.add(bonds_of_kind<3>(next_nearest, sheet, row, near, vx, vy, here, sum, shortness), retraction[3]);
-      extremes.add(bonds_of_kind<4>(next_nearest, sheet, row, near, vx, vy, here, sum, shortness), retraction[4]);
-      extremes.add(bonds_of_kind<5>(next_nearest, sheet, row, near, vx, vy, here, sum, shortness), retraction[5]);
+      bonds_of_kind<3>(next_nearest, second, row, near, vx, vy, here, sum, shortness, extremes);
+      bonds_of_kind<4>(next_nearest, second, row, near, vx, vy, here, sum, shortness, extremes);
+      bonds_of_kind<5>(next_nearest, second, row, near, vx, vy, here, sum, shortness, extremes);
     }
     // Few bonds are near a limit, so whose it is can be asked then.
     if (HWY_UNLIKELY(!has_events && extremes.may_be_events(first_limit)))
-      has_events = any_event<n_kinds>(sheet, row, site, here);
+      has_events = any_event(given, site, here);
     turn = 1 - turn;
   }
   alignas(64) double sums[block];
@@ -181,38 +194,48 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
   double total = 0.;
   for (const double sum : sums)
     total += sum;
-  return {total, has_events, !hn::AllFalse(D(), hn::Gt(shortness.v, lanes(sheet.shortness_limit).v))};
+  return {total, has_events, !hn::AllFalse(D(), hn::Gt(shortness.v, lanes(row.shortness_limit).v))};
 }
 
-RowSums BondsOfRow(const BondLaws &laws, const SheetConstants &sheet, const RowOfBonds &row)
+RowSums BondsOfRow(const BondLaws &laws, const RowOfBonds &row)
 {
   const auto of_laws = [&](const auto &nearest, const auto &next_nearest)
   {
-    return sheet.retraction_stretch[0] > 0. ? bonds_of_laws<true>(nearest, next_nearest, sheet, row)
-                                            : bonds_of_laws<false>(nearest, next_nearest, sheet, row);
+    return row.kinds[0].retraction_stretch > 0. ? bonds_of_laws<true>(nearest, next_nearest, row)
+                                                : bonds_of_laws<false>(nearest, next_nearest, row);
   };
   const auto of_nearest = [&](const auto &nearest)
   {
-    if (!(sheet.shells[1].cross_section > 0.))
+    if (row.n_kinds == n_kinds_per_shell)
       return of_laws(nearest, NoBonds());
     return std::visit([&](const auto &next_nearest) { return of_laws(nearest, next_nearest); }, laws[1]);
   };
   return std::visit(of_nearest, laws[0]);
 }
 
-void GatherRow(std::size_t n, const std::array<const double *, n_row_kinds> &start,
-               const std::array<const double *, n_row_kinds> &end, double *total)
+template <std::size_t n_kinds>
+HWY_INLINE void gather(std::size_t n, const std::array<const double *, n_bond_kinds> &start,
+                       const std::array<const double *, n_bond_kinds> &end, double *total)
 {
   for (std::size_t i = 0; i < n; i += width())
   {
-    Lanes s[n_row_kinds], e[n_row_kinds];
-    for (std::size_t kind = 0; kind < n_row_kinds; ++kind)
+    Lanes s[n_kinds], e[n_kinds];
+    for (std::size_t kind = 0; kind < n_kinds; ++kind)
     {
       s[kind] = load(start[kind] + i);
       e[kind] = load(end[kind] + i);
     }
-    store(sum_of_bonds(s, e), total + i);
+    store(sum_of_bonds<n_kinds == n_bond_kinds>(s, e), total + i);
   }
+}
+
+void GatherRow(std::size_t n, std::size_t n_kinds, const std::array<const double *, n_bond_kinds> &start,
+               const std::array<const double *, n_bond_kinds> &end, double *total)
+{
+  if (n_kinds == n_bond_kinds)
+    gather<n_bond_kinds>(n, start, end, total);
+  else
+    gather<2 * n_kinds_per_shell>(n, start, end, total);
 }
 
 void Drift(double h, std::size_t n, const double *acceleration, double *velocity, double *position, double *predicted)
@@ -277,31 +300,6 @@ void NextStage(const ChebyshevStages::Stage &stage, double h, std::size_t n, con
   }
 }
 
-bool AnyEventAhead(const SheetConstants &sheet, const RowOfBonds &row, double ahead)
-{
-  auto events = hn::FirstN(D(), 0);
-  const std::size_t n_kinds = sheet.shells[1].cross_section > 0. ? n_row_kinds : n_nearest_kinds;
-  for (std::size_t site = 0; site < row.n; site += width())
-  {
-    const Sites near(row, site);
-    const Lanes vx = load(row.vx + site), vy = load(row.vy + site);
-    for (std::size_t kind = 0; kind < n_kinds; ++kind)
-    {
-      const double l = sheet.shell(kind).rest_length;
-      const std::size_t far = site + static_cast<std::size_t>(row.shift[kind]);
-      const Lanes square = squared_length_after(ahead, load(row.x + far) - near.x, load(row.y + far) - near.y,
-                                                load(row.vx + far) - vx, load(row.vy + far) - vy);
-      const auto toughened = near.toughened(kind);
-      const auto squared = [l](double stretch) { return lanes(squared_length(stretch, l)).v; };
-      const auto beyond =
-        hn::Gt(square.v, hn::IfThenElse(toughened, squared(row.toughened_stretch), squared(row.breaking_stretch)));
-      const auto retracted = hn::AndNot(toughened, hn::Lt(square.v, squared(sheet.retraction_stretch[kind])));
-      events = hn::Or(events, hn::And(near.present(kind), hn::Or(beyond, retracted)));
-    }
-  }
-  return !hn::AllFalse(D(), events);
-}
-
 const char *InstructionSet()
 {
   return hwy::TargetName(HWY_TARGET);
@@ -321,7 +319,6 @@ HWY_EXPORT(Accelerate);
 HWY_EXPORT(Kick);
 HWY_EXPORT(FirstStage);
 HWY_EXPORT(NextStage);
-HWY_EXPORT(AnyEventAhead);
 HWY_EXPORT(InstructionSet);
 
 namespace
@@ -368,15 +365,15 @@ const std::vector<std::int64_t> &targets()
 
 } // namespace
 
-RowSums bonds_of_row(const BondLaws &laws, const SheetConstants &sheet, const RowOfBonds &row)
+RowSums bonds_of_row(const BondLaws &laws, const RowOfBonds &row)
 {
-  return HWY_DYNAMIC_DISPATCH(BondsOfRow)(laws, sheet, row);
+  return HWY_DYNAMIC_DISPATCH(BondsOfRow)(laws, row);
 }
 
-void gather_row(std::size_t n, const std::array<const double *, n_row_kinds> &start,
-                const std::array<const double *, n_row_kinds> &end, double *total)
+void gather_row(std::size_t n, std::size_t n_kinds, const std::array<const double *, n_bond_kinds> &start,
+                const std::array<const double *, n_bond_kinds> &end, double *total)
 {
-  HWY_DYNAMIC_DISPATCH(GatherRow)(n, start, end, total);
+  HWY_DYNAMIC_DISPATCH(GatherRow)(n, n_kinds, start, end, total);
 }
 
 void drift(double h, std::size_t n, const double *acceleration, double *velocity, double *position, double *predicted)
@@ -412,11 +409,6 @@ void next_stage(const ChebyshevStages::Stage &stage, double h, std::size_t n, co
    previous_position, previous_velocity);
 }
 
-bool any_event_ahead(const SheetConstants &sheet, const RowOfBonds &row, double ahead)
-{
-  return HWY_DYNAMIC_DISPATCH(AnyEventAhead)(sheet, row, ahead);
-}
-
 std::vector<std::string> instruction_sets()
 {
   std::vector<std::string> names;
@@ -445,23 +437,6 @@ void use_instruction_set(const std::string &name)
 std::string instruction_set()
 {
   return HWY_DYNAMIC_DISPATCH(InstructionSet)();
-}
-
-BondForce bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx, double dy, double dvx,
-                     double dvy)
-{
-  const double distance = std::sqrt(dx * dx + dy * dy);
-  const double inverse = 1. / distance;
-  const double nx = dx * inverse, ny = dy * inverse;
-  const double rate = dvx * nx + dvy * ny;
-  const double stretch = (1. / bond.rest_length) * distance;
-  const double viscous = bond.damping * rate;
-  const double axial =
-    factor * (bond.cross_section * std::visit([&](const auto &of_kind)
-                                              { return formulas::force(of_kind, stretch, bond.rest_length * inverse); },
-                                              law) +
-              viscous);
-  return {axial * nx, axial * ny, nx, ny, stretch, factor * (viscous * rate)};
 }
 
 } // namespace latcon::lattice::kernels

@@ -30,11 +30,7 @@ namespace latcon::lattice::kernels
 /// Laws of the shells; those of shells that the sheet lacks are unused.
 using BondLaws = std::array<BondLaw, n_shells>;
 
-/// Kinds of bonds that bonds_of_row(), gather_row() and any_event_ahead() take: those of nearest and next-nearest
-/// neighbours, at once. Third-nearest ones, which few sheets have, are left to shell_kernels.h.
-inline constexpr std::size_t n_row_kinds = BondStates::kinds_per_word;
-
-/// Constants of the bonds of a shell besides their law.
+/// Constants of bonds of one kind besides their law.
 struct BondConstants
 {
   double rest_length = 0.;   ///< l [m]
@@ -42,33 +38,31 @@ struct BondConstants
   double damping = 0.;       ///< A0 eta / (h l) [Pa s]
 };
 
-/// Constants of the bonds of a sheet.
-struct SheetConstants
+/// The bonds of one kind, a half-bond of a stencil, that start in a row, with places counted from its first site.
+struct BondsOfKind
 {
-  std::array<BondConstants, n_shells> shells;
-  std::array<double, n_bond_kinds> retraction_stretch{}; ///< see Forces::set_retraction_threshold; 0: not watched
-  /// Inverse of the stretch below which bonds are short [-]; see Forces::set_shortness_threshold.
-  double shortness_limit = std::numeric_limits<double>::infinity();
-
-  const BondConstants &shell(std::size_t kind) const { return shells[shell_of(kind)]; }
+  BondConstants constants;
+  std::ptrdiff_t shift;                                   ///< from a site to the far end of its bond
+  const BondStates::Word *states;                         ///< of sites: the words that hold this kind
+  BondStates::Word present, toughened;                    ///< its bits in these words
+  double retraction_stretch = 0.;                         ///< see Forces::set_retraction_threshold; 0: not watched
+  const double *stiffness = nullptr, *strength = nullptr; ///< factors by site, as in State; null: all 1
+  std::array<double *, 2> force{};                        ///< on the near ends, x (0) and y (1) [N/m]: what is computed
 };
 
-/// The bonds that start in a row, with places counted from its first site.
+/// The sites of a row, with places counted from its first site, and the bonds that start there.
 struct RowOfBonds
 {
-  std::size_t n;                                  ///< sites
-  const double *x, *y, *vx, *vy;                  ///< of sites [m, m/s]
-  const BondStates::Word *bonds;                  ///< of sites: the words of the kinds that are worked on
-  std::array<std::ptrdiff_t, n_bond_kinds> shift; ///< from a site to the far end of its bond of a kind
-  double breaking_stretch, toughened_stretch;     ///< as in State
-  /// Forces on the near ends [N/m], x (0) and y (1) for each kind: what is computed.
-  std::array<std::array<double *, 2>, n_bond_kinds> force;
+  std::size_t n;                              ///< sites
+  const double *x, *y, *vx, *vy;              ///< of sites [m, m/s]
+  double breaking_stretch, toughened_stretch; ///< as in State
+  /// Inverse of the stretch below which bonds are short [-]; see Forces::set_shortness_threshold.
+  double shortness_limit = std::numeric_limits<double>::infinity();
+  const BondsOfKind *kinds = nullptr; ///< `n_kinds` of them
+  std::size_t n_kinds = 0;
   /// `n_ahead` arrays whose same slots are prefetched, since they are needed next.
-  const double *const *ahead;
-  std::size_t n_ahead;
-  /// Factors of the bonds of each kind by site, as in State; null: all 1. bonds_of_row() and any_event_ahead() do not
-  /// take them into account; see shell_kernels.h.
-  std::array<const double *, n_bond_kinds> stiffness{}, strength{};
+  const double *const *ahead = nullptr;
+  std::size_t n_ahead = 0;
 };
 
 /// Sums over the bonds that start in a row.
@@ -76,17 +70,18 @@ struct RowSums
 {
   double viscous_power = 0.;    ///< of their dashpots [W/m]
   bool has_events = false;      ///< whether one is past its limit, or has retracted
-  bool has_short_bonds = false; ///< whether one has an inverse stretch above SheetConstants::shortness_limit
+  bool has_short_bonds = false; ///< whether one has an inverse stretch above RowOfBonds::shortness_limit
 };
 
-/// Forces of all bonds of n_row_kinds that start in a row (theory.md, eq. (L.3)). Only `row.force` of kinds with a
-/// shell is written.
-RowSums bonds_of_row(const BondLaws &laws, const SheetConstants &sheet, const RowOfBonds &row);
+/// Forces of all bonds of the nearest neighbours, or of these and the next-nearest, that start in a row (theory.md, eq.
+/// (L.3)): the loop of stencil_kernels.h unrolled for bonds without factors. @param row of 3 or 6 kinds
+RowSums bonds_of_row(const BondLaws &laws, const RowOfBonds &row);
 
 /// A component of the forces on the n sites of a row: those on the near ends of the bonds that start at a site, less
 /// those of the bonds that end there, [kind][site]. Kinds without a shell must be there and hold zeros.
-void gather_row(std::size_t n, const std::array<const double *, n_row_kinds> &start,
-                const std::array<const double *, n_row_kinds> &end, double *total);
+/// @param n_kinds 6, or 9 with third-nearest neighbours
+void gather_row(std::size_t n, std::size_t n_kinds, const std::array<const double *, n_bond_kinds> &start,
+                const std::array<const double *, n_bond_kinds> &end, double *total);
 
 /// One component of n sites: from velocity and acceleration at the start of a step h [s] to the velocity at half of it,
 /// and position and predicted velocity at its end (theory.md, eq. (L.7)).
@@ -110,10 +105,6 @@ void next_stage(const ChebyshevStages::Stage &stage, double h, std::size_t n, co
                 const double *start_velocity, const double *position, const double *velocity, double *previous_position,
                 double *previous_velocity);
 
-/// Returns whether one of the bonds of n_row_kinds that start in a row will be past its limit, or will have retracted,
-/// after its ends have moved for `ahead` [s] at their velocities. Does not use `row.force`.
-bool any_event_ahead(const SheetConstants &sheet, const RowOfBonds &row, double ahead);
-
 /// Returns the names of the instruction sets that this processor has and the loops exist for, the best first. The
 /// last is for any processor: "SCALAR", or with some compilers "EMU128". The environment variable
 /// LATCON_INSTRUCTION_SET, which is read once, names the best one of them that may be used: for ThreadSanitizer, which
@@ -128,18 +119,5 @@ void limit_instruction_sets();
 void use_instruction_set(const std::string &name);
 /// Name of the one in use.
 std::string instruction_set();
-
-/// A bond's force, one at a time: the operations of bonds_of_row, so that both have the same bits.
-struct BondForce
-{
-  double x, y;   ///< on the near end [N/m], the opposite on the far end
-  double nx, ny; ///< direction from the near to the far end
-  double stretch;
-  double viscous_power; ///< [W/m]
-};
-/// Returns the force of a bond whose ends are at a distance (dx, dy) [m] and move apart with (dvx, dvy) [m/s].
-/// @param factor of its cross-section
-BondForce bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx, double dy, double dvx,
-                     double dvy);
 
 } // namespace latcon::lattice::kernels

@@ -9,8 +9,7 @@ namespace latcon::lattice
 namespace
 {
 
-// Number of rows across which a bond can reach.
-constexpr std::ptrdiff_t reach = 2;
+constexpr auto reach = static_cast<std::ptrdiff_t>(TriangularLattice::reach);
 
 } // namespace
 
@@ -60,17 +59,14 @@ std::vector<std::size_t> RowPartition::halo_of(std::size_t rank) const
 {
   const auto begin = static_cast<std::ptrdiff_t>(first_rows_[rank]);
   const auto end = static_cast<std::ptrdiff_t>(first_rows_[rank + 1]);
-  const auto n_rows = static_cast<std::ptrdiff_t>(lattice_->rows());
   std::vector<std::size_t> halo;
   if (begin == end)
     return halo;
-  const bool repeats = lattice_->is_occupied(lattice_->index(0, 0) - lattice_->stride());
-  const auto add = [&](std::ptrdiff_t row)
+  const auto add = [&](std::ptrdiff_t number)
   {
-    if (repeats)
-      row = (row + n_rows) % n_rows;
-    if (row >= 0 && row < n_rows && (row < begin || row >= end))
-      halo.push_back(static_cast<std::size_t>(row));
+    const auto row = lattice_->row(number);
+    if (row && owner(*row) != rank)
+      halo.push_back(*row);
   };
   for (std::ptrdiff_t distance = 0; distance < reach; ++distance)
   {

@@ -75,12 +75,13 @@ int Simulation::needed_parts() const
   const double h = time_stepping_.step;
   const ContactLaw *const contact = contact_law_ ? &*contact_law_ : nullptr;
   const Field &vx = integrator_->evaluated_vx(state_), &vy = integrator_->evaluated_vy(state_);
-  const auto divide_for = [&](std::size_t near, std::size_t kind, std::size_t far, int &parts)
+  const auto divide_for = [&](const Bond &short_bond, int &parts)
   {
+    const auto [near, kind, far] = short_bond;
     if (!stiffens_when_short(material_.shell(kind)->law))
       return;
     const Eigen::Vector2d bond(state_.x[far] - state_.x[near], state_.y[far] - state_.y[near]);
-    const double now = stretch(state_, lattice_, near, kind);
+    const double now = stretch(state_, lattice_, short_bond);
     const double rate =
       bond.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near])) / (bond.norm() * lattice_.rest_length(kind));
     int needed = 1;
@@ -105,8 +106,7 @@ int Simulation::needed_parts() const
   for (std::ptrdiff_t i = 0; i < n; ++i)
   {
     const std::size_t row = rows[static_cast<std::size_t>(i)];
-    for_each_bond(state_, lattice_, {row, row + 1},
-                  [&](std::size_t near, std::size_t kind, std::size_t far) { divide_for(near, kind, far, parts); });
+    for_each_bond(state_, lattice_, {row, row + 1}, [&](const Bond &bond) { divide_for(bond, parts); });
   }
   return parts;
 }
@@ -326,8 +326,7 @@ const State &Simulation::gather(Rows rows)
   for (Field *field : {&state_.x, &state_.y, &state_.vx, &state_.vy})
     band_.gather(*field, rows);
   for (BondStates::Words &words : state_.bonds.storage())
-    if (!words.empty())
-      band_.gather(words, rows);
+    band_.gather(words, rows);
   for (BondHistory::Kind &history : state_.history.kinds)
     if (!history.variables.empty())
     {

@@ -169,9 +169,8 @@ void Simulation::archive(Archive &archive)
        {std::pair("x", &state_.x), std::pair("y", &state_.y), std::pair("vx", &state_.vx), std::pair("vy", &state_.vy),
         std::pair("ax", &state_.ax), std::pair("ay", &state_.ay)})
     archive_rows(archive, name, *field, band_, known);
-  archive_rows(archive, "bonds", state_.bonds.storage()[0], band_, known);
-  if (!state_.bonds.storage()[1].empty())
-    archive_rows(archive, "bonds_of_third_shell", state_.bonds.storage()[1], band_, known);
+  for (BondStates::Words &words : state_.bonds.storage())
+    archive_rows(archive, &words == &state_.bonds.storage()[0] ? "bonds" : "bonds_of_third_shell", words, band_, known);
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
   {
     BondHistory::Kind &history = state_.history.kinds[kind];

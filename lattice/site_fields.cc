@@ -37,11 +37,8 @@ SiteEvaluator::SiteEvaluator(const TriangularLattice &lattice, const Material &m
   {
     const Shell *shell = material.shell(kind);
     const Eigen::Vector2d R = lattice.bond_vector(kind);
-    kinds_[kind] = {R,
-                    R * R.transpose(),
-                    lattice.rest_length(kind),
+    kinds_[kind] = {R, R * R.transpose(), lattice.rest_length(kind),
                     shell != nullptr ? cross_section(*shell, lattice) : 0.,
-                    {{lattice.shift(kind, 0), lattice.shift(kind, 1)}},
                     memory_step(shell != nullptr ? shell->memory : NoMemory(), 0.)};
   }
 }
@@ -52,28 +49,28 @@ SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
   // Normal equations of the fit of F: F (sum R R^T) = sum r R^T.
   Eigen::Matrix2d reference_moment = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d mixed_moment = Eigen::Matrix2d::Zero();
-  for_each_bond_of_site(
-    state, lattice_, place,
-    [&](std::size_t near, std::size_t number)
-    {
-      const Kind &kind = kinds_[number];
-      const Shell &shell = *material_.shell(number);
-      const std::size_t far = near + static_cast<std::size_t>(kind.shift[lattice_.row_of(near) % 2]);
-      const Eigen::Vector2d bond(state.x[far] - state.x[near], state.y[far] - state.y[near]);
-      const Eigen::Vector2d rate(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
-      const double length = bond.norm();
-      const Eigen::Vector2d direction = bond / length;
-      const double stretch = length / kind.rest_length;
-      const double section = state.stiffness.of(near, number) * kind.section;
-      double axial = section * (force(shell.law, stretch) + shell.viscosity * rate.dot(direction) / kind.rest_length);
-      if (!state.history.kinds[number].variables.empty())
-        axial += section * overstress(kind.at_rest, state.history, near, number);
-      ++values.bonds;
-      values.strain_energy_density += 0.5 * section * kind.rest_length * energy(shell.law, stretch);
-      values.first_piola_stress += 0.5 * axial * direction * kind.reference.transpose();
-      reference_moment += kind.reference_moment;
-      mixed_moment += bond * kind.reference.transpose();
-    });
+  for_each_bond_of_site(state, lattice_, place,
+                        [&](const Bond &bond)
+                        {
+                          const auto [near, number, far] = bond;
+                          const Kind &kind = kinds_[number];
+                          const Shell &shell = *material_.shell(number);
+                          const Eigen::Vector2d r(state.x[far] - state.x[near], state.y[far] - state.y[near]);
+                          const Eigen::Vector2d rate(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
+                          const double length = r.norm();
+                          const Eigen::Vector2d direction = r / length;
+                          const double stretch = length / kind.rest_length;
+                          const double section = state.stiffness.of(near, number) * kind.section;
+                          double axial = section * (force(shell.law, stretch) +
+                                                    shell.viscosity * rate.dot(direction) / kind.rest_length);
+                          if (!state.history.kinds[number].variables.empty())
+                            axial += section * overstress(kind.at_rest, state.history, near, number);
+                          ++values.bonds;
+                          values.strain_energy_density += 0.5 * section * kind.rest_length * energy(shell.law, stretch);
+                          values.first_piola_stress += 0.5 * axial * direction * kind.reference.transpose();
+                          reference_moment += kind.reference_moment;
+                          mixed_moment += r * kind.reference.transpose();
+                        });
 
   const double area = lattice_.site_area();
   values.strain_energy_density /= area;

@@ -47,8 +47,7 @@ private:
     Eigen::Vector2d reference;
     Eigen::Matrix2d reference_moment;
     double rest_length, section;
-    std::array<std::ptrdiff_t, 2> shift; // from even and odd rows
-    MemoryStep at_rest;                  // update of the memory over no time
+    MemoryStep at_rest; // update of the memory over no time
   };
   const TriangularLattice &lattice_;
   Material material_;

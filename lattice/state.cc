@@ -37,17 +37,15 @@ bool reaches_beyond(const TriangularLattice &lattice, const Material &material, 
 // Adds the bonds that start at a site.
 void add_bonds(State &state, const TriangularLattice &lattice, const Material &material, std::size_t place)
 {
-  const std::size_t row = lattice.row_of(place);
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-    if (material.shell(kind) != nullptr &&
-        lattice.is_occupied(place + static_cast<std::size_t>(lattice.shift(kind, row))))
+    if (material.shell(kind) != nullptr && lattice.is_occupied(lattice.bond(place, kind).far))
       state.bonds.add(place, kind);
 }
 
 // Returns whether all bonds of a site end within the sheet, whatever its edges.
 bool is_interior(const TriangularLattice &lattice, std::size_t row, std::size_t column)
 {
-  constexpr std::size_t reach = 2; // of bonds, in rows and in columns
+  constexpr std::size_t reach = TriangularLattice::reach;
   return row >= reach && row + reach < lattice.rows() && column >= reach && column + reach < lattice.sites_in_row(row);
 }
 
@@ -76,7 +74,7 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
     *field = Field(n);
   for (SiteFlags *marks : {&state.held, &state.removed, &state.lost_bonds})
     *marks = SiteFlags(n);
-  state.bonds.clear(n, material.third_nearest.has_value());
+  state.bonds.clear(n, material.n_kinds());
 
   state.periods = F;
   const std::size_t stride = lattice.stride(), below = lattice.index(0, 0) / stride;
@@ -148,20 +146,20 @@ void relax_memory(State &state, const RowPartition &band, const Material &materi
   if (!state.history.empty())
     for (const std::size_t row : BondHistory::rows(band))
       for_each_bond(state, lattice, {row, row + 1},
-                    [&](std::size_t place, std::size_t kind, std::size_t)
+                    [&](const Bond &bond)
                     {
-                      if (!state.history.kinds[kind].variables.empty())
-                        state.history.kinds[kind].stretch[place] = stretch(state, lattice, place, kind);
+                      BondHistory::Kind &history = state.history.kinds[bond.kind];
+                      if (!history.variables.empty())
+                        history.stretch[bond.near] = stretch(state, lattice, bond);
                     });
 }
 
-double stretch(const State &state, const TriangularLattice &lattice, std::size_t place, std::size_t kind)
+double stretch(const State &state, const TriangularLattice &lattice, const Bond &bond)
 {
-  const std::size_t far = place + static_cast<std::size_t>(lattice.shift(kind, lattice.row_of(place)));
-  const double dx = state.x[far] - state.x[place];
-  const double dy = state.y[far] - state.y[place];
+  const double dx = state.x[bond.far] - state.x[bond.near];
+  const double dy = state.y[bond.far] - state.y[bond.near];
   // The operations of the force loop, so that both agree to the last bit on whether a bond is past its limit.
-  return std::sqrt(dx * dx + dy * dy) * (1. / lattice.rest_length(kind));
+  return std::sqrt(dx * dx + dy * dy) * (1. / lattice.rest_length(bond.kind));
 }
 
 } // namespace latcon::lattice

@@ -69,10 +69,10 @@ inline constexpr Edges Edges::free{false, false, false, false};
 State homogeneous_state(const RowPartition &band, const Material &material, const Eigen::Matrix2d &F, Edges edges);
 
 /// Stretch beyond which a bond that is present breaks [-].
-inline double breaking_stretch_of(const State &state, std::size_t place, std::size_t kind)
+inline double breaking_stretch_of(const State &state, const Bond &bond)
 {
-  return (state.bonds.toughened(place, kind) ? state.toughened_stretch : state.breaking_stretch) *
-         state.strength.of(place, kind);
+  return (state.bonds.toughened(bond.near, bond.kind) ? state.toughened_stretch : state.breaking_stretch) *
+         state.strength.of(bond.near, bond.kind);
 }
 
 /// Moves every free site in the rows that `band` knows by a random displacement, uniform in [-amplitude, amplitude]
@@ -87,7 +87,7 @@ void add_noise(State &state, const RowPartition &band, double amplitude, std::ui
 void relax_memory(State &state, const RowPartition &band, const Material &material);
 
 /// Current stretch |x_j - x_i| / l of a bond [-].
-double stretch(const State &state, const TriangularLattice &lattice, std::size_t place, std::size_t kind);
+double stretch(const State &state, const TriangularLattice &lattice, const Bond &bond);
 
 /// Calls operation(row) for each of some rows, which are shared out among threads. For operations that couple no two
 /// sites, whose bits then cannot depend on how.
@@ -100,8 +100,7 @@ void for_each_row(const TriangularLattice &lattice, Rows rows, const RowOperatio
     operation(static_cast<std::size_t>(row));
 }
 
-/// Calls visit(place, kind, far_place) for every bond present that starts in a row of `rows`, row by row; far_place may
-/// be an image.
+/// Calls visit(bond) for every bond present that starts in a row of `rows`, row by row.
 template <class Visitor>
 void for_each_bond(const State &state, const TriangularLattice &lattice, Rows rows, Visitor &&visit)
 {
@@ -110,13 +109,13 @@ void for_each_bond(const State &state, const TriangularLattice &lattice, Rows ro
   {
     std::array<std::size_t, n_bond_kinds> shift{};
     for (std::size_t kind = 0; kind < n_kinds; ++kind)
-      shift[kind] = static_cast<std::size_t>(lattice.shift(kind, row));
+      shift[kind] = lattice.shift(kind, row);
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
       for (std::size_t kind = 0; kind < n_kinds; ++kind)
         if (state.bonds.present(place, kind))
-          visit(place, kind, place + shift[kind]);
+          visit(Bond{place, kind, place + shift[kind]});
     }
   }
 }
@@ -128,20 +127,14 @@ void for_each_bond(const State &state, const TriangularLattice &lattice, Visitor
   for_each_bond(state, lattice, {0, lattice.rows()}, visit);
 }
 
-/// Calls visit(near_place, kind) for each of the bonds present at a site, near_place being the end at
-/// which the bond is stored: the site itself or its neighbour, never an image.
+/// Calls visit(bond) for each of the bonds present at a site, which start there or end there or at an image of it.
 template <class Visitor>
 void for_each_bond_of_site(const State &state, const TriangularLattice &lattice, std::size_t place, Visitor &&visit)
 {
-  const std::size_t row = lattice.row_of(place);
   for (std::size_t kind = 0; kind < state.bonds.n_kinds(); ++kind)
-  {
-    if (state.bonds.present(place, kind))
-      visit(place, kind);
-    const std::size_t near = lattice.canonical_place(place - static_cast<std::size_t>(lattice.shift_into(kind, row)));
-    if (state.bonds.present(near, kind))
-      visit(near, kind);
-  }
+    for (const Bond &bond : {lattice.bond(place, kind), lattice.bond_into(place, kind)})
+      if (state.bonds.present(bond.near, kind))
+        visit(bond);
 }
 
 } // namespace latcon::lattice

@@ -1,5 +1,6 @@
 #include "lattice/stencil_kernels.h"
 
+#include <cmath>
 #include <variant>
 
 #include "lattice/instruction_sets.h"
@@ -24,60 +25,71 @@ namespace latcon::lattice::kernels::HWY_NAMESPACE
 namespace latcon::lattice::kernels::HWY_NAMESPACE
 {
 
-HWY_INLINE auto mask_of(const std::uint64_t *words, std::uint64_t bit)
-{
-  return hn::RebindMask(D(), hn::TestBit(hn::LoadU(Bits(), words), hn::Set(Bits(), bit)));
-}
-
 template <class Law>
 // cppcheck-suppress passedByValue ; copies, which no store can change
-double forces_of_law(const Law law, const BondConstants bond, const BondsOfHalfBond row, double *fx, double *fy)
+void bonds_of_law(const Law law, const RowOfBonds row, RowSums &sums)
 {
   alignas(64) double power[block] = {};
-  for (std::size_t site = 0; site < row.n; site += width())
+  Lanes shortness = lanes(0.);
+  auto events = hn::FirstN(D(), 0);
+  const std::size_t end = (row.n + block - 1) / block * block;
+  for (std::size_t site = 0; site < end; site += width())
   {
-    const std::size_t far = site + static_cast<std::size_t>(row.shift);
-    const auto present = mask_of(row.present + site, row.bit);
-    const Lanes dx = load(row.x + far) - load(row.x + site), dy = load(row.y + far) - load(row.y + site);
-    const Lanes distance = square_root(dx * dx + dy * dy);
-    const Lanes length{hn::IfThenElseZero(present, distance.v)};
-    const Lanes inverse{hn::IfThenElseZero(present, reciprocal(distance).v)};
-    const Lanes nx = dx * inverse, ny = dy * inverse;
-    const Lanes rate =
-      (load(row.vx + far) - load(row.vx + site)) * nx + (load(row.vy + far) - load(row.vy + site)) * ny;
-    const Lanes viscous = bond.damping * rate;
-    const Lanes axial =
-      bond.cross_section * force(law, (1. / bond.rest_length) * length, bond.rest_length * inverse) + viscous;
-    store(axial * nx, fx + site);
-    store(axial * ny, fy + site);
+    const Lanes x = load(row.x + site), y = load(row.y + site), vx = load(row.vx + site), vy = load(row.vy + site);
     double *const sum = power + site % block;
-    store(load(sum) + viscous * rate, sum);
+    for (std::size_t kind = 0; kind < row.n_kinds; ++kind)
+    {
+      const BondsOfKind &bonds = row.kinds[kind];
+      const BondConstants &bond = bonds.constants;
+      const std::size_t far = site + static_cast<std::size_t>(bonds.shift);
+      const auto present = mask_of_bit(load_states(bonds.states + site), bonds.present);
+      const Lanes dx = load(row.x + far) - x, dy = load(row.y + far) - y;
+      const Lanes distance = square_root(dx * dx + dy * dy);
+      const Lanes length{hn::IfThenElseZero(present, distance.v)};
+      const Lanes inverse{hn::IfThenElseZero(present, reciprocal(distance).v)};
+      const Lanes nx = dx * inverse, ny = dy * inverse;
+      const Lanes rate = (load(row.vx + far) - vx) * nx + (load(row.vy + far) - vy) * ny;
+      const Lanes stretch = (1. / bond.rest_length) * length;
+      const Lanes viscous = bond.damping * rate;
+      const Lanes inverse_stretch = bond.rest_length * inverse;
+      const Lanes factor = load_factors(bonds.stiffness, site);
+      const Lanes axial = factor * (bond.cross_section * force(law, stretch, inverse_stretch) + viscous);
+      store(axial * nx, bonds.force[0] + site);
+      store(axial * ny, bonds.force[1] + site);
+      store(load(sum) + factor * (viscous * rate), sum);
+      if constexpr (Law::stiffens_when_short)
+        shortness.v = hn::Max(shortness.v, inverse_stretch.v);
+      events = hn::Or(events, are_events(row, bonds, site, stretch, [](Lanes limit) { return limit; }));
+    }
   }
-  double total = 0.;
   for (const double part : power)
-    total += part;
-  return total;
+    sums.viscous_power += part;
+  sums.has_events = sums.has_events || !hn::AllFalse(D(), events);
+  sums.has_short_bonds = sums.has_short_bonds || !hn::AllFalse(D(), hn::Gt(shortness.v, lanes(row.shortness_limit).v));
 }
 
-double BondsOfHalf(const BondLaw &law, const BondConstants &bond, const BondsOfHalfBond &row, double *fx, double *fy)
+void BondsOfStencil(const BondLaw &law, const RowOfBonds &row, RowSums &sums)
 {
-  return std::visit([&](const auto &of_kind) { return forces_of_law(of_kind, bond, row, fx, fy); }, law);
+  std::visit([&](const auto &of_kind) { bonds_of_law(of_kind, row, sums); }, law);
 }
 
-bool AnyLongerAhead(const BondsOfHalfBond &row, double ahead, double breaking, double toughened)
+bool AnyEventAhead(const RowOfBonds &row, double ahead)
 {
-  auto longer = hn::FirstN(D(), 0);
-  const Lanes limit = lanes(breaking * breaking), tough_limit = lanes(toughened * toughened);
+  auto events = hn::FirstN(D(), 0);
   for (std::size_t site = 0; site < row.n; site += width())
   {
-    const std::size_t far = site + static_cast<std::size_t>(row.shift);
-    const Lanes square =
-      squared_length_after(ahead, load(row.x + far) - load(row.x + site), load(row.y + far) - load(row.y + site),
-                           load(row.vx + far) - load(row.vx + site), load(row.vy + far) - load(row.vy + site));
-    const auto own = hn::IfThenElse(mask_of(row.toughened + site, row.bit), tough_limit.v, limit.v);
-    longer = hn::Or(longer, hn::And(mask_of(row.present + site, row.bit), hn::Gt(square.v, own)));
+    const Lanes x = load(row.x + site), y = load(row.y + site), vx = load(row.vx + site), vy = load(row.vy + site);
+    for (std::size_t kind = 0; kind < row.n_kinds; ++kind)
+    {
+      const BondsOfKind &bonds = row.kinds[kind];
+      const std::size_t far = site + static_cast<std::size_t>(bonds.shift);
+      const Lanes square = squared_length_after(ahead, load(row.x + far) - x, load(row.y + far) - y,
+                                                load(row.vx + far) - vx, load(row.vy + far) - vy);
+      const auto squared = [l = bonds.constants.rest_length](Lanes stretch) { return (l * stretch) * (l * stretch); };
+      events = hn::Or(events, are_events(row, bonds, site, square, squared));
+    }
   }
-  return !hn::AllFalse(D(), longer);
+  return !hn::AllFalse(D(), events);
 }
 
 } // namespace latcon::lattice::kernels::HWY_NAMESPACE
@@ -87,18 +99,34 @@ HWY_AFTER_NAMESPACE();
 namespace latcon::lattice::kernels
 {
 
-HWY_EXPORT(BondsOfHalf);
-HWY_EXPORT(AnyLongerAhead);
+HWY_EXPORT(BondsOfStencil);
+HWY_EXPORT(AnyEventAhead);
 
-double bonds_of_half_bond(const BondLaw &law, const BondConstants &bond, const BondsOfHalfBond &row, double *fx,
-                          double *fy)
+void bonds_of_stencil(const BondLaw &law, const RowOfBonds &row, RowSums &sums)
 {
-  return HWY_DYNAMIC_DISPATCH(BondsOfHalf)(law, bond, row, fx, fy);
+  HWY_DYNAMIC_DISPATCH(BondsOfStencil)(law, row, sums);
 }
 
-bool any_longer_ahead(const BondsOfHalfBond &row, double ahead, double breaking, double toughened)
+bool any_event_ahead(const RowOfBonds &row, double ahead)
 {
-  return HWY_DYNAMIC_DISPATCH(AnyLongerAhead)(row, ahead, breaking, toughened);
+  return HWY_DYNAMIC_DISPATCH(AnyEventAhead)(row, ahead);
+}
+
+BondForce bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx, double dy, double dvx,
+                     double dvy)
+{
+  const double distance = std::sqrt(dx * dx + dy * dy);
+  const double inverse = 1. / distance;
+  const double nx = dx * inverse, ny = dy * inverse;
+  const double rate = dvx * nx + dvy * ny;
+  const double stretch = (1. / bond.rest_length) * distance;
+  const double viscous = bond.damping * rate;
+  const double axial =
+    factor * (bond.cross_section * std::visit([&](const auto &of_kind)
+                                              { return formulas::force(of_kind, stretch, bond.rest_length * inverse); },
+                                              law) +
+              viscous);
+  return {axial * nx, axial * ny, nx, ny, stretch, factor * (viscous * rate)};
 }
 
 } // namespace latcon::lattice::kernels

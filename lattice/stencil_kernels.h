@@ -1,33 +1,32 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-
 #include "lattice/row_kernels.h"
 
 /// @file
-/// The loops over the bonds of one half-bond of a stencil that start in a row, for each instruction set and with the
-/// same bits on all, as in row_kernels.h.
+/// The loops over the bonds of any half-bonds of a stencil that start in a row, for each instruction set and with the
+/// same bits on all, as in row_kernels.h. They take each bond through the operations of bonds_of_row(), times its
+/// factor.
 namespace latcon::lattice::kernels
 {
 
-/// The bonds of one half-bond that start at the n sites of a row. Arrays are readable, and those written to writable,
-/// to the end of the last block of row_alignment sites, where no bonds are.
-struct BondsOfHalfBond
+/// Computes the forces of the bonds of all kinds of a row, which have one law, and adds to `sums` those over the bonds.
+void bonds_of_stencil(const BondLaw &law, const RowOfBonds &row, RowSums &sums);
+
+/// Returns whether one of the bonds of all kinds of a row will be past its limit, or will have retracted, after its
+/// ends have moved for `ahead` [s] at their velocities. Does not use the forces.
+bool any_event_ahead(const RowOfBonds &row, double ahead);
+
+/// A bond's force, one at a time: the operations of the loops, so that both have the same bits.
+struct BondForce
 {
-  std::size_t n;                            ///< sites
-  const double *x, *y, *vx, *vy;            ///< of sites [m, m/s]
-  std::ptrdiff_t shift;                     ///< from a site to the far end of its bond
-  const std::uint64_t *present, *toughened; ///< words of sites, with the bit below for each bond
-  std::uint64_t bit;
+  double x, y;   ///< on the near end [N/m], the opposite on the far end
+  double nx, ny; ///< direction from the near to the far end
+  double stretch;
+  double viscous_power; ///< [W/m]
 };
-
-/// Writes the forces on the near ends [N/m] to fx and fy (theory.md, eq. (L.3)). @return power of the dashpots [W/m]
-double bonds_of_half_bond(const BondLaw &law, const BondConstants &bond, const BondsOfHalfBond &row, double *fx,
-                          double *fy);
-
-/// Returns whether one of the bonds will be longer than its limit after its ends have moved for `ahead` [s] at their
-/// velocities. @param breaking,toughened lengths of bonds at which they break [m]
-bool any_longer_ahead(const BondsOfHalfBond &row, double ahead, double breaking, double toughened);
+/// Returns the force of a bond whose ends are at a distance (dx, dy) [m] and move apart with (dvx, dvy) [m/s].
+/// @param factor of its cross-section
+BondForce bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx, double dy, double dvx,
+                     double dvy);
 
 } // namespace latcon::lattice::kernels

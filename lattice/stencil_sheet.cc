@@ -81,8 +81,7 @@ StencilSheet::StencilSheet(const Grid &grid, const Eigen::Vector2d &origin, doub
   for (Field *field : {&x_, &y_, &vx_, &vy_, &fx_, &fy_, &ax_, &ay_, &start_x_, &start_y_, &start_vx_, &start_vy_,
                        &previous_x_, &previous_y_, &previous_vx_, &previous_vy_, &inverse_mass_})
     *field = Field(n_places_);
-  present_.resize((stencil_.size() + 63) / 64 * n_places_);
-  toughened_.resize(present_.size());
+  bonds_.clear(n_places_, stencil_.size());
   lost_.resize(n_places_);
 
   const double tolerance = 1e-9 * grid.spacing;
@@ -115,10 +114,10 @@ StencilSheet::StencilSheet(const Grid &grid, const Eigen::Vector2d &origin, doub
       bool whole = true;
       for (std::size_t k = 0; k < stencil_.size(); ++k)
       {
-        const bool forward = is_site[place + static_cast<std::size_t>(shift_[k])] != 0;
+        const bool forward = is_site[bond(place, k).far] != 0;
         whole = whole && forward && is_site[place - static_cast<std::size_t>(shift_[k])] != 0;
         if (forward)
-          present_[k / 64 * n_places_ + place] |= bit(k);
+          bonds_.add(place, k);
       }
       inverse_mass_[place] = whole ? 1. / mass_ : 0.;
       n_free += whole ? 1 : 0;
@@ -161,7 +160,7 @@ void StencilSheet::for_each_bond_of_row(std::size_t row, const Work &work) const
   for (std::size_t near = sites.begin; near < sites.begin + sites.n(); ++near)
     for (std::size_t k = 0; k < stencil_.size(); ++k)
       if (present(near, k))
-        work(near, k, near + static_cast<std::size_t>(shift_[k]));
+        work(bond(near, k));
 }
 
 template <class Work>
@@ -174,11 +173,18 @@ void StencilSheet::in_threads(const Work &work) const
   }
 }
 
-kernels::BondsOfHalfBond StencilSheet::bonds_of(const Row &row, std::size_t k) const
+kernels::BondsOfKind StencilSheet::bonds_of(const Row &row, std::size_t k) const
 {
-  const std::size_t words = k / 64 * n_places_ + row.begin;
-  return {row.n(),   &x_[row.begin],   &y_[row.begin],     &vx_[row.begin], &vy_[row.begin],
-          shift_[k], &present_[words], &toughened_[words], bit(k)};
+  return {constants_[k], shift_[k], bonds_.words(k) + row.begin, BondStates::bit(k), BondStates::toughened_bit(k)};
+}
+
+kernels::RowOfBonds StencilSheet::sites_of(const Row &row, const kernels::BondsOfKind &bonds) const
+{
+  kernels::RowOfBonds sites{row.n(),         &x_[row.begin],    &y_[row.begin],    &vx_[row.begin],
+                            &vy_[row.begin], breaking_stretch_, toughened_stretch_};
+  sites.kinds = &bonds;
+  sites.n_kinds = 1;
+  return sites;
 }
 
 // Sums forces in one order at each point: bonds that start in lower rows first, then by half-bond.
@@ -203,8 +209,11 @@ void StencilSheet::evaluate()
           const std::size_t far = row + static_cast<std::size_t>(stencil_[k].rows);
           if (sites.n() == 0 || far < begin)
             continue;
-          power += kernels::bonds_of_half_bond(material_.in_shell(stencil_[k].shell)->law, constants_[k],
-                                               bonds_of(sites, k), bx.data(), by.data());
+          kernels::BondsOfKind bonds = bonds_of(sites, k);
+          bonds.force = {{bx.data(), by.data()}};
+          kernels::RowSums sums;
+          kernels::bonds_of_stencil(material_.in_shell(stencil_[k].shell)->law, sites_of(sites, bonds), sums);
+          power += sums.viscous_power;
           double *const near_x = &fx_[sites.begin], *const near_y = &fy_[sites.begin];
           if (row >= begin)
             for (std::size_t i = 0; i < sites.n(); ++i)
@@ -254,14 +263,13 @@ std::size_t StencilSheet::cut(double from, double to, double Y)
   std::size_t n = 0;
   for (std::size_t row = 0; row < rows_.size(); ++row)
     for_each_bond_of_row(row,
-                         [&](std::size_t near, std::size_t k, std::size_t)
+                         [&](const Bond &bond)
                          {
-                           const Eigen::Vector2d X = reference(near), &R = stencil_[k].vector;
+                           const Eigen::Vector2d X = reference(bond.near), &R = stencil_[bond.kind].vector;
                            const double share = (Y - X.y()) / R.y(), at = X.x() + share * R.x();
                            if (!(share > 0. && share <= 1. && at >= from && at <= to))
                              return;
-                           broken_energy_ += bond_energy(near, k);
-                           lose(near, k);
+                           lose(bond);
                            ++n;
                          });
   for (const Row &row : rows_)
@@ -284,42 +292,39 @@ void StencilSheet::let_break(double breaking_stretch, BehindTipToughening toughe
   toughen_behind_tip();
 }
 
-double StencilSheet::stretch_of(std::size_t near, std::size_t k) const
+double StencilSheet::stretch_of(const Bond &bond) const
 {
-  return (position(near + static_cast<std::size_t>(shift_[k])) - position(near)).norm() / stencil_[k].rest_length;
+  return (position(bond.far) - position(bond.near)).norm() / stencil_[bond.kind].rest_length;
 }
 
-double StencilSheet::bond_energy(std::size_t near, std::size_t k) const
+double StencilSheet::bond_energy(const Bond &bond) const
 {
-  return constants_[k].cross_section * stencil_[k].rest_length *
-         energy(material_.in_shell(stencil_[k].shell)->law, stretch_of(near, k));
+  const HalfBond &half = stencil_[bond.kind];
+  return constants_[bond.kind].cross_section * half.rest_length *
+         energy(material_.in_shell(half.shell)->law, stretch_of(bond));
 }
 
-void StencilSheet::lose(std::size_t near, std::size_t k)
+void StencilSheet::lose(const Bond &bond)
 {
-  present_[k / 64 * n_places_ + near] &= ~bit(k);
-  ++lost_[near];
-  ++lost_[near + static_cast<std::size_t>(shift_[k])];
+  broken_energy_ += bond_energy(bond);
+  bonds_.remove(bond.near, bond.kind);
+  ++lost_[bond.near];
+  ++lost_[bond.far];
 }
 
 void StencilSheet::consider_tip(std::size_t place)
 {
   if (held(place) || 4 * lost_[place] < 2 * stencil_.size())
     return;
-  const Eigen::Vector2d X = reference(place);
-  if (tip_ &&
-      (X.x() < tip_x_ || (X.x() == tip_x_ && !(std::abs(X.y() - tip_y_) < std::abs(reference(*tip_).y() - tip_y_)))))
-    return;
-  tip_ = place;
-  tip_x_ = X.x();
+  tip_.consider(place, reference(place));
 }
 
 void StencilSheet::toughen_behind_tip()
 {
-  if (!tip_)
+  if (!tip_.place)
     return;
   // The tip never retreats: bonds behind the last boundary are toughened already.
-  const double boundary = tip_x_ - toughening_distance_;
+  const double boundary = tip_.X.x() - toughening_distance_;
   const auto shorter = [](const HalfBond &a, const HalfBond &b) { return a.rest_length < b.rest_length; };
   const double longest = std::max_element(stencil_.begin(), stencil_.end(), shorter)->rest_length;
   in_threads(
@@ -333,7 +338,7 @@ void StencilSheet::toughen_behind_tip()
             continue;
           for (std::size_t k = 0; k < stencil_.size(); ++k)
             if (X + 0.5 * stencil_[k].vector.x() < boundary)
-              toughened_[k / 64 * n_places_ + near] |= bit(k);
+              bonds_.toughen(near, k);
         }
     });
   toughened_to_ = boundary;
@@ -348,40 +353,35 @@ void StencilSheet::break_bonds()
     {
       for (std::size_t row = begin; row < end; ++row)
         for (std::size_t k = 0; k < stencil_.size() && has_events[row] == 0; ++k)
-          if (rows_[row].n() > 0 &&
-              kernels::any_longer_ahead(bonds_of(rows_[row], k), ahead, breaking_stretch_ * stencil_[k].rest_length,
-                                        toughened_stretch_ * stencil_[k].rest_length))
+          if (rows_[row].n() > 0 && kernels::any_event_ahead(sites_of(rows_[row], bonds_of(rows_[row], k)), ahead))
             has_events[row] = 1;
     });
   broken_.clear();
   for (std::size_t row = 0; row < rows_.size(); ++row)
     if (has_events[row] != 0)
       for_each_bond_of_row(row,
-                           [&](std::size_t near, std::size_t k, std::size_t far)
+                           [&](const Bond &bond)
                            {
-                             const double limit = has(toughened_, near, k) ? toughened_stretch_ : breaking_stretch_;
+                             const auto [near, k, far] = bond;
+                             const double limit = bonds_.toughened(near, k) ? toughened_stretch_ : breaking_stretch_;
                              if (squared_length_after(ahead, x_[far] - x_[near], y_[far] - y_[near],
                                                       vx_[far] - vx_[near], vy_[far] - vy_[near]) >
                                  squared_length(limit, stencil_[k].rest_length))
-                               broken_.push_back({time_, near, far, k, reference(near) + 0.5 * stencil_[k].vector,
-                                                  stretch_of(near, k), bond_energy(near, k)});
+                               broken_.push_back({bond, time_, reference(near) + 0.5 * stencil_[k].vector,
+                                                  stretch_of(bond), bond_energy(bond)});
                            });
   if (broken_.empty())
     return;
-  const std::optional<std::size_t> previous = tip_;
-  if (tip_)
-    tip_y_ = reference(*tip_).y();
+  const std::optional<std::size_t> previous = tip_.place;
+  tip_.begin_step();
   for (const BrokenBond &bond : broken_)
-  {
-    broken_energy_ += bond.energy;
-    lose(bond.near, bond.kind);
-  }
+    lose(bond);
   for (const BrokenBond &bond : broken_)
   {
     consider_tip(bond.near);
     consider_tip(bond.far);
   }
-  if (tip_ != previous)
+  if (tip_.place != previous)
     toughen_behind_tip();
   evaluate();
 }
@@ -438,8 +438,7 @@ EnergyBalance StencilSheet::energies() const
   EnergyBalance balance{0., 0., viscous_, broken_energy_, 0., 0., initial_};
   for (std::size_t row = 0; row < rows_.size(); ++row)
   {
-    for_each_bond_of_row(row, [&](std::size_t near, std::size_t k, std::size_t)
-                         { balance.elastic += bond_energy(near, k); });
+    for_each_bond_of_row(row, [&](const Bond &bond) { balance.elastic += bond_energy(bond); });
     for (std::size_t place = rows_[row].begin; place < rows_[row].begin + rows_[row].n(); ++place)
       if (!held(place))
         balance.kinetic += 0.5 * mass_ * (vx_[place] * vx_[place] + vy_[place] * vy_[place]);

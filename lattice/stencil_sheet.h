@@ -45,7 +45,7 @@ public:
   Eigen::Vector2d reference(std::size_t place) const;                                  ///< X [m]
   Eigen::Vector2d position(std::size_t place) const { return {x_[place], y_[place]}; } ///< x [m]
   bool held(std::size_t place) const { return !(inverse_mass_[place] > 0.); }
-  bool present(std::size_t place, std::size_t half_bond) const { return has(present_, place, half_bond); }
+  bool present(std::size_t place, std::size_t half_bond) const { return bonds_.present(place, half_bond); }
 
   /// Moves every free point by a random displacement, uniform in [-amplitude, amplitude] along x and y [m].
   void add_noise(double amplitude, std::uint64_t seed);
@@ -61,7 +61,7 @@ public:
 
   double time() const { return time_; } ///< [s]
   /// Right-most free point that has lost at least a quarter of its bonds, as Fracture has it.
-  std::optional<std::size_t> tip() const { return tip_; }
+  std::optional<std::size_t> tip() const { return tip_.place; }
   /// Contact and boundary work are 0: there is none.
   EnergyBalance energies() const;
 
@@ -72,22 +72,18 @@ private:
     std::size_t begin; // place of the first
     std::size_t n() const { return static_cast<std::size_t>(last - first); }
   };
-  using Bits = std::vector<std::uint64_t>; // word by word, of all places
 
-  kernels::BondsOfHalfBond bonds_of(const Row &row, std::size_t half_bond) const;
-  bool has(const Bits &bits, std::size_t place, std::size_t k) const
-  {
-    return (bits[k / 64 * n_places_ + place] >> k % 64 & 1u) != 0;
-  }
-  static std::uint64_t bit(std::size_t k) { return std::uint64_t(1) << k % 64; }
-  template <class Work> // work(row, place, half-bond, far)
+  kernels::BondsOfKind bonds_of(const Row &row, std::size_t half_bond) const;
+  kernels::RowOfBonds sites_of(const Row &row, const kernels::BondsOfKind &bonds) const;
+  Bond bond(std::size_t near, std::size_t k) const { return {near, k, near + static_cast<std::size_t>(shift_[k])}; }
+  template <class Work> // work(bond)
   void for_each_bond_of_row(std::size_t row, const Work &work) const;
   template <class Work> // work(first row, end row)
   void in_threads(const Work &work) const;
   void evaluate();
-  double bond_energy(std::size_t near, std::size_t k) const;
-  double stretch_of(std::size_t near, std::size_t k) const;
-  void lose(std::size_t near, std::size_t k);
+  double bond_energy(const Bond &bond) const;
+  double stretch_of(const Bond &bond) const;
+  void lose(const Bond &bond);
   void consider_tip(std::size_t place);
   void toughen_behind_tip();
   void break_bonds();
@@ -107,15 +103,14 @@ private:
   std::vector<Row> rows_;
   Field x_, y_, vx_, vy_, fx_, fy_, ax_, ay_, inverse_mass_;
   Field start_x_, start_y_, start_vx_, start_vy_, previous_x_, previous_y_, previous_vx_, previous_vy_;
-  Bits present_, toughened_;
+  BondStates bonds_;
   std::vector<unsigned int> lost_;
   Field row_power_;
   double time_ = 0., power_ = 0.; // of dashpots
   double viscous_ = 0., broken_energy_ = 0., initial_ = 0.;
   double breaking_stretch_ = unbreakable, toughened_stretch_ = unbreakable, toughening_distance_ = 0.;
   double toughened_to_ = -unbreakable; // X behind which all bonds are toughened
-  std::optional<std::size_t> tip_;
-  double tip_x_ = 0., tip_y_ = 0.; // as in Fracture
+  CrackTip tip_;
   std::vector<BrokenBond> broken_;
 };
 

@@ -46,12 +46,11 @@ std::optional<StrainGradient> StrainGradientFit::at(const State &state, std::siz
   unsigned int bonds = 0;
   Eigen::Matrix<double, n_neighbours, 2> positions = Eigen::Matrix<double, n_neighbours, 2>::Zero();
   for_each_bond_of_site(state, lattice_, place,
-                        [&](std::size_t near, std::size_t kind)
+                        [&](const Bond &bond)
                         {
+                          const auto [near, kind, far] = bond;
                           if (kind >= n_kinds)
                             return;
-                          const std::size_t far =
-                            near + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(near)));
                           const bool forward = near == place;
                           const auto n = forward ? kind : kind + n_kinds;
                           bonds |= 1u << n;

@@ -144,6 +144,14 @@ std::size_t TriangularLattice::canonical_place(std::size_t place) const
   return image != nullptr ? image->site : place;
 }
 
+std::optional<std::size_t> TriangularLattice::row(std::ptrdiff_t number) const
+{
+  const auto n = static_cast<std::ptrdiff_t>(rows_);
+  if (periodic_across_)
+    number = (number + n) % n;
+  return number >= 0 && number < n ? std::optional(static_cast<std::size_t>(number)) : std::nullopt;
+}
+
 Eigen::Vector2d TriangularLattice::reference(std::size_t place) const
 {
   const auto row = static_cast<std::ptrdiff_t>(place / stride()) - static_cast<std::ptrdiff_t>(margin);
@@ -156,17 +164,17 @@ Eigen::Vector2d TriangularLattice::reference(std::size_t place) const
   return from_row_frame(along - 0.5 * static_cast<double>(columns_ - 1), across);
 }
 
-std::ptrdiff_t TriangularLattice::shift(std::size_t kind, std::size_t row) const
+std::ptrdiff_t TriangularLattice::rows_across(std::size_t kind)
+{
+  return bond_directions[kind].rows;
+}
+
+std::size_t TriangularLattice::shift(std::size_t kind, std::size_t row) const
 {
   // A bond to a row of the other parity leads half a spacing to one side, and rows of odd numbers begin there.
   const auto &[halves, rows] = bond_directions[kind];
   const int columns = rows % 2 == 0 ? halves / 2 : (halves - 1) / 2 + static_cast<int>(row % 2);
-  return rows * static_cast<std::ptrdiff_t>(stride()) + columns;
-}
-
-std::ptrdiff_t TriangularLattice::shift_into(std::size_t kind, std::size_t row) const
-{
-  return shift(kind, row + static_cast<std::size_t>(bond_directions[kind].rows % 2)); // of the parity where it starts
+  return static_cast<std::size_t>(rows) * stride() + static_cast<std::size_t>(columns);
 }
 
 Eigen::Vector2d TriangularLattice::bond_vector(std::size_t kind) const

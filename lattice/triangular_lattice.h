@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -42,6 +43,14 @@ constexpr std::size_t shell_of(std::size_t kind)
   return kind / n_kinds_per_shell;
 }
 
+/// A bond, by the places of its ends. Whatever belongs to a bond is stored by the place where it starts and its kind.
+struct Bond
+{
+  std::size_t near; ///< where it starts
+  std::size_t kind; ///< see n_bond_kinds
+  std::size_t far;  ///< where it ends; an image where it crosses the edge of a periodic sheet
+};
+
 /// A rectangular piece of the triangular lattice in its reference configuration (theory.md, section "The lattice").
 ///
 /// Sites stand in rows, spacing d along a row, row pitch (sqrt3 / 2) d, every second row shifted by d / 2 and one site
@@ -54,10 +63,10 @@ constexpr std::size_t shell_of(std::size_t kind)
 ///     row 0   o     o     o     o
 ///
 /// Storage is row by row with a margin of at least two places on every side, so that the neighbour of a site through a
-/// bond of kind k is always at index + shift(k, row), whether that neighbour exists or not. Rows begin at multiples of
-/// `row_alignment` places, and as many may be worked on at once. The margin is empty, except where the sheet is
-/// periodic: there the two places next to the sheet hold images of the sites at the other end. In a sheet that is
-/// periodic along its rows all rows have `columns()` sites; one that is periodic across them has an even number of
+/// bond of kind k is always at the same offset in rows of one parity, whether that neighbour exists or not. Rows begin
+/// at multiples of `row_alignment` places, and as many may be worked on at once. The margin is empty, except where the
+/// sheet is periodic: there the two places next to the sheet hold images of the sites at the other end. In a sheet that
+/// is periodic along its rows all rows have `columns()` sites; one that is periodic across them has an even number of
 /// rows.
 class TriangularLattice
 {
@@ -97,6 +106,8 @@ public:
   {
     return (row + margin) * stride() + row_alignment + column;
   }
+  /// The row of this number, or that which stands there in a periodic sheet; none beyond other sheets.
+  std::optional<std::size_t> row(std::ptrdiff_t number) const;
   std::size_t row_of(std::size_t place) const { return place / stride() - margin; }
   std::size_t column_of(std::size_t place) const { return place % stride() - row_alignment; }
   /// Returns whether a place, margin included, has a site that is not an image.
@@ -119,19 +130,27 @@ public:
   /// Reference position (X, Y) [m] of a place; X from 0 to length(), Y centred on 0. Valid in the margin as well.
   Eigen::Vector2d reference(std::size_t place) const;
 
-  /// Offset from a site in `row` to its neighbour through bond kind k.
-  std::ptrdiff_t shift(std::size_t kind, std::size_t row) const;
-  /// Offset to a site in `row` from its neighbour at which the bond of kind k between them starts.
-  std::ptrdiff_t shift_into(std::size_t kind, std::size_t row) const;
+  /// The bond of a kind that starts at a place, whether anything is at its end or not.
+  Bond bond(std::size_t near, std::size_t kind) const { return {near, kind, near + shift(kind, row_of(near))}; }
+  /// The bond of a kind that ends at a site, or at an image of it: it starts at a site, if at anything.
+  Bond bond_into(std::size_t site, std::size_t kind) const
+  {
+    return bond(canonical_place(site - shift(kind, row_of(site) + static_cast<std::size_t>(rows_across(kind)))), kind);
+  }
+  /// Rows from the start to the end of a bond of a kind, 0 to `reach`.
+  static std::ptrdiff_t rows_across(std::size_t kind);
+  /// Offset from a place in `row` to the end of the bond of a kind that starts there, modulo 2^64.
+  std::size_t shift(std::size_t kind, std::size_t row) const;
 
   /// Reference bond vector R = X_neighbour - X_site of kind k [m].
   Eigen::Vector2d bond_vector(std::size_t kind) const;
   /// Rest length |R|: d, sqrt3 d or 2 d [m].
   double rest_length(std::size_t kind) const;
   static bool is_nearest(std::size_t kind) { return kind < n_nearest_kinds; }
+  static constexpr std::size_t reach = 2; ///< of bonds, in rows and in places along a row
 
 private:
-  static constexpr std::size_t margin = 2; // how far neighbours are, in rows and in places along a row
+  static constexpr std::size_t margin = reach;
 
   Eigen::Vector2d from_row_frame(double along, double across) const;
   const Image *site_of_image(std::size_t place) const;

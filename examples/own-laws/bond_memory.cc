@@ -78,7 +78,7 @@ int main()
   state.x = loaded.x;
   state.y = loaded.y;
   std::size_t bonds = 0;
-  for_each_bond(state, sheet, [&](std::size_t, std::size_t, std::size_t) { ++bonds; });
+  for_each_bond(state, sheet, [&](const lattice::Bond &) { ++bonds; });
   lattice::Simulation held(sheet, material, std::move(state), h);
   const double volume = static_cast<double>(bonds) * cross_section(shell, sheet) * d;
   const double at_first = volume * 0.5 * E * std::pow(stretch - 1., 2);

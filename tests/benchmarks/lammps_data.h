@@ -24,7 +24,7 @@ inline void write_lammps_data(const latcon::lattice::Simulation &simulation, con
   const State &state = simulation.state();
   const auto number = [&](std::size_t place) { return sheet.site_number(place) + 1; };
   std::size_t n_bonds = 0;
-  for_each_bond(state, sheet, [&](std::size_t, std::size_t, std::size_t) { ++n_bonds; });
+  for_each_bond(state, sheet, [&](const Bond &) { ++n_bonds; });
 
   std::fprintf(out, "# A triangular lattice with linear bonds\n\n%zu atoms\n%zu bonds\n2 atom types\n2 bond types\n\n",
                sheet.n_sites(), n_bonds);
@@ -50,12 +50,12 @@ inline void write_lammps_data(const latcon::lattice::Simulation &simulation, con
                    state.y[place]);
     }
   std::fprintf(out, "\nBonds\n\n");
-  std::size_t bond = 0;
+  std::size_t n = 0;
   for_each_bond(state, sheet,
-                [&](std::size_t near, std::size_t kind, std::size_t far)
+                [&](const Bond &bond)
                 {
-                  std::fprintf(out, "%zu %d %zu %zu\n", ++bond, TriangularLattice::is_nearest(kind) ? 1 : 2,
-                               number(near), number(far));
+                  std::fprintf(out, "%zu %d %zu %zu\n", ++n, TriangularLattice::is_nearest(bond.kind) ? 1 : 2,
+                               number(bond.near), number(bond.far));
                 });
   if (std::fflush(out) != 0 || std::ferror(out) != 0)
     throw std::runtime_error("cannot write " + path);

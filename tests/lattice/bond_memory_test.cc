@@ -45,12 +45,13 @@ struct HeldSheet
   {
     double sum = 0.;
     for_each_bond(simulation->state(), sheet,
-                  [&](std::size_t, std::size_t kind, std::size_t)
+                  [&](const Bond &bond)
                   {
-                    const Shell &shell = *material.shell(kind);
-                    const double l = sheet.rest_length(kind), e = (F * sheet.bond_vector(kind)).norm() / l - 1.;
+                    const Shell &shell = *material.shell(bond.kind);
+                    const double l = sheet.rest_length(bond.kind),
+                                 e = (F * sheet.bond_vector(bond.kind)).norm() / l - 1.;
                     const std::vector<Branch> branches =
-                      TriangularLattice::is_nearest(kind)
+                      TriangularLattice::is_nearest(bond.kind)
                         ? std::get<MaxwellMemory>(shell.memory).branches()
                         : std::vector<Branch>{{1.5e5, 5e-5}}; // sheets::rubber_with_memory
                     for (const auto &[modulus, tau] : branches)

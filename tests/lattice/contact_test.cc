@@ -258,7 +258,7 @@ TEST(Contact, ListNeverMissesAPair)
     if (near != far)
     {
       state.lost_bonds[near] = state.lost_bonds[far] = 1;
-      contact.add_broken_bonds(state, {{0., near, far, 0, Eigen::Vector2d::Zero(), 1., 0.}});
+      contact.add_broken_bonds(state, {{{near, 0, far}, 0., Eigen::Vector2d::Zero(), 1., 0.}});
     }
     const std::vector<SiteForce> &forces = contact.evaluate(state, state.vx, state.vy);
     std::vector<SiteForce> wanted;
@@ -324,9 +324,9 @@ TEST(Contact, SitesThatJoinFindEachOther)
   Contact contact(sheet, {sheets::spacing, 1e5, 0.});
   contact.find_candidates(state);
   EXPECT_TRUE(contact.evaluate(state, state.vx, state.vy).empty());
-  contact.add_broken_bonds(state, {{0., a, b, 0, Eigen::Vector2d::Zero(), 1., 0.}});
+  contact.add_broken_bonds(state, {{{a, 0, b}, 0., Eigen::Vector2d::Zero(), 1., 0.}});
   EXPECT_TRUE(contact.evaluate(state, state.vx, state.vy).empty());
-  contact.add_broken_bonds(state, {{0., c, d, 0, Eigen::Vector2d::Zero(), 1., 0.}});
+  contact.add_broken_bonds(state, {{{c, 0, d}, 0., Eigen::Vector2d::Zero(), 1., 0.}});
   const std::vector<SiteForce> &forces = contact.evaluate(state, state.vx, state.vy);
   ASSERT_EQ(forces.size(), 2u);
   EXPECT_EQ(forces[0].place, a);

@@ -40,7 +40,7 @@ TEST(Cutout, HoleTakesTheSitesInsideAndTheirBonds)
         EXPECT_EQ(state.lost_bonds[place], 0);
         removed += state.removed[place];
         unsigned int bonds = 0;
-        for_each_bond_of_site(state, sheet, place, [&](std::size_t, std::size_t) { ++bonds; });
+        for_each_bond_of_site(state, sheet, place, [&](const Bond &) { ++bonds; });
         if (state.removed[place] != 0)
         {
           EXPECT_EQ(bonds, 0u);
@@ -63,9 +63,9 @@ TEST(Cutout, NotchLeavesNoBondAcrossItAndKeepsMirrorSymmetry)
     const double length = 9. * sheets::spacing;
     State state = with(sheet, Notch{length}, sheets::stretched(1., 1.2));
     for_each_bond(state, sheet,
-                  [&](std::size_t near, std::size_t kind, std::size_t)
+                  [&](const Bond &bond)
                   {
-                    const Eigen::Vector2d X = sheet.reference(near), Y = X + sheet.bond_vector(kind);
+                    const Eigen::Vector2d X = sheet.reference(bond.near), Y = X + sheet.bond_vector(bond.kind);
                     const bool across = X.y() * Y.y() <= 0. && std::abs(X.y() - Y.y()) > 0.;
                     if (across)
                     {

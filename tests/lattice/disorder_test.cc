@@ -167,11 +167,11 @@ TEST(BondFactors, MultiplyEnergyAndStress)
   const State state = homogeneous_state(sheet, material, F, Edges::held);
   double expected = 0.;
   for_each_bond(state, sheet,
-                [&](std::size_t place, std::size_t kind, std::size_t)
+                [&](const Bond &bond)
                 {
-                  const Shell &shell = *material.shell(kind);
-                  expected += state.stiffness.of(place, kind) * cross_section(shell, sheet) * sheet.rest_length(kind) *
-                              energy(shell.law, stretch(state, sheet, place, kind));
+                  const Shell &shell = *material.shell(bond.kind);
+                  expected += state.stiffness.of(bond.near, bond.kind) * cross_section(shell, sheet) *
+                              sheet.rest_length(bond.kind) * energy(shell.law, stretch(state, sheet, bond));
                 });
   EXPECT_NEAR(elastic_energy(state, sheet, material), expected, 1e-12 * expected);
 
@@ -179,13 +179,13 @@ TEST(BondFactors, MultiplyEnergyAndStress)
   Eigen::Matrix2d stress = Eigen::Matrix2d::Zero();
   double density = 0.;
   for_each_bond_of_site(state, sheet, middle,
-                        [&](std::size_t near, std::size_t kind)
+                        [&](const Bond &bond)
                         {
-                          const Shell &shell = *material.shell(kind);
-                          const Eigen::Vector2d R = sheet.bond_vector(kind), r = F * R;
+                          const Shell &shell = *material.shell(bond.kind);
+                          const Eigen::Vector2d R = sheet.bond_vector(bond.kind), r = F * R;
                           const double lam = r.norm() / R.norm();
-                          const double half =
-                            0.5 * state.stiffness.of(near, kind) * cross_section(shell, sheet) / sheet.site_area();
+                          const double half = 0.5 * state.stiffness.of(bond.near, bond.kind) *
+                                              cross_section(shell, sheet) / sheet.site_area();
                           stress += half * force(shell.law, lam) * r.normalized() * R.transpose();
                           density += half * R.norm() * energy(shell.law, lam);
                         });
@@ -207,9 +207,9 @@ TEST(Disorder, MultipliesTheBreakingStretchAndToughening)
   const std::size_t place = sheet.index(4, 4);
   for (std::size_t kind = 0; kind < 2 * n_kinds_per_shell; ++kind)
   {
-    EXPECT_EQ(breaking_stretch_of(state, place, kind), 1.5 * strength.of(place, kind));
+    EXPECT_EQ(breaking_stretch_of(state, sheet.bond(place, kind)), 1.5 * strength.of(place, kind));
     state.bonds.toughen(place, kind);
-    EXPECT_EQ(breaking_stretch_of(state, place, kind), 3. * strength.of(place, kind));
+    EXPECT_EQ(breaking_stretch_of(state, sheet.bond(place, kind)), 3. * strength.of(place, kind));
   }
   // All bonds are at 1.5: the weak half breaks.
   forces.evaluate(state, state.vx, state.vy);
@@ -217,10 +217,10 @@ TEST(Disorder, MultipliesTheBreakingStretchAndToughening)
   breaking.configure(state, forces);
   std::size_t weak = 0, bonds = 0;
   for_each_bond(state, sheet,
-                [&](std::size_t near, std::size_t kind, std::size_t)
+                [&](const Bond &bond)
                 {
                   ++bonds;
-                  if (stretch(state, sheet, near, kind) > breaking_stretch_of(state, near, kind))
+                  if (stretch(state, sheet, bond) > breaking_stretch_of(state, bond))
                     ++weak;
                 });
   forces.evaluate(state, state.vx, state.vy);

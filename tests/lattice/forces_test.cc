@@ -213,28 +213,11 @@ Material mixed()
   return material;
 }
 
-// Branches in both shells, of different numbers.
-Material with_branches()
-{
-  Material material = sheets::rubber();
-  material.nearest.memory = MaxwellMemory({{2e5, 2e-5}, {1e5, 2e-4}, {3e4, 1e-3}});
-  material.next_nearest->memory = MaxwellMemory({{1.5e5, 5e-5}});
-  return material;
-}
-
 // Bonds of one stiffness and one shell with a law from outside.
 Material differently_strong()
 {
-  Material material = sheets::rubber_from_outside();
-  material.next_nearest.reset();
+  Material material = sheets::without_next_nearest(sheets::rubber_from_outside());
   material.disorder.strength = {Distribution::Kind::uniform, 0.2};
-  return material;
-}
-
-Material nearest_and_third()
-{
-  Material material = sheets::rubber_of_three_shells();
-  material.next_nearest.reset();
   return material;
 }
 
@@ -245,8 +228,9 @@ std::vector<Subject> subjects()
   for (const double columns : {3., 10., 11., 12., 13., 14., 15., 16., 17., 40.})
     for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
       for (const Material &material :
-           {sheets::rubber(), sheets::nearest_only(), linear(), sheets::rubber_from_outside(), mixed(), with_branches(),
-            sheets::disordered_rubber(), differently_strong(), nearest_and_third(),
+           {sheets::rubber(), sheets::nearest_only(), linear(), sheets::rubber_from_outside(), mixed(),
+            sheets::rubber_with_branches(), sheets::disordered_rubber(), differently_strong(),
+            sheets::without_next_nearest(sheets::rubber_of_three_shells()),
             sheets::disordered_rubber_of_three_shells()})
         for (const Periodic periodic : {Periodic{}, Periodic{true, false}, Periodic{false, true}, Periodic{true, true}})
           all.push_back({material, orientation, periodic, columns});
@@ -297,11 +281,7 @@ State random_state(const TriangularLattice &sheet, const Material &material, uns
     }
   }
   const std::size_t removed = sheet.index(sheet.rows() / 2, 1), neighbour = removed + 1;
-  std::vector<std::pair<std::size_t, std::size_t>> bonds;
-  for_each_bond_of_site(state, sheet, removed,
-                        [&](std::size_t near, std::size_t kind) { bonds.emplace_back(near, kind); });
-  for (const auto &[near, kind] : bonds)
-    state.bonds.remove(near, kind);
+  for_each_bond_of_site(state, sheet, removed, [&](const Bond &bond) { state.bonds.remove(bond.near, bond.kind); });
   state.x[removed] = state.x[neighbour];
   state.y[removed] = state.y[neighbour];
   update_images(state, sheet);
@@ -361,12 +341,12 @@ TEST(Forces, ReportRowsWithShortBonds)
       EXPECT_FALSE(forces.row_has_short_bonds(row)); // none are watched
     std::vector<double> shortest(sheet.rows(), 1e9);
     for_each_bond(state, sheet,
-                  [&](std::size_t near, std::size_t kind, std::size_t)
+                  [&](const Bond &bond)
                   {
-                    if (std::holds_alternative<LinearBond>(subject.material.shell(kind)->law))
+                    if (std::holds_alternative<LinearBond>(subject.material.shell(bond.kind)->law))
                       return;
-                    double &of_row = shortest[sheet.row_of(near)];
-                    of_row = std::min(of_row, stretch(state, sheet, near, kind));
+                    double &of_row = shortest[sheet.row_of(bond.near)];
+                    of_row = std::min(of_row, stretch(state, sheet, bond));
                   });
     for (const double limit : {0.9, 1., 1.1, 1.2})
     {
@@ -461,12 +441,12 @@ TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
   {
     const TriangularLattice sheet = sheet_of(subject);
     const State before = random_state(sheet, subject.material, 3);
-    std::vector<std::pair<std::size_t, std::size_t>> bonds;
+    std::vector<Bond> bonds;
     for_each_bond(before, sheet,
-                  [&](std::size_t place, std::size_t kind, std::size_t)
+                  [&](const Bond &bond)
                   {
-                    if ((7 * place + kind) % 10 < 3)
-                      bonds.emplace_back(place, kind);
+                    if ((7 * bond.near + bond.kind) % 10 < 3)
+                      bonds.push_back(bond);
                   });
     std::mt19937 random(4);
     std::shuffle(bonds.begin(), bonds.end(), random);
@@ -474,10 +454,10 @@ TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
     Forces forces(sheet, subject.material), without(sheet, subject.material);
     forces.evaluate(state, state.vx, state.vy);
     const double power = forces.viscous_power();
-    for (const auto &[place, kind] : bonds)
+    for (const Bond &bond : bonds)
     {
-      state.bonds.remove(place, kind);
-      forces.remove_bond(state, state.vx, state.vy, place, kind);
+      state.bonds.remove(bond.near, bond.kind);
+      forces.remove_bond(state, state.vx, state.vy, bond);
     }
     without.evaluate(state, state.vx, state.vy);
     for (std::size_t place = 0; place < sheet.n_places(); ++place)

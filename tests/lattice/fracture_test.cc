@@ -42,14 +42,14 @@ struct TenSites
   std::size_t n_bonds() const
   {
     std::size_t n = 0;
-    for_each_bond(state, sheet, [&](std::size_t, std::size_t, std::size_t) { ++n; });
+    for_each_bond(state, sheet, [&](const Bond &) { ++n; });
     return n;
   }
 
   double limit(std::size_t row, std::size_t column, std::size_t kind) const
   {
     const std::size_t place = sheet.index(row, column);
-    return state.bonds.present(place, kind) ? lattice::breaking_stretch_of(state, place, kind) : 0.;
+    return state.bonds.present(place, kind) ? lattice::breaking_stretch_of(state, sheet.bond(place, kind)) : 0.;
   }
 
   TriangularLattice sheet;
@@ -151,7 +151,7 @@ TEST(Fracture, FlagsARowIfAndOnlyIfOneOfItsBondsHasAnEvent)
         const double strength = bond_factors(sheet, material, BondProperty::strength).of(near, kind);
         // 1.5 is the limit of a bond of mean strength, 0.8 the fraction of retraction.
         const double limit = breaks ? 1.5 * strength : 0.8, l = sheet.rest_length(kind);
-        const std::size_t far = near + static_cast<std::size_t>(sheet.shift(kind, row));
+        const std::size_t far = sheet.bond(near, kind).far;
         for (int direction = 0; direction < 60; ++direction)
           for (int ulps = -3; ulps <= 3; ++ulps)
           {
@@ -234,11 +234,11 @@ TEST(Fracture, LeavesHeldSitesHeld)
   const Eigen::Matrix2d F = 2. * Eigen::Matrix2d::Identity();
   const State whole = homogeneous_state(sheet, material, F, Edges::held);
   for_each_bond(whole, sheet,
-                [&](std::size_t place, std::size_t kind, std::size_t)
+                [&](const Bond &bond)
                 {
                   State state = whole;
                   state.bonds.clear(sheet.n_places());
-                  state.bonds.add(place, kind);
+                  state.bonds.add(bond.near, bond.kind);
                   Forces forces(sheet, material);
                   Fracture fracture(sheet, material, 1.5, NoToughening{}, F);
                   fracture.configure(state, forces);
@@ -264,8 +264,7 @@ TEST(Fracture, ToughensBehindTheTip)
   EXPECT_TRUE(sheet.apply().empty());
   EXPECT_EQ(sheet.limit(2, 0, 0), 4.5); // toughened once, not once more
   sheet.state.x[sheet.sheet.index(2, 0)] -= 3.;
-  const std::vector<BrokenBond> broken = sheet.apply();
-  EXPECT_EQ(broken.size(), 1u);
+  EXPECT_EQ(sheet.apply().size(), 1u);
 }
 
 // A state has bonds that never break until a Fracture sets their limits. A site is pulled aside: the bond that is
@@ -277,7 +276,7 @@ TEST(Fracture, OwnsTheBreakingStretch)
   const Eigen::Matrix2d F = sheets::stretched(1.4, 1.4);
   State state = homogeneous_state(sheet, material, F, Edges::held);
   const std::size_t near = sheet.index(4, 3), far = near + 1;
-  EXPECT_EQ(breaking_stretch_of(state, near, 0), unbreakable);
+  EXPECT_EQ(breaking_stretch_of(state, sheet.bond(near, 0)), unbreakable);
   state.x[far] += 0.2 * sheets::spacing;
   state.bonds.toughen(near, 0);
   const auto n_broken = [&](const Toughening &toughening)
@@ -453,30 +452,6 @@ TEST(EnergyBalance, ClosesThroughFracture)
   EXPECT_GT(e.viscous, 1e-3 * e.initial);
   EXPECT_GT(e.broken, 1e-3 * e.initial);
   EXPECT_LT(std::abs(e.imbalance()), 1e-6 * e.initial);
-}
-
-// A sheet drawn out by its edges at 40 % a millisecond, dashpots at work: the edges' work goes into springs and
-// dashpots.
-TEST(EnergyBalance, ClosesWithMovingEdges)
-{
-  const TriangularLattice sheet = sheets::square(20);
-  const Material material = sheets::rubber();
-  const auto relative_imbalance = [&](double time_step)
-  {
-    State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
-    Simulation simulation(sheet, material, std::move(state), time_step);
-    simulation.move_edges(sheets::stretched(400., 200.));
-    const auto steps = static_cast<std::size_t>(std::lround(2e-4 / time_step));
-    for (std::size_t step = 0; step < steps; ++step)
-      simulation.step();
-    const EnergyBalance e = simulation.energies();
-    EXPECT_GT(e.boundary_work, 0.);
-    EXPECT_GT(e.viscous, 0.1 * e.boundary_work);
-    return std::abs(e.imbalance()) / e.boundary_work;
-  };
-  const double fine = relative_imbalance(2.5e-8);
-  EXPECT_LT(fine, 1e-5);
-  EXPECT_NEAR(std::log2(relative_imbalance(1e-7) / fine) / 2., 2., 0.3);
 }
 
 } // namespace fracture_test

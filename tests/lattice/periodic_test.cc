@@ -44,10 +44,10 @@ TEST(PeriodicLattice, EverySiteHasAllItsBondsWhereNoEdgeIsLeft)
                   {
                     unsigned int bonds = 0;
                     for_each_bond_of_site(state, sheet, place,
-                                          [&](std::size_t near, std::size_t)
+                                          [&](const Bond &bond)
                                           {
                                             ++bonds;
-                                            EXPECT_TRUE(sheet.is_site(near));
+                                            EXPECT_TRUE(sheet.is_site(bond.near));
                                           });
                     EXPECT_EQ(bonds, 12u);
                     EXPECT_EQ(state.held[place], 0);
@@ -55,7 +55,7 @@ TEST(PeriodicLattice, EverySiteHasAllItsBondsWhereNoEdgeIsLeft)
                   });
     EXPECT_EQ(sites, sheet.n_sites());
     std::size_t bonds = 0;
-    for_each_bond(state, sheet, [&](std::size_t, std::size_t, std::size_t) { ++bonds; });
+    for_each_bond(state, sheet, [&](const Bond &) { ++bonds; });
     EXPECT_EQ(bonds, 6 * sheet.n_sites());
     EXPECT_NEAR(static_cast<double>(sheet.n_sites()) * sheet.site_area(), sheet.length() * sheet.height(),
                 1e-12 * sheet.length() * sheet.height());

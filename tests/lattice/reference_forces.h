@@ -63,19 +63,20 @@ reference_forces(const latcon::lattice::State &state, const latcon::lattice::Tri
   using Eigen::Vector2d;
   const latcon::lattice::Field zero(sheet.n_places(), 0.);
   ReferenceForces result{zero, zero, zero, 0., std::vector<bool>(sheet.rows(), false)};
-  const auto visit = [&](std::size_t near, std::size_t kind, std::size_t far)
+  const auto visit = [&](const latcon::lattice::Bond &bond)
   {
+    const auto [near, kind, far] = bond;
     const latcon::lattice::Shell &shell = *material.shell(kind);
     const double section = state.stiffness.of(near, kind) * cross_section(shell, sheet);
     const double rest_length = sheet.rest_length(kind);
-    const Vector2d bond(state.x[far] - state.x[near], state.y[far] - state.y[near]);
+    const Vector2d r(state.x[far] - state.x[near], state.y[far] - state.y[near]);
     const Vector2d velocity(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
-    const double stretch = bond.norm() / rest_length;
-    const double rate = velocity.dot(bond.normalized());
+    const double stretch = r.norm() / rest_length;
+    const double rate = velocity.dot(r.normalized());
     const double axial = section * (force(shell.law, stretch) + shell.viscosity * rate / rest_length);
     // theory.md, eq. (L.27), no time having passed since the update.
     const double over = section * overstress(state, shell, near, kind, stretch);
-    const Vector2d on_near = (axial + over) * bond.normalized();
+    const Vector2d on_near = (axial + over) * r.normalized();
     // Terms of opposite sign may cancel within a bond too: in its law, where the tangent at rest and the stretch bound
     // them, and in the rate.
     const double magnitude = section * (2. * stiffness(shell.law, 1.) * std::max(stretch, std::pow(stretch, -3)) +
@@ -89,7 +90,7 @@ reference_forces(const latcon::lattice::State &state, const latcon::lattice::Tri
     }
     result.viscous_power += section * shell.viscosity * rate * rate / rest_length +
                             section * rest_length * memory_dissipation(state, shell, near, kind, stretch);
-    if (stretch > breaking_stretch_of(state, near, kind) ||
+    if (stretch > breaking_stretch_of(state, bond) ||
         (!state.bonds.toughened(near, kind) && stretch < retraction_stretch[kind]))
       result.row_has_events[sheet.row_of(near)] = true;
   };

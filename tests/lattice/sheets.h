@@ -91,11 +91,15 @@ inline latcon::lattice::Material rubber(double viscosity = 65.625)
   return {944., {bond, area_factor, viscosity}, latcon::lattice::Shell{bond, area_factor, 3. * viscosity}};
 }
 
-inline latcon::lattice::Material nearest_only(double viscosity = 65.625)
+inline latcon::lattice::Material without_next_nearest(latcon::lattice::Material material)
 {
-  latcon::lattice::Material material = rubber(viscosity);
   material.next_nearest.reset();
   return material;
+}
+
+inline latcon::lattice::Material nearest_only(double viscosity = 65.625)
+{
+  return without_next_nearest(rubber(viscosity));
 }
 
 /// Rubber with third-nearest neighbours too, of another stiffness, area factor and viscosity than the others.
@@ -124,13 +128,20 @@ inline latcon::lattice::Material rubber_with_memory(double viscosity = 65.625)
   return material;
 }
 
-/// Rubber with three Maxwell branches in nearest-neighbour bonds and one in the others, and disorder of all bonds.
-inline latcon::lattice::Material disordered_rubber(double viscosity = 65.625)
+/// Rubber with three Maxwell branches in nearest-neighbour bonds and one in the others.
+inline latcon::lattice::Material rubber_with_branches(double viscosity = 65.625)
 {
-  using latcon::lattice::Distribution;
   latcon::lattice::Material material = rubber(viscosity);
   material.nearest.memory = latcon::lattice::MaxwellMemory({{2e5, 2e-5}, {1e5, 2e-4}, {3e4, 1e-3}});
   material.next_nearest->memory = latcon::lattice::MaxwellMemory({{1.5e5, 5e-5}});
+  return material;
+}
+
+/// The same with disorder of all bonds.
+inline latcon::lattice::Material disordered_rubber(double viscosity = 65.625)
+{
+  using latcon::lattice::Distribution;
+  latcon::lattice::Material material = rubber_with_branches(viscosity);
   material.disorder = {{Distribution::Kind::weibull, 0.05}, {Distribution::Kind::normal, 0.2}, 7};
   return material;
 }

@@ -72,12 +72,12 @@ TEST(StencilSheet, OfSixDirectionsCracksAsTheLattice)
   const double from = 10. * d, to = 25. * d, Y = 0.2 * d;
   std::vector<std::pair<std::size_t, std::size_t>> crossing;
   for_each_bond(theirs.state(), lattice,
-                [&](std::size_t near, std::size_t kind, std::size_t)
+                [&](const Bond &bond)
                 {
-                  const Eigen::Vector2d X = lattice.reference(near), R = lattice.bond_vector(kind);
+                  const Eigen::Vector2d X = lattice.reference(bond.near), R = lattice.bond_vector(bond.kind);
                   const double share = (Y - X.y()) / R.y();
                   if (share > 0. && share <= 1. && X.x() + share * R.x() >= from && X.x() + share * R.x() <= to)
-                    crossing.emplace_back(near, kind);
+                    crossing.emplace_back(bond.near, bond.kind);
                 });
   theirs.cut_bonds(crossing);
   EXPECT_EQ(ours.cut(from, to, Y), crossing.size());

@@ -193,8 +193,7 @@ TEST(Objectivity, CrackInASheetOnItsSideIsTheSameCrack)
     const State &a = upright.simulation->state(), &b = turned.simulation->state();
     std::size_t toughened = 0;
     for_each_bond(a, upright.sheet,
-                  [&](std::size_t place, std::size_t kind, std::size_t)
-                  { toughened += a.bonds.toughened(place, kind) ? 1 : 0; });
+                  [&](const Bond &bond) { toughened += a.bonds.toughened(bond.near, bond.kind) ? 1 : 0; });
     EXPECT_EQ(toughened > 0, std::holds_alternative<RetractionToughening>(toughening));
     for (std::size_t place = 0; place < a.x.size(); ++place)
       if (upright.sheet.is_site(place))
@@ -238,8 +237,7 @@ std::size_t upside_down(const TriangularLattice &sheet, std::size_t place)
 // Ends of a bond, the smaller place first.
 std::pair<std::size_t, std::size_t> ends(const TriangularLattice &sheet, std::size_t near, std::size_t kind)
 {
-  const std::size_t far = near + static_cast<std::size_t>(sheet.shift(kind, sheet.row_of(near)));
-  return std::minmax({near, far});
+  return std::minmax({near, sheet.bond(near, kind).far});
 }
 
 // A crack that noise leads astray, and the mirror image of it all. Contacts are left out: forces of several on one site

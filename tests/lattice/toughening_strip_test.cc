@@ -43,10 +43,11 @@ TEST(Fracture, ToughensAllBondsBehindARunningTip)
         first_tip = tip;
       std::size_t wrong = 0;
       for_each_bond(simulation.state(), sheet,
-                    [&](std::size_t place, std::size_t kind, std::size_t)
+                    [&](const Bond &bond)
                     {
-                      const double midpoint = sheet.reference(place).x() + 0.5 * sheet.bond_vector(kind).x();
-                      wrong += simulation.state().bonds.toughened(place, kind) != (midpoint < tip - distance) ? 1 : 0;
+                      const double midpoint = sheet.reference(bond.near).x() + 0.5 * sheet.bond_vector(bond.kind).x();
+                      wrong +=
+                        simulation.state().bonds.toughened(bond.near, bond.kind) != (midpoint < tip - distance) ? 1 : 0;
                     });
       ASSERT_EQ(wrong, 0u) << "after step " << step << ", tip at " << tip;
     }

@@ -47,15 +47,13 @@ TEST_P(BothOrientations, SitesHaveSixNeighboursAtEachOfTheRightDistances)
       expected[2] += std::abs(distance - 2.) < 1e-9;
     }
     lattice::for_each_bond_of_site(state, sheet, site,
-                                   [&](std::size_t near, std::size_t kind)
+                                   [&](const lattice::Bond &bond)
                                    {
-                                     const std::size_t far =
-                                       near + static_cast<std::size_t>(sheet.shift(kind, sheet.row_of(near)));
-                                     EXPECT_TRUE(near == site || far == site);
-                                     const Eigen::Vector2d bond = sheet.reference(far) - sheet.reference(near);
-                                     EXPECT_NEAR((bond - sheet.bond_vector(kind)).norm(), 0., 1e-15);
-                                     EXPECT_NEAR(bond.norm(), sheet.rest_length(kind), 1e-15);
-                                     ++bonds[lattice::shell_of(kind)];
+                                     EXPECT_TRUE(bond.near == site || bond.far == site);
+                                     const Eigen::Vector2d R = sheet.reference(bond.far) - sheet.reference(bond.near);
+                                     EXPECT_NEAR((R - sheet.bond_vector(bond.kind)).norm(), 0., 1e-15);
+                                     EXPECT_NEAR(R.norm(), sheet.rest_length(bond.kind), 1e-15);
+                                     ++bonds[lattice::shell_of(bond.kind)];
                                    });
     EXPECT_EQ(bonds, expected);
     interior += bonds[0] + bonds[1] + bonds[2] == material.coordination();

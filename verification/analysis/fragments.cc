@@ -19,10 +19,10 @@ std::vector<Piece> pieces(const lattice::State &state, const lattice::Triangular
 {
   std::vector<std::vector<std::size_t>> neighbours(lattice.n_places());
   for_each_bond(state, lattice,
-                [&](std::size_t near, std::size_t, std::size_t far)
+                [&](const lattice::Bond &bond)
                 {
-                  neighbours[near].push_back(lattice.canonical_place(far));
-                  neighbours[lattice.canonical_place(far)].push_back(near);
+                  neighbours[bond.near].push_back(lattice.canonical_place(bond.far));
+                  neighbours[lattice.canonical_place(bond.far)].push_back(bond.near);
                 });
   std::vector<Piece> all;
   std::vector<std::uint8_t> seen(lattice.n_places(), 0);
@@ -75,8 +75,9 @@ std::size_t n_overstretched_bonds(const lattice::State &state, const lattice::Tr
 {
   std::size_t n = 0;
   for_each_bond(state, lattice,
-                [&](std::size_t near, std::size_t kind, std::size_t) {
-                  n += stretch(state, lattice, near, kind) > breaking_stretch * state.strength.of(near, kind) ? 1 : 0;
+                [&](const lattice::Bond &bond) {
+                  n +=
+                    stretch(state, lattice, bond) > breaking_stretch * state.strength.of(bond.near, bond.kind) ? 1 : 0;
                 });
   return n;
 }
@@ -108,11 +109,9 @@ double bridged_length(const lattice::State &state, const lattice::TriangularLatt
     if (state.held[place] != 0 && lattice.reference(place).y() > 0.)
       bridged[static_cast<std::size_t>(strip)] = 1;
     for_each_bond_of_site(state, lattice, place,
-                          [&](std::size_t near, std::size_t kind)
+                          [&](const lattice::Bond &bond)
                           {
-                            const std::size_t far =
-                              near + static_cast<std::size_t>(lattice.shift(kind, lattice.row_of(near)));
-                            const std::size_t other = near == place ? far : near;
+                            const std::size_t other = bond.near == place ? bond.far : bond.near;
                             if (reached[other] == 0 && strip_of(other) == strip)
                             {
                               reached[other] = 1;

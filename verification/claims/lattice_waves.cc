@@ -145,8 +145,9 @@ lattice::State excited(const WaveCell &cell, const lattice::Material &material, 
   lattice::relax_memory(state, sheet, material);
   lattice::for_each_bond(
     at_rest, sheet,
-    [&](std::size_t place, std::size_t kind, std::size_t far)
+    [&](const lattice::Bond &bond)
     {
+      const auto [place, kind, far] = bond;
       const auto *memory = std::get_if<lattice::MaxwellMemory>(&material.shell(kind)->memory);
       if (memory == nullptr)
         return;

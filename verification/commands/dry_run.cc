@@ -41,7 +41,7 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
     sites += sheet.is_site(place) && state.removed[place] == 0;
   std::size_t bonds = 0;
-  lattice::for_each_bond(state, sheet, [&](std::size_t, std::size_t, std::size_t) { ++bonds; });
+  lattice::for_each_bond(state, sheet, [&](const lattice::Bond &) { ++bonds; });
   std::ostringstream out;
   out << "# lattice: " << sites << " sites, " << bonds << " bonds, " << 2 * sites << " unknowns, " << sheet.length()
       << " m x " << sheet.height() << " m\n";

@@ -130,21 +130,21 @@ void FieldWriter::add_frame(const lattice::State &state)
   }
   std::vector<unsigned int> bonds_of_point(static_cast<std::size_t>(n_points), 0);
   for_each_bond(state, lattice_,
-                [&](std::size_t near, std::size_t kind, std::size_t far)
+                [&](const lattice::Bond &bond)
                 {
-                  if (point_of_place[far] < 0)
+                  if (point_of_place[bond.far] < 0)
                     return; // across a periodic edge: it would be drawn as a line through the whole sheet
-                  const std::array<vtkIdType, 2> ends{{point_of_place[near], point_of_place[far]}};
+                  const std::array<vtkIdType, 2> ends{{point_of_place[bond.near], point_of_place[bond.far]}};
                   lines->InsertNextCell(2, ends.data());
-                  const double value = stretch(state, lattice_, near, kind);
+                  const double value = stretch(state, lattice_, bond);
                   bond_stretch->InsertNextValue(value);
                   for (const vtkIdType end : ends)
                   {
                     bond_stretch->SetValue(end, bond_stretch->GetValue(end) + value);
                     ++bonds_of_point[static_cast<std::size_t>(end)];
                   }
-                  shell->InsertNextValue(static_cast<unsigned char>(lattice::shell_of(kind) + 1));
-                  toughened->InsertNextValue(state.bonds.toughened(near, kind) ? 1 : 0);
+                  shell->InsertNextValue(static_cast<unsigned char>(lattice::shell_of(bond.kind) + 1));
+                  toughened->InsertNextValue(state.bonds.toughened(bond.near, bond.kind) ? 1 : 0);
                 });
 
   for (vtkIdType id = 0; id < n_points; ++id)

@@ -30,10 +30,10 @@ protected:
     const auto is_inner = [&](std::size_t place)
     { return std::find(inner.begin(), inner.end(), place) != inner.end(); };
     for_each_bond(state, sheet,
-                  [&](std::size_t near, std::size_t kind, std::size_t far)
+                  [&](const Bond &bond)
                   {
-                    if (is_inner(near) != is_inner(far))
-                      state.bonds.remove(near, kind);
+                    if (is_inner(bond.near) != is_inner(bond.far))
+                      state.bonds.remove(bond.near, bond.kind);
                   });
   }
 
@@ -104,10 +104,10 @@ TEST(Fragments, GoOnAcrossAPeriodicEdge)
            sheet.canonical_place(place) == sheet.index(row, last);
   };
   for_each_bond(state, sheet,
-                [&](std::size_t near, std::size_t kind, std::size_t far)
+                [&](const Bond &bond)
                 {
-                  if (is_inner(near) != is_inner(far))
-                    state.bonds.remove(near, kind);
+                  if (is_inner(bond.near) != is_inner(bond.far))
+                    state.bonds.remove(bond.near, bond.kind);
                 });
   EXPECT_EQ(find_fragments(state, sheet).sizes, std::vector<std::size_t>{2});
 }
@@ -120,7 +120,7 @@ TEST_F(Cut, OverstretchedBondsAreThoseThatOnlyTougheningKept)
   const std::size_t place = sheet.index(8, 8);
   state.y[place] += 6. * sheets::spacing;
   std::size_t n = 0;
-  for_each_bond_of_site(state, sheet, place, [&](std::size_t, std::size_t) { ++n; });
+  for_each_bond_of_site(state, sheet, place, [&](const Bond &) { ++n; });
   EXPECT_EQ(n, 12u);
   EXPECT_EQ(n_overstretched_bonds(state, sheet, 2.), 12u);
   EXPECT_EQ(n_overstretched_bonds(state, sheet, 20.), 0u);
@@ -144,10 +144,10 @@ TEST_F(Cut, FibrilsBridgeTheStripsTheyAreIn)
   EXPECT_EQ(bridged_length(state, sheet, 2. * d, 2. * d), 0.);
   std::vector<std::pair<std::size_t, std::size_t>> cut;
   for_each_bond(state, sheet,
-                [&](std::size_t near, std::size_t kind, std::size_t far)
+                [&](const Bond &bond)
                 {
-                  if (crosses(near, far))
-                    cut.emplace_back(near, kind);
+                  if (crosses(bond.near, bond.far))
+                    cut.emplace_back(bond.near, bond.kind);
                 });
   for (const auto &[near, kind] : cut)
     state.bonds.remove(near, kind);

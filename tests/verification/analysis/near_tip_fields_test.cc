@@ -58,7 +58,7 @@ struct SlitSheet
   {
     state.bonds.remove(near, kind);
     ++state.lost_bonds[near];
-    ++state.lost_bonds[near + static_cast<std::size_t>(sheet.shift(kind, sheet.row_of(near)))];
+    ++state.lost_bonds[sheet.bond(near, kind).far];
   }
 };
 
@@ -270,7 +270,7 @@ TEST(NearTipSampler, LeavesOutDebrisAndTipsAtRest)
   {
     slit.break_bond(debris, kind);
     if (kind == 0) // one bond of the other half
-      slit.break_bond(debris - static_cast<std::size_t>(slit.sheet.shift(0, slit.sheet.row_of(debris))), 0);
+      slit.break_bond(slit.sheet.bond_into(debris, 0).near, 0);
   }
   NearTipSampler sampler(slit.sheet, slit.material, slit.options());
   std::size_t taken = 0;

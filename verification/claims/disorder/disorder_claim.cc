@@ -108,9 +108,10 @@ private:
         options_.planted(state);
       if (sign > 0.)
         lattice::for_each_bond(state, sheet_,
-                               [&](std::size_t place, std::size_t kind, std::size_t)
+                               [&](const lattice::Bond &bond)
                                {
-                                 const double factor = state.stiffness.of(place, kind), w = weight(kind, load);
+                                 const double factor = state.stiffness.of(bond.near, bond.kind),
+                                              w = weight(bond.kind, load);
                                  all += w;
                                  stiff += w * factor;
                                  soft += w / factor;

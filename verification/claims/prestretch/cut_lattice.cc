@@ -54,18 +54,19 @@ double roundest_radius(const bridge::Subject &subject, double R, double length, 
   // Moments of the bonds that go with each radius and not with the one before.
   std::array<double, n_radii> moments{};
   lattice::for_each_bond(whole, lattice,
-                         [&](std::size_t near, std::size_t kind, std::size_t)
+                         [&](const lattice::Bond &bond)
                          {
-                           const lattice::Shell &shell = *subject.material.shell(kind);
-                           const Eigen::Vector2d bond = lattice.bond_vector(kind), X = lattice.reference(near) - middle;
-                           const double distance = support::smallest_of({X.norm(), (X + bond).norm()});
-                           const Eigen::Vector2d centre = X + 0.5 * bond;
+                           const lattice::Shell &shell = *subject.material.shell(bond.kind);
+                           const Eigen::Vector2d R = lattice.bond_vector(bond.kind),
+                                                 X = lattice.reference(bond.near) - middle;
+                           const double distance = support::smallest_of({X.norm(), (X + R).norm()});
+                           const Eigen::Vector2d centre = X + 0.5 * R;
                            const double step = (distance - first) / d * (n_radii - 1);
                            if (step >= n_radii - 1 || centre.norm() < 0.1 * d)
                              return;
                            const Eigen::Vector2d n = centre.normalized();
-                           const double across = std::pow(n.dot(bond.normalized()), 2);
-                           const double energy = lattice::stiffness(shell.law, 1.) * shell.area_factor * bond.norm() *
+                           const double across = std::pow(n.dot(R.normalized()), 2);
+                           const double energy = lattice::stiffness(shell.law, 1.) * shell.area_factor * R.norm() *
                                                  std::pow(1. - across - across / 3., 2);
                            const double sixfold = std::pow(std::complex<double>(n.x(), n.y()), 6).real();
                            moments[step < 0. ? 0 : static_cast<std::size_t>(step) + 1] += energy * sixfold;
@@ -151,7 +152,7 @@ CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet
     if (lattice.is_site(place) && cut.state.inverse_mass[place] > 0.)
     {
       unsigned int bonds = 0;
-      lattice::for_each_bond_of_site(cut.state, lattice, place, [&](std::size_t, std::size_t) { ++bonds; });
+      lattice::for_each_bond_of_site(cut.state, lattice, place, [&](const lattice::Bond &) { ++bonds; });
       cut.sites.push_back({place, bonds == subject.material.coordination()});
     }
   return cut;

@@ -48,7 +48,7 @@ std::vector<BranchTheory> theory(const lattice::TriangularLattice &sheet, const 
                                  const lattice::State &state, const Eigen::Matrix2d &F)
 {
   std::array<double, lattice::n_bond_kinds> n_bonds{};
-  lattice::for_each_bond(state, sheet, [&](std::size_t, std::size_t kind, std::size_t) { n_bonds[kind] += 1.; });
+  lattice::for_each_bond(state, sheet, [&](const lattice::Bond &bond) { n_bonds[bond.kind] += 1.; });
   return relaxing_branches(sheet, material, n_bonds, F);
 }
 

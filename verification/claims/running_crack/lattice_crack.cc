@@ -26,13 +26,14 @@ std::vector<Crossing> crossings(const CrackDrive &drive, const lattice::Triangul
 {
   std::vector<Crossing> list;
   lattice::for_each_bond(state, sheet,
-                         [&](std::size_t place, std::size_t kind, std::size_t)
+                         [&](const lattice::Bond &bond)
                          {
-                           const Eigen::Vector2d from = sheet.reference(place), along = sheet.bond_vector(kind);
+                           const Eigen::Vector2d from = sheet.reference(bond.near),
+                                                 along = sheet.bond_vector(bond.kind);
                            const double share = (drive.axis() - from.y()) / along.y();
                            const double X = from.x() + share * along.x();
                            if (share > 0. && share < 1. && X > drive.start)
-                             list.push_back({X, {place, kind}});
+                             list.push_back({X, {bond.near, bond.kind}});
                          });
   std::stable_sort(list.begin(), list.end(), [](const Crossing &a, const Crossing &b) { return a.X < b.X; });
   return list;
@@ -58,17 +59,17 @@ double dissipation(const lattice::State &state, const lattice::TriangularLattice
                    const lattice::Material &material, std::size_t place)
 {
   double power = 0.;
-  lattice::for_each_bond_of_site(
-    state, sheet, place,
-    [&](std::size_t near, std::size_t kind)
-    {
-      const std::size_t far = near + static_cast<std::size_t>(sheet.shift(kind, sheet.row_of(near)));
-      const Eigen::Vector2d bond(state.x[far] - state.x[near], state.y[far] - state.y[near]);
-      const Eigen::Vector2d rate(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
-      const lattice::Shell &shell = *material.shell(kind);
-      power += 0.5 * lattice::cross_section(shell, sheet) * shell.viscosity / sheet.rest_length(kind) *
-               std::pow(rate.dot(bond.normalized()), 2);
-    });
+  lattice::for_each_bond_of_site(state, sheet, place,
+                                 [&](const lattice::Bond &bond)
+                                 {
+                                   const auto [near, kind, far] = bond;
+                                   const Eigen::Vector2d r(state.x[far] - state.x[near], state.y[far] - state.y[near]);
+                                   const Eigen::Vector2d rate(state.vx[far] - state.vx[near],
+                                                              state.vy[far] - state.vy[near]);
+                                   const lattice::Shell &shell = *material.shell(kind);
+                                   power += 0.5 * lattice::cross_section(shell, sheet) * shell.viscosity /
+                                            sheet.rest_length(kind) * std::pow(rate.dot(r.normalized()), 2);
+                                 });
   return power / sheet.site_area();
 }
 

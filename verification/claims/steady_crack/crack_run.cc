@@ -94,10 +94,10 @@ lattice::State Run::seeded_strip(const Eigen::Matrix2d &F) const
   lattice::relax(state, sheet_, material_, at_rest * scales_.force);
   cut(state, options_.seed + options_.kick);
   lattice::for_each_bond(state, sheet_,
-                         [&](std::size_t place, std::size_t kind, std::size_t)
+                         [&](const lattice::Bond &bond)
                          {
-                           if (!crosses_crack(place, kind) && midpoint(place, kind) < options_.guided)
-                             state.bonds.toughen(place, kind);
+                           if (!crosses_crack(bond.near, bond.kind) && midpoint(bond.near, bond.kind) < options_.guided)
+                             state.bonds.toughen(bond.near, bond.kind);
                          });
   return state;
 }
@@ -105,10 +105,10 @@ lattice::State Run::seeded_strip(const Eigen::Matrix2d &F) const
 void Run::cut(lattice::State &state, double length) const
 {
   lattice::for_each_bond(state, sheet_,
-                         [&](std::size_t place, std::size_t kind, std::size_t)
+                         [&](const lattice::Bond &bond)
                          {
-                           if (crosses_crack(place, kind) && midpoint(place, kind) < length)
-                             state.bonds.remove(place, kind);
+                           if (crosses_crack(bond.near, bond.kind) && midpoint(bond.near, bond.kind) < length)
+                             state.bonds.remove(bond.near, bond.kind);
                          });
 }
 
@@ -123,7 +123,7 @@ double Run::largest_elsewhere(const lattice::State &state, std::size_t tip) cons
       {
         const std::size_t place = sheet_.index(row, column);
         if (!crosses_crack(place, kind) && state.bonds.present(place, kind))
-          elongations.add(lattice::stretch(state, sheet_, place, kind) - 1.);
+          elongations.add(lattice::stretch(state, sheet_, sheet_.bond(place, kind)) - 1.);
       }
   return elongations.largest() / options_.breaking_strain;
 }
