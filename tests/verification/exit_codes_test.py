@@ -7,8 +7,9 @@ import pytest
 
 from program import CASES, LATCON, latcon, latcon_on_ranks
 
-TINY = ["fracture", CASES / "quick.prm", "--skip-verification", "--set", "Sheet/length=10 mm", "--set",
-        "Sheet/height=6 mm", "--set", "Time/end=0.01 ms"]
+SHEET = ["fracture", CASES / "quick.prm", "--skip-verification", "--set", "Sheet/length=10 mm", "--set",
+         "Sheet/height=6 mm"]
+TINY = [*SHEET, "--set", "Time/end=0.01 ms"]
 BAD_INPUT, OUTPUT_FAILED = 2, 5
 
 
@@ -34,7 +35,7 @@ def test_script_that_fails(out):
 @pytest.mark.parametrize("frame", ["lattice-0000.vtp", "motion-0000.vtp"])
 def test_frame_that_cannot_be_written_ends_a_run_that_takes_hours(out, ranks, frame):
     (out / frame).mkdir(parents=True)
-    arguments = [*TINY, "--set", "Time/end=10 s", "--set", "Fracture/breaking stretch=1000",
+    arguments = [*SHEET, "--set", "Time/end=10 s", "--set", "Fracture/breaking stretch=1000",
                  "--set", "Output/frame interval=0", "--no-report", "--output-dir", out]
     run = latcon(*arguments) if ranks == 1 else latcon_on_ranks(ranks, *arguments)
     assert run.returncode == OUTPUT_FAILED, run.stderr
