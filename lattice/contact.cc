@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <omp.h>
@@ -16,8 +17,8 @@ namespace
 // proportion.
 constexpr double skin_over_distance = 1.;
 
-// Pairs, or candidates to be paired, below which one thread is faster.
-constexpr std::size_t min_pairs_for_threads = 1024;
+// Pairs below which one thread is faster.
+constexpr std::size_t min_pairs_for_threads = 4096;
 
 // Calls work(begin, end, part) for shares of 0 ... n - 1 that follow each other, each by another thread, and appends
 // the parts to `all` in the order of the shares, which does not depend on their number.
@@ -44,6 +45,20 @@ void in_shares(std::size_t n, std::vector<std::vector<Item>> &parts, std::vector
   }
 }
 
+constexpr double nowhere = std::numeric_limits<double>::infinity();
+
+template <class Item>
+void insert(std::vector<Item> &sorted, const Item &item)
+{
+  sorted.insert(std::lower_bound(sorted.begin(), sorted.end(), item), item);
+}
+
+template <class Item>
+void erase(std::vector<Item> &sorted, const Item &item)
+{
+  sorted.erase(std::lower_bound(sorted.begin(), sorted.end(), item));
+}
+
 } // namespace
 
 ContactLaw contact_like_nearest_bond(const TriangularLattice &lattice, const Material &material, double distance,
@@ -56,7 +71,7 @@ ContactLaw contact_like_nearest_bond(const TriangularLattice &lattice, const Mat
 
 Contact::Contact(const RowPartition &band, const ContactLaw &law)
   : band_(band), lattice_(band.lattice()), law_(law), skin_(skin_over_distance * law.distance),
-    cells_(law.distance + skin_), is_candidate_(lattice_.n_places())
+    cells_(law.distance + skin_), number_(lattice_.n_places()), sent_(band.n_ranks()), received_(band.n_ranks())
 {
   if (!(law.stiffness > 0.) || !(law.viscosity >= 0.))
     throw std::invalid_argument("a contact needs a positive stiffness and a viscosity that is not negative");
@@ -66,100 +81,103 @@ Contact::Contact(const RowPartition &band, const ContactLaw &law)
 
 void Contact::find_candidates(const State &state)
 {
+  for (const std::size_t place : places_)
+    number_[place] = 0;
   places_.clear();
-  found_.clear();
+  listed_at_.clear();
+  neighbours_.clear();
+  has_exchanged_.clear();
   pairs_.clear();
-  cells_.clear(0);
-  is_candidate_ = SiteFlags(lattice_.n_places());
+  own_.clear();
+  cells_.clear();
   for (std::size_t place = 0; place < lattice_.n_places(); ++place)
     if (state.lost_bonds[place] > 0 && state.removed[place] == 0)
-    {
-      is_candidate_[place] = 1;
-      places_.push_back(place);
-    }
+      add_candidate(place);
 }
 
-void Contact::rebuild(const State &state)
+void Contact::add_candidate(std::size_t place)
 {
-  pairs_.clear();
-  found_.clear();
-  // Room for what is added until the next time.
-  cells_.clear(2 * places_.size() + 64);
-  for (std::size_t index = 0; index < places_.size(); ++index)
-  {
-    found_.emplace_back(state.x[places_[index]], state.y[places_[index]]);
-    cells_.insert(index, found_.back().x(), found_.back().y());
-  }
-  const double reach_square = (law_.distance + skin_) * (law_.distance + skin_);
-  const auto find = [&](std::size_t begin, std::size_t end, std::vector<Pair> &pairs)
-  {
-    for (std::size_t first = begin; first < end; ++first)
-      cells_.for_each_near(found_[first].x(), found_[first].y(),
-                           [&](std::size_t second)
-                           {
-                             if (places_[first] < places_[second] &&
-                                 (found_[second] - found_[first]).squaredNorm() <= reach_square &&
-                                 may_touch(state, places_[first], places_[second]))
-                               pairs.push_back({places_[first], places_[second]});
-                           });
-  };
-  in_shares(places_.size(), pairs_of_threads_, pairs_, find);
-  std::sort(pairs_.begin(), pairs_.end());
-}
-
-bool Contact::has_moved(const State &state) const
-{
-  const double limit_square = 0.25 * skin_ * skin_;
-  for (std::size_t index = 0; index < found_.size(); ++index)
-  {
-    const Eigen::Vector2d now(state.x[places_[index]], state.y[places_[index]]);
-    if ((now - found_[index]).squaredNorm() > limit_square)
-      return true;
-  }
-  return false;
-}
-
-void Contact::add_broken_bonds(const State &state, const std::vector<BrokenBond> &broken)
-{
-  if (found_.size() < places_.size())
-    rebuild(state);
-  const double reach = law_.distance + skin_;
-  for (const BrokenBond &bond : broken)
-  {
-    // Between two candidates there is no pair yet, since a bond has joined them; else the new one finds the other.
-    if (is_candidate_[bond.near] != 0 && is_candidate_[bond.far] != 0 && may_touch(state, bond.near, bond.far) &&
-        std::hypot(state.x[bond.far] - state.x[bond.near], state.y[bond.far] - state.y[bond.near]) <= reach + skin_)
-      insert_pair(bond.near, bond.far);
-    for (const std::size_t place : {bond.near, bond.far})
-      if (is_candidate_[place] == 0)
-        add_candidate(state, place);
-  }
-}
-
-// Pairs of a list that was made at different times for different candidates: none of them has moved by more than half
-// the skin since its own, so pairs farther apart than distance + skin then cannot touch.
-void Contact::add_candidate(const State &state, std::size_t place)
-{
-  const Eigen::Vector2d here(state.x[place], state.y[place]);
-  const double reach = law_.distance + skin_;
-  cells_.for_each_near(here.x(), here.y(),
-                       [&](std::size_t index)
-                       {
-                         if ((found_[index] - here).norm() <= reach && may_touch(state, place, places_[index]))
-                           insert_pair(place, places_[index]);
-                       });
-  cells_.insert(places_.size(), here.x(), here.y());
+  if (band_.owns(place))
+    own_.push_back(places_.size());
   places_.push_back(place);
-  found_.push_back(here);
-  is_candidate_[place] = 1;
+  listed_at_.emplace_back(nowhere, nowhere);
+  neighbours_.emplace_back();
+  has_exchanged_.push_back(0);
+  number_[place] = static_cast<std::uint32_t>(places_.size());
 }
 
-void Contact::insert_pair(std::size_t a, std::size_t b)
+void Contact::add_broken_bonds(const std::vector<BrokenBond> &broken)
 {
-  const Pair pair{std::min(a, b), std::max(a, b)};
-  const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), pair);
-  if (at == pairs_.end() || pair < *at)
-    pairs_.insert(at, pair);
+  for (const BrokenBond &bond : broken)
+    for (const std::size_t place : {bond.near, bond.far})
+      if (number_[place] == 0)
+        add_candidate(place);
+      else // a bond kept it from being a pair with the other end
+        listed_at_[number_[place] - 1] = {nowhere, nowhere};
+}
+
+// None of two candidates has moved by more than half the skin since it was listed, so those that were farther apart
+// than distance + skin where they were listed cannot touch.
+void Contact::update_lists(const State &state)
+{
+  struct Listing
+  {
+    std::size_t index;
+    double x, y;
+  };
+  const double limit_square = 0.25 * skin_ * skin_;
+  std::vector<Listing> own;
+  for (const std::size_t index : own_)
+  {
+    const Eigen::Vector2d here(state.x[places_[index]], state.y[places_[index]]);
+    if ((here - listed_at_[index]).squaredNorm() > limit_square)
+      own.push_back({index, here.x(), here.y()});
+  }
+  const std::vector<Listing> all = band_.all_gather(own);
+  for (const auto &[index, x, y] : all)
+  {
+    listed_at_[index] = {x, y};
+    cells_.put(index, x, y);
+    list(state, index);
+  }
+  n_listings_ += all.size();
+  if (band_.is_shared() && !all.empty())
+    find_exchanged_sites();
+}
+
+void Contact::list(const State &state, std::size_t index)
+{
+  const double reach = law_.distance + skin_;
+  const Eigen::Vector2d &here = listed_at_[index];
+  const std::size_t place = places_[index];
+  std::vector<std::size_t> &found = found_, &listed = neighbours_[index];
+  found.clear();
+  cells_.for_each_near(here.x(), here.y(),
+                       [&](std::size_t other)
+                       {
+                         if (other != index && (listed_at_[other] - here).squaredNorm() <= reach * reach &&
+                             may_touch(state, place, places_[other]))
+                           found.push_back(places_[other]);
+                       });
+  std::sort(found.begin(), found.end());
+  if (found == listed)
+    return;
+  for (const std::size_t other : listed)
+    if (!std::binary_search(found.begin(), found.end(), other))
+    {
+      erase(neighbours_[number_[other] - 1], place);
+      erase(pairs_, Pair(std::minmax(place, other)));
+    }
+  for (const std::size_t other : found)
+    if (!std::binary_search(listed.begin(), listed.end(), other))
+    {
+      insert(neighbours_[number_[other] - 1], place);
+      insert(pairs_, Pair(std::minmax(place, other)));
+    }
+  listed = found;
+  if (band_.is_shared())
+    has_exchanged_[index] =
+      std::any_of(listed.begin(), listed.end(), [&](std::size_t other) { return is_exchanged(place, other); }) ? 1 : 0;
 }
 
 // Returns whether no bond joins two sites, at least one of which is in the band.
@@ -174,15 +192,45 @@ bool Contact::may_touch(const State &state, std::size_t first, std::size_t secon
   return true;
 }
 
-const std::vector<SiteForce> &Contact::evaluate(const State &state, const Field &vx, const Field &vy)
+// Returns whether the sites of a pair are of two ranks of which one does not know the other's site.
+bool Contact::is_exchanged(std::size_t first, std::size_t second) const
 {
-  if (found_.size() < places_.size())
-    rebuild(state);
-  else if (has_moved(state))
+  const std::size_t ranks[] = {band_.owner(lattice_.row_of(first)), band_.owner(lattice_.row_of(second))};
+  return ranks[0] != ranks[1] && !(band_.is_relevant_to(ranks[0], second) && band_.is_relevant_to(ranks[1], first));
+}
+
+// Both ranks of a pair list it, hence find the same sites.
+void Contact::find_exchanged_sites()
+{
+  for (SitesOfRanks *sites : {&sent_, &received_})
+    sites->assign(band_.n_ranks(), {});
+  for (std::size_t index = 0; index < places_.size(); ++index)
   {
-    rebuild(state);
-    ++n_list_builds_;
+    if (has_exchanged_[index] == 0)
+      continue;
+    for (const std::size_t neighbour : neighbours_[index])
+    {
+      if (!is_exchanged(places_[index], neighbour))
+        continue;
+      const auto [mine, theirs] =
+        band_.owns(neighbour) ? std::pair(neighbour, places_[index]) : std::pair(places_[index], neighbour);
+      const std::size_t rank = band_.owner(lattice_.row_of(theirs));
+      sent_[rank].push_back(mine);
+      received_[rank].push_back(theirs);
+    }
   }
+  for (SitesOfRanks *sites : {&sent_, &received_})
+    for (std::vector<std::size_t> &of_rank : *sites)
+    {
+      std::sort(of_rank.begin(), of_rank.end());
+      of_rank.erase(std::unique(of_rank.begin(), of_rank.end()), of_rank.end());
+    }
+}
+
+const std::vector<SiteForce> &Contact::evaluate(State &state, Field &vx, Field &vy)
+{
+  update_lists(state);
+  band_.exchange(sent_, received_, {&state.x, &state.y, &vx, &vy});
   forces_.clear();
   std::atomic<std::size_t> n_touching{0};
   const auto push_apart = [&](std::size_t begin, std::size_t end, std::vector<SiteForce> &forces)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "lattice/fracture.h"
@@ -28,14 +29,13 @@ ContactLaw contact_like_nearest_bond(const TriangularLattice &lattice, const Mat
 /// Contact between sites that have lost bonds: debris, crack faces.
 ///
 /// Candidates are the sites that have lost at least one bond and were not cut out; held ones may be among them. Two of
-/// them touch when they are close and no bond joins them. Pairs come from a Verlet list: all that were closer than
-/// distance + skin when it was made, which holds until a candidate has moved half the skin. The list is made anew then,
-/// with link cells; a site that becomes a candidate is added to it. Pairs are kept sorted by place and summed one after
-/// the other.
+/// them touch when they are close and no bond joins them. Each candidate has a Verlet list of the candidates that are
+/// closer than distance + skin where both were listed. A candidate that has moved half the skin since is listed again,
+/// alone, with link cells. Pairs that touch are summed one after the other, by increasing places.
 ///
-/// Ranks that share a sheet all follow all candidates, whose positions and velocities they tell each other before each
-/// evaluation: candidates stand along a line, so they are few. Each rank keeps the pairs that have a site in its rows
-/// and computes the forces on these.
+/// Ranks that share a sheet all follow where all candidates were listed, which their owners tell the others. Each rank
+/// lists the pairs that have a site in its rows and computes the forces on these. Positions and velocities between
+/// listings go only to the ranks that list a pair with them.
 class Contact : public SiteForces
 {
 public:
@@ -46,14 +46,10 @@ public:
   /// Finds the candidates among all sites; for a state that was cut or loaded from outside.
   void find_candidates(const State &state);
 
-  /// Takes note of bonds that broke: their ends may touch others from now on, and each other.
-  /// @param state with the positions of these ends, wherever they are
-  void add_broken_bonds(const State &state, const std::vector<BrokenBond> &broken);
+  /// Makes the ends of bonds that broke candidates, which may touch others from now on, and each other.
+  void add_broken_bonds(const std::vector<BrokenBond> &broken);
 
-  const std::vector<SiteForce> &evaluate(const State &state, const Field &vx, const Field &vy) override;
-
-  /// The candidates.
-  const std::vector<std::size_t> &required_sites() const override { return places_; }
+  const std::vector<SiteForce> &evaluate(State &state, Field &vx, Field &vy) override;
 
   /// Energy stored in the springs of the pairs whose first site is in the band, per sheet thickness [J/m].
   double elastic_energy(const State &state) const;
@@ -61,38 +57,38 @@ public:
   std::size_t n_candidates() const { return places_.size(); }
   /// Pairs that overlapped at the last evaluation, those whose first site is in the band.
   std::size_t n_touching() const { return n_touching_; }
-  /// Number of rebuilds of the list because candidates had moved.
-  std::size_t n_list_builds() const { return n_list_builds_; }
+  /// Returns how often candidates were listed, each for itself.
+  std::size_t n_listings() const { return n_listings_; }
 
 private:
-  struct Pair
-  {
-    std::size_t first, second; // places, first < second
-    bool operator<(const Pair &other) const
-    {
-      return first != other.first ? first < other.first : second < other.second;
-    }
-  };
+  using Pair = std::pair<std::size_t, std::size_t>; // places, the smaller one first
 
-  bool has_moved(const State &state) const;
-  void rebuild(const State &state);
-  void add_candidate(const State &state, std::size_t place);
+  void add_candidate(std::size_t place);
+  void update_lists(const State &state);
+  void list(const State &state, std::size_t index);
   bool may_touch(const State &state, std::size_t first, std::size_t second) const;
-  void insert_pair(std::size_t a, std::size_t b);
+  bool is_exchanged(std::size_t first, std::size_t second) const;
+  void find_exchanged_sites();
 
   RowPartition band_;
   const TriangularLattice &lattice_;
   ContactLaw law_;
   double skin_;
-  LinkCells cells_;                    // of candidates, by their index
-  std::vector<std::size_t> places_;    // of candidates
-  std::vector<Eigen::Vector2d> found_; // where each was when its pairs were found; empty: no list was made of them yet
-  SiteFlags is_candidate_;             // by place
-  std::vector<Pair> pairs_;
-  std::vector<std::vector<Pair>> pairs_of_threads_;       // scratch
-  std::vector<std::vector<SiteForce>> forces_of_threads_; // scratch
+  LinkCells cells_; // of candidates, by their index
+  // By index of the candidate.
+  std::vector<std::size_t> places_;
+  std::vector<Eigen::Vector2d> listed_at_;           // its position then [m]; infinitely far: not listed yet
+  std::vector<std::vector<std::size_t>> neighbours_; // places in its list, increasing
+  std::vector<std::uint8_t> has_exchanged_;          // whether ranks exchange sites because of that list
+
+  std::vector<std::uint32_t, ZeroPages<std::uint32_t>> number_; // by place: index of the candidate + 1; 0: none
+  std::vector<std::size_t> own_;                                // indices of candidates in the band
+  std::vector<Pair> pairs_;                                     // of all lists, sorted
+  std::vector<std::vector<SiteForce>> forces_of_threads_;       // scratch
+  std::vector<std::size_t> found_;                              // scratch
+  SitesOfRanks sent_, received_;
   std::size_t n_touching_ = 0;
-  std::size_t n_list_builds_ = 0;
+  std::size_t n_listings_ = 0;
 };
 
 } // namespace latcon::lattice

@@ -115,7 +115,7 @@ EndLoads::EndLoads(const RowPartition &band, const Material &material, const Sta
                (modes.vectors * modes.values.cwiseSqrt().asDiagonal() * modes.vectors.transpose());
 }
 
-const std::vector<SiteForce> &EndLoads::evaluate(const State &, const Field &vx, const Field &vy)
+const std::vector<SiteForce> &EndLoads::evaluate(State &, Field &vx, Field &vy)
 {
   forces_ = dead_;
   for (const std::size_t place : absorbing_)

@@ -72,11 +72,9 @@ void Integrator::accelerate(State &state)
 
 void Integrator::evaluate_site_forces(State &state)
 {
+  const std::vector<Field *> fields = evaluated_fields(state);
   for (SiteForces *forces : site_forces_)
-  {
-    band_.broadcast_from_owners(forces->required_sites(), evaluated_fields(state));
-    forces->evaluate(state, evaluated_vx(state), evaluated_vy(state));
-  }
+    forces->evaluate(state, *fields[2], *fields[3]);
 }
 
 void Integrator::accelerate_sites(State &state) const

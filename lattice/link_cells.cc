@@ -22,13 +22,10 @@ LinkCells::LinkCells(double reach) : inverse_size_(1. / (room * reach)), first_(
     throw std::invalid_argument("link cells need a positive reach");
 }
 
-void LinkCells::clear(std::size_t n)
+void LinkCells::clear()
 {
-  std::size_t buckets = 1;
-  while (buckets < 2 * n)
-    buckets *= 2;
   points_.clear();
-  first_.assign(buckets, none);
+  first_.assign(1, none);
 }
 
 bool LinkCells::inside(double x, double y) const
@@ -49,14 +46,40 @@ std::size_t LinkCells::bucket(std::int64_t column, std::int64_t row) const
   return static_cast<std::size_t>(mixed ^ (mixed >> 32)) & (first_.size() - 1);
 }
 
-void LinkCells::insert(std::size_t id, double x, double y)
+void LinkCells::link(std::size_t id)
 {
-  if (!inside(x, y))
+  std::size_t &first = first_[bucket(points_[id].column, points_[id].row)];
+  points_[id].next = first;
+  first = id;
+}
+
+void LinkCells::unlink(std::size_t id)
+{
+  std::size_t *next = &first_[bucket(points_[id].column, points_[id].row)];
+  while (*next != id)
+    next = &points_[*next].next;
+  *next = points_[id].next;
+}
+
+void LinkCells::put(std::size_t id, double x, double y)
+{
+  if (id >= points_.size())
+    points_.resize(id + 1, {0, 0, none, false});
+  Point &point = points_[id];
+  if (point.is_in_cell)
+    unlink(id);
+  point.is_in_cell = inside(x, y);
+  if (!point.is_in_cell)
     return;
-  const std::int64_t column = cell(x), row = cell(y);
-  std::size_t &head = first_[bucket(column, row)];
-  points_.push_back({id, column, row, head});
-  head = points_.size() - 1;
+  point.column = cell(x);
+  point.row = cell(y);
+  link(id);
+  if (points_.size() <= first_.size())
+    return;
+  first_.assign(4 * first_.size(), none);
+  for (std::size_t other = 0; other < points_.size(); ++other)
+    if (points_[other].is_in_cell)
+      link(other);
 }
 
 } // namespace latcon::lattice

@@ -11,6 +11,9 @@ namespace
 
 constexpr auto reach = static_cast<std::ptrdiff_t>(TriangularLattice::reach);
 
+// Of messages between two ranks, which arrive in the order in which they are sent.
+constexpr int tag = 0;
+
 } // namespace
 
 RowPartition::RowPartition(const TriangularLattice &lattice)
@@ -78,6 +81,17 @@ std::vector<std::size_t> RowPartition::halo_of(std::size_t rank) const
   return halo;
 }
 
+bool RowPartition::is_relevant_to(std::size_t rank, std::size_t place) const
+{
+  const auto begin = static_cast<std::ptrdiff_t>(first_rows_[rank]);
+  const auto end = static_cast<std::ptrdiff_t>(first_rows_[rank + 1]);
+  const auto n_rows = static_cast<std::ptrdiff_t>(lattice_->rows());
+  std::ptrdiff_t row = static_cast<std::ptrdiff_t>(lattice_->row_of(place)) - (begin - reach);
+  if (rows_repeat())
+    row = (row + n_rows) % n_rows;
+  return begin < end && row >= 0 && row < end - begin + 2 * reach;
+}
+
 double RowPartition::sum(std::vector<double> values) const
 {
   if (is_shared())
@@ -114,26 +128,37 @@ std::vector<char> RowPartition::all_gather_bytes(const char *own, std::size_t si
   return all;
 }
 
-void RowPartition::broadcast_from_owners(const std::vector<std::size_t> &places,
-                                         const std::vector<Field *> &fields) const
+void RowPartition::exchange(const SitesOfRanks &sent, const SitesOfRanks &received,
+                            const std::vector<Field *> &fields) const
 {
-  if (!is_shared() || places.empty())
+  if (!is_shared())
     return;
-  std::vector<int> counts(n_ranks(), 0), offsets(n_ranks(), 0);
-  for (const std::size_t place : places)
-    counts[owner(lattice_->row_of(place))] += static_cast<int>(fields.size());
-  std::partial_sum(counts.begin(), counts.end() - 1, offsets.begin() + 1);
-  std::vector<double> own, all(places.size() * fields.size());
-  for (const std::size_t place : places)
-    if (owns(place))
-      for (const Field *field : fields)
-        own.push_back((*field)[place]);
-  MPI_Allgatherv(own.data(), static_cast<int>(own.size()), MPI_DOUBLE, all.data(), counts.data(), offsets.data(),
-                 MPI_DOUBLE, communicator_);
-  std::vector<int> next = offsets;
-  for (const std::size_t place : places)
-    for (Field *field : fields)
-      (*field)[place] = all[static_cast<std::size_t>(next[owner(lattice_->row_of(place))]++)];
+  std::vector<MPI_Request> requests;
+  std::vector<std::vector<double>> in(received.size()), out(sent.size());
+  for (std::size_t rank = 0; rank < received.size(); ++rank)
+    if (!received[rank].empty())
+    {
+      in[rank].resize(received[rank].size() * fields.size());
+      MPI_Irecv(in[rank].data(), static_cast<int>(in[rank].size()), MPI_DOUBLE, static_cast<int>(rank), tag,
+                communicator_, &requests.emplace_back());
+    }
+  for (std::size_t rank = 0; rank < sent.size(); ++rank)
+    if (!sent[rank].empty())
+    {
+      for (const std::size_t place : sent[rank])
+        for (const Field *field : fields)
+          out[rank].push_back((*field)[place]);
+      MPI_Isend(out[rank].data(), static_cast<int>(out[rank].size()), MPI_DOUBLE, static_cast<int>(rank), tag,
+                communicator_, &requests.emplace_back());
+    }
+  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  for (std::size_t rank = 0; rank < received.size(); ++rank)
+  {
+    auto value = in[rank].begin();
+    for (const std::size_t place : received[rank])
+      for (Field *field : fields)
+        (*field)[place] = *value++;
+  }
 }
 
 void RowPartition::gather_bytes(void *field, std::size_t bytes_of_place, Rows rows) const
@@ -191,7 +216,6 @@ HaloExchange::HaloExchange(const RowPartition &band)
 
 void HaloExchange::start(const std::vector<Field *> &fields)
 {
-  constexpr int tag = 0;
   const std::size_t columns = lattice_.columns();
   fields_ = fields;
   for (Partner &partner : partners_)

@@ -24,6 +24,9 @@ struct Rows
   std::size_t begin, end;
 };
 
+/// Places of sites, a list for each rank.
+using SitesOfRanks = std::vector<std::vector<std::size_t>>;
+
 /// The rows of a sheet that one process moves, as one of the ranks that share the sheet or alone.
 ///
 /// Every rank has a band of rows that follow each other, the lowest rank the lowest rows, none at all if there are more
@@ -46,6 +49,7 @@ public:
   Rows rows() const { return {first_rows_[rank_], first_rows_[rank_ + 1]}; } ///< that this rank moves
   bool owns(std::size_t place) const; ///< whether a place, margin included, is in one of its rows
   bool is_relevant(std::size_t place) const { return is_relevant_[padded_row(place)] != 0; } ///< or in its halo
+  bool is_relevant_to(std::size_t rank, std::size_t place) const; ///< whether it is in a row of a rank or in its halo
   /// The rows of other ranks that it needs, by increasing number.
   std::vector<std::size_t> halo() const { return halo_of(rank_); }
   std::vector<std::size_t> known_rows() const; ///< own ones and halo, by increasing number
@@ -67,8 +71,9 @@ public:
   template <class T>
   std::vector<T> all_gather(const std::vector<T> &own, int *number = nullptr) const;
 
-  /// Gives every rank the values of `fields` at some places. Collective. @param places the same on all ranks
-  void broadcast_from_owners(const std::vector<std::size_t> &places, const std::vector<Field *> &fields) const;
+  /// Sends the values of `fields` at own sites and receives those at sites of other ranks. Collective among ranks that
+  /// exchange sites. @param sent,received of two ranks the same sites in the same order
+  void exchange(const SitesOfRanks &sent, const SitesOfRanks &received, const std::vector<Field *> &fields) const;
 
   /// Gives the first rank the values in `rows`, margin of columns included. Collective.
   template <class Vector>
@@ -76,6 +81,7 @@ public:
 
 private:
   std::size_t padded_row(std::size_t place) const { return place / lattice_->stride(); }
+  bool rows_repeat() const { return lattice_->is_occupied(lattice_->index(0, 0) - lattice_->stride()); }
   std::vector<char> all_gather_bytes(const char *own, std::size_t size, int *number) const;
   void gather_bytes(void *field, std::size_t bytes_of_place, Rows rows) const;
 

@@ -75,15 +75,23 @@ int Simulation::needed_parts() const
   const double h = time_stepping_.step;
   const ContactLaw *const contact = contact_law_ ? &*contact_law_ : nullptr;
   const Field &vx = integrator_->evaluated_vx(state_), &vy = integrator_->evaluated_vy(state_);
+  // Squares of lengths with a hair's room for rounding; 0: bonds that do not stiffen, all of which are longer.
+  std::array<double, n_bond_kinds> short_square{};
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    if (const Shell *shell = material_.shell(kind); shell != nullptr && stiffens_when_short(shell->law))
+      short_square[kind] = std::pow((1. + 1e-9) * short_stretch * lattice_.rest_length(kind), 2);
   const auto divide_for = [&](const Bond &short_bond, int &parts)
   {
     const auto [near, kind, far] = short_bond;
-    if (!stiffens_when_short(material_.shell(kind)->law))
-      return;
     const Eigen::Vector2d bond(state_.x[far] - state_.x[near], state_.y[far] - state_.y[near]);
+    const double product = bond.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near]));
+    // Most bonds will not be short after the whole step, length + h min(product, 0) / length > the short length, which
+    // needs neither root nor quotient.
+    const double square = bond.squaredNorm(), then_by_now = square + h * std::min(product, 0.);
+    if (short_square[kind] == 0. || (then_by_now > 0. && then_by_now * then_by_now > short_square[kind] * square))
+      return;
     const double now = stretch(state_, lattice_, short_bond);
-    const double rate =
-      bond.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near])) / (bond.norm() * lattice_.rest_length(kind));
+    const double rate = product / (bond.norm() * lattice_.rest_length(kind));
     int needed = 1;
     for (; needed < most_parts; needed *= 2)
     {
@@ -285,8 +293,7 @@ const std::vector<BrokenBond> &Simulation::advance(double duration)
     if (contact_)
     {
       // From this instant on, as the bonds are gone from it.
-      band_.broadcast_from_owners(ends, {&state_.x, &state_.y});
-      contact_->add_broken_bonds(state_, broken);
+      contact_->add_broken_bonds(broken);
       integrator_->evaluate_site_forces(state_);
     }
     integrator_->update_accelerations(state_, ends);

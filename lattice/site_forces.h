@@ -21,17 +21,10 @@ class SiteForces
 public:
   virtual ~SiteForces() = default;
 
-  /// The forces at positions state.x, y and the given velocities [m/s], in an order that depends on the state alone. A
-  /// site may occur more than once.
-  virtual const std::vector<SiteForce> &evaluate(const State &state, const Field &vx, const Field &vy) = 0;
-
-  /// Sites whose positions and velocities the forces depend on, wherever in the sheet they are: the same list on all
-  /// ranks. Whoever calls evaluate() sees to it that they are known.
-  virtual const std::vector<std::size_t> &required_sites() const
-  {
-    static const std::vector<std::size_t> none;
-    return none;
-  }
+  /// Computes the forces at positions state.x, y and the given velocities [m/s], in an order that depends on the state
+  /// alone. A site may occur more than once. Collective: positions and velocities of sites in rows that this rank does
+  /// not know are received where the forces depend on them.
+  virtual const std::vector<SiteForce> &evaluate(State &state, Field &vx, Field &vy) = 0;
 
   /// Forces of the last evaluation.
   const std::vector<SiteForce> &last() const { return forces_; }

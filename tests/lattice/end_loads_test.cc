@@ -170,7 +170,7 @@ TEST_P(Ends, LoadTheirFreeSitesAlone)
   for (const bool held : {true, false}) // the long edges
     for (const auto &[left, right] : {std::pair{End::free, End::held}, std::pair{End::held, End::absorbing}})
     {
-      const State state = homogeneous_state(sheet, bonds, sheared(), {false, false, held, held});
+      State state = homogeneous_state(sheet, bonds, sheared(), {false, false, held, held});
       EndLoads loads(sheet, bonds, state, sheared(), left, right);
       const std::vector<SiteForce> &forces = loads.evaluate(state, state.vx, state.vy);
       EXPECT_FALSE(forces.empty());

@@ -34,12 +34,13 @@ Pairs all_pairs(const Cloud &cloud, double reach)
 }
 
 // Pairs within reach that the cells show, each of which must be shown once from either end.
-Pairs pairs_from_cells(const Cloud &cloud, double reach, std::size_t room)
+// @param earlier where the points were before, if anywhere
+Pairs pairs_from_cells(const Cloud &cloud, double reach, const Cloud &earlier = {})
 {
   LinkCells cells(reach);
-  cells.clear(room);
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    cells.insert(i, cloud[i].first, cloud[i].second);
+  for (const Cloud &positions : {earlier, cloud})
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      cells.put(i, positions[i].first, positions[i].second);
   std::multiset<std::pair<std::size_t, std::size_t>> seen;
   for (std::size_t i = 0; i < cloud.size(); ++i)
     cells.for_each_near(cloud[i].first, cloud[i].second,
@@ -73,7 +74,7 @@ TEST(LinkCells, ShowThePairsOfRandomCloudsAtEveryDensity)
     for (const unsigned int seed : {1u, 2u, 3u})
     {
       const Cloud cloud = random_cloud(400, 2., 0.5, seed);
-      EXPECT_EQ(pairs_from_cells(cloud, reach, cloud.size()), all_pairs(cloud, reach)) << reach;
+      EXPECT_EQ(pairs_from_cells(cloud, reach), all_pairs(cloud, reach)) << reach;
     }
 }
 
@@ -82,8 +83,16 @@ TEST(LinkCells, ShowThePairsOfAClusterAmongStragglers)
   Cloud cloud = random_cloud(200, 0.02, 0.02, 4);
   for (const auto &point : random_cloud(50, 1e4, 1e4, 5))
     cloud.push_back(point);
-  EXPECT_EQ(pairs_from_cells(cloud, 0.01, cloud.size()), all_pairs(cloud, 0.01));
-  EXPECT_EQ(pairs_from_cells(cloud, 0.01, 1), all_pairs(cloud, 0.01)) << "room for fewer points";
+  EXPECT_EQ(pairs_from_cells(cloud, 0.01), all_pairs(cloud, 0.01));
+}
+
+TEST(LinkCells, ShowPointsWhereTheyWerePutLast)
+{
+  Cloud earlier = random_cloud(300, 2., 0.5, 6);
+  for (std::size_t i = 0; i < 50; ++i) // in one cell, and nowhere
+    earlier[i] = i % 2 == 0 ? earlier[0] : std::pair(std::numeric_limits<double>::infinity(), 0.);
+  const Cloud cloud = random_cloud(400, 2., 0.5, 7);
+  EXPECT_EQ(pairs_from_cells(cloud, 0.1, earlier), all_pairs(cloud, 0.1));
 }
 
 // Points on a grid of the reach: neighbours at exactly the reach, on the borders of cells if these were no larger.
@@ -94,7 +103,7 @@ TEST(LinkCells, ShowPairsOnTheBordersOfCells)
   for (int i = -8; i <= 8; ++i)
     for (int j = -8; j <= 8; ++j)
       cloud.emplace_back(i * reach, j * reach);
-  const Pairs pairs = pairs_from_cells(cloud, reach, cloud.size());
+  const Pairs pairs = pairs_from_cells(cloud, reach);
   EXPECT_EQ(pairs, all_pairs(cloud, reach));
   EXPECT_GT(pairs.size(), 17u * 16u); // rounding puts some of the 2 * 17 * 16 a bit beyond
 }
@@ -102,15 +111,14 @@ TEST(LinkCells, ShowPairsOnTheBordersOfCells)
 TEST(LinkCells, LeaveOutWhatIsNowhere)
 {
   LinkCells cells(1.);
-  cells.clear(3);
-  cells.insert(0, 0., 0.);
-  cells.insert(1, std::numeric_limits<double>::quiet_NaN(), 0.);
-  cells.insert(2, 0., std::numeric_limits<double>::infinity());
+  cells.put(0, 0., 0.);
+  cells.put(1, std::numeric_limits<double>::quiet_NaN(), 0.);
+  cells.put(2, 0., std::numeric_limits<double>::infinity());
   std::vector<std::size_t> near;
   cells.for_each_near(0.5, 0., [&](std::size_t id) { near.push_back(id); });
   EXPECT_EQ(near, std::vector<std::size_t>{0});
   cells.for_each_near(std::numeric_limits<double>::quiet_NaN(), 0., [](std::size_t) { FAIL(); });
-  cells.clear(3);
+  cells.clear();
   cells.for_each_near(0., 0., [](std::size_t) { FAIL(); });
   EXPECT_THROW(LinkCells(0.), std::invalid_argument);
 }

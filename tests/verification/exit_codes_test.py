@@ -3,10 +3,13 @@ import json
 import os
 import subprocess
 
-from program import CASES, LATCON, latcon
+import pytest
 
-TINY = ["fracture", CASES / "quick.prm", "--skip-verification", "--set", "Sheet/length=10 mm", "--set",
-        "Sheet/height=6 mm", "--set", "Time/end=0.01 ms"]
+from program import CASES, LATCON, latcon, latcon_on_ranks
+
+SHEET = ["fracture", CASES / "quick.prm", "--skip-verification", "--set", "Sheet/length=10 mm", "--set",
+         "Sheet/height=6 mm"]
+TINY = [*SHEET, "--set", "Time/end=0.01 ms"]
 BAD_INPUT, OUTPUT_FAILED = 2, 5
 
 
@@ -25,6 +28,18 @@ def test_script_that_fails(out):
     run = latcon(*TINY, "--output-dir", out, env=dict(os.environ, MPLCONFIGDIR="/proc"))
     assert run.returncode == OUTPUT_FAILED, run.stderr
     assert "report.html: the report script failed" in run.stderr
+    assert code_in_file(out) == OUTPUT_FAILED
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("frame", ["lattice-0000.vtp", "motion-0000.vtp"])
+def test_frame_that_cannot_be_written_ends_a_run_that_takes_hours(out, ranks, frame):
+    (out / frame).mkdir(parents=True)
+    arguments = [*SHEET, "--set", "Time/end=10 s", "--set", "Fracture/breaking stretch=1000",
+                 "--set", "Output/frame interval=0", "--no-report", "--output-dir", out]
+    run = latcon(*arguments) if ranks == 1 else latcon_on_ranks(ranks, *arguments)
+    assert run.returncode == OUTPUT_FAILED, run.stderr
+    assert f"cannot write {out}/{frame}: it is a folder" in run.stderr
     assert code_in_file(out) == OUTPUT_FAILED
 
 

@@ -69,7 +69,7 @@ Crack run_crack(const input::Case &input, const lattice::TriangularLattice &shee
   const double stop = input.stop_position * sheet.length();
   const double seed_tip = sheet.reference(seed.back()).x();
   output::NearTipRecord near_tip(input, simulation, seed_tip);
-  output::CrackFilm film(input, simulation, record, seed_tip, run.directory());
+  output::CrackFilm film(input, simulation, record, seed_tip, run.directory(), motion.writing());
   motion.go({"fracture", [&] { return simulation.state().time < input.end_time && record.tip_X() < stop; },
              [&](const std::vector<lattice::BrokenBond> &broken)
              {

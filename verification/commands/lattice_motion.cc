@@ -13,21 +13,26 @@ LatticeMotion::LatticeMotion(const input::Case &input, lattice::Simulation &simu
                              output::Checkpoints &checkpoints, Run &run)
   : input_(input), simulation_(simulation), checkpoints_(checkpoints), run_(run),
     record_(simulation, input.time_step ? "Time/step" : "Time/safety factor"),
-    frames_(simulation.lattice(), simulation.material(), run.directory()), next_frame_(input.frame_interval)
+    frames_(std::make_shared<output::FieldWriter>(simulation.lattice(), simulation.material(), run.directory())),
+    next_frame_(input.frame_interval)
 {
 }
 
-void LatticeMotion::add_frame()
+void LatticeMotion::add_frame(output::TextFiles tables)
 {
   const lattice::State &whole = simulation_.gather();
   if (run_.is_root())
-    frames_.add_frame(whole);
+    writing_.add(
+      [frames = frames_, state = std::make_shared<const lattice::State>(whole), files = std::move(tables)]
+      {
+        frames->add_frame(*state);
+        output::write_files(files);
+      });
 }
 
-void LatticeMotion::write_tables() const
+output::TextFiles LatticeMotion::tables() const
 {
-  if (run_.is_root())
-    record_.write_tables(run_.directory());
+  return run_.is_root() ? record_.tables(run_.directory()) : output::TextFiles{};
 }
 
 // Checks the state of the motion in a checkpoint before it is used. @throws std::invalid_argument
@@ -41,7 +46,7 @@ void LatticeMotion::check_loaded()
   // One frame at the start and one per interval, but at most one per step.
   if (run_.is_root() && input_.frame_interval > 0.)
   {
-    const double frames = static_cast<double>(frames_.n_frames());
+    const double frames = static_cast<double>(frames_->n_frames());
     lattice::require_archived(frames >= 1. && frames <= done + 1. &&
                                 std::abs(next_frame_ - frames * input_.frame_interval) <=
                                   frames * std::numeric_limits<double>::epsilon() * next_frame_,
@@ -55,9 +60,9 @@ void LatticeMotion::go(const StepCallbacks &callbacks, bool resumed, const std::
   if (resumed)
   {
     // Removes what was written after the checkpoint.
-    write_tables();
+    output::write_files(tables());
     if (run_.is_root())
-      frames_.write_collection();
+      frames_->write_collection();
   }
   else
   {
@@ -81,6 +86,7 @@ void LatticeMotion::go(const StepCallbacks &callbacks, bool resumed, const std::
         }
         if (checkpoints_.due(step_))
           write_checkpoint();
+        writing_.check();
       }
       ++step_;
       callbacks.after_step(simulation_.step());
@@ -89,8 +95,7 @@ void LatticeMotion::go(const StepCallbacks &callbacks, bool resumed, const std::
       if (input_.frame_interval > 0. && simulation_.state().time >= next_frame_)
       {
         // All results so far are on disk from here on.
-        add_frame();
-        write_tables();
+        add_frame(tables());
         next_frame_ += input_.frame_interval;
       }
       if (progress.due())
@@ -105,12 +110,12 @@ void LatticeMotion::go(const StepCallbacks &callbacks, bool resumed, const std::
   catch (const support::SolverError &)
   {
     // The last valid state, and the records until then.
-    add_frame();
-    write_tables();
+    add_frame(tables());
+    writing_.wait();
     throw;
   }
-  add_frame();
-  write_tables();
+  add_frame(tables());
+  writing_.wait();
 }
 
 } // namespace latcon::commands

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "lattice/simulation.h"
+#include "support/task_thread.h"
 #include "verification/commands/command.h"
 #include "verification/output/checkpoints.h"
 #include "verification/output/crack_record.h"
@@ -16,7 +18,8 @@ namespace latcon::commands
 {
 
 /// Output of a moving lattice between steps, with or without a crack: frames, tables, the energy ledger, checkpoints,
-/// signals, progress. On every rank alike; the root rank writes.
+/// signals, progress. On every rank alike; the root rank writes frames and tables on a thread of its own, while the
+/// sheet moves on. All that was added is on disk when a checkpoint is written and when go() returns.
 class LatticeMotion
 {
 public:
@@ -45,7 +48,7 @@ public:
       archive("simulation", simulation_);
       archive("record", record_);
       extra_state(archive);
-      archive("frames", frames_);
+      archive("frames", *frames_);
       archive("next_frame", next_frame_);
       archive("step", step_);
       if constexpr (std::decay_t<decltype(archive)>::loads)
@@ -56,27 +59,30 @@ public:
        [&]
        {
          record_.check();
+         writing_.wait();
          checkpoints_.write(step_, simulation_.state().time, parts);
        });
   }
 
   output::CrackRecord &record() { return record_; }
-  std::size_t step() const { return step_; } ///< steps done
+  support::TaskThread &writing() { return writing_; } ///< thread that writes frames and tables
+  std::size_t step() const { return step_; }          ///< steps done
 
 private:
   void check_loaded();
   void go(const StepCallbacks &callbacks, bool resumed, const std::function<void()> &write_checkpoint);
-  void add_frame();
-  void write_tables() const;
+  void add_frame(output::TextFiles tables = {});
+  output::TextFiles tables() const;
 
   const input::Case &input_;
   lattice::Simulation &simulation_;
   output::Checkpoints &checkpoints_;
   Run &run_;
   output::CrackRecord record_;
-  output::FieldWriter frames_;
-  double next_frame_; // [s]
+  std::shared_ptr<output::FieldWriter> frames_; // also of the tasks that are pending
+  double next_frame_;                           // [s]
   std::size_t step_ = 0;
+  support::TaskThread writing_;
 };
 
 } // namespace latcon::commands

@@ -7,8 +7,9 @@ namespace latcon::output
 {
 
 CrackFilm::CrackFilm(const input::Case &input, lattice::Simulation &simulation, const CrackRecord &record,
-                     double seed_tip_X, std::filesystem::path directory)
-  : simulation_(simulation), record_(record), frames_(simulation.lattice(), std::move(directory)),
+                     double seed_tip_X, std::filesystem::path directory, support::TaskThread &writing)
+  : simulation_(simulation), record_(record), writing_(writing),
+    frames_(std::make_shared<MotionWriter>(simulation.lattice(), std::move(directory))),
     is_enabled_(input.motion_frames > 0),
     pitch_((input.stop_position * simulation.lattice().length() - seed_tip_X) / std::max(1u, input.motion_frames)),
     next_frame_(seed_tip_X + pitch_)
@@ -23,7 +24,13 @@ void CrackFilm::begin(bool resumed)
     next_frame_ = due_beyond(record_.tip_X(), next_frame_);
   }
   else if (is_enabled_ && simulation_.band().is_first())
-    frames_.write_collection();
+    frames_->write_collection();
+}
+
+void CrackFilm::end()
+{
+  add_frame();
+  writing_.wait();
 }
 
 void CrackFilm::step()
@@ -57,7 +64,7 @@ void CrackFilm::check_loaded(double first) const
     }
   lattice::require_archived(next_frame_ == next, "`next_frame` is not the next frame that is due");
   if (is_enabled_)
-    lattice::require_archived(frames_.times() == times, "`times` of frames do not match the record of the tip");
+    lattice::require_archived(frames_->times() == times, "`times` of frames do not match the record of the tip");
 }
 
 void CrackFilm::add_frame()
@@ -66,7 +73,8 @@ void CrackFilm::add_frame()
     return;
   const lattice::State &whole = simulation_.gather();
   if (simulation_.band().is_first())
-    frames_.add_frame(whole);
+    writing_.add([frames = frames_, state = std::make_shared<const lattice::State>(whole)]
+                 { frames->add_frame(*state); });
 }
 
 } // namespace latcon::output

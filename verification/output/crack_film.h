@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 
 #include "lattice/simulation.h"
+#include "support/task_thread.h"
 #include "verification/input/case.h"
 #include "verification/output/crack_record.h"
 #include "verification/output/motion_writer.h"
@@ -16,18 +18,19 @@ class CrackFilm
 public:
   /// Creates a film. The simulation and the record of its crack must outlive this object.
   /// @param seed_tip_X reference X of the tip of the seed [m]; the film ends at the stop position
+  /// @param writing thread that writes the frames
   CrackFilm(const input::Case &input, lattice::Simulation &simulation, const CrackRecord &record, double seed_tip_X,
-            std::filesystem::path directory);
+            std::filesystem::path directory, support::TaskThread &writing);
 
-  /// Writes the first frame or, in a resumed run, discards the frames after the checkpoint. Collective. @throws
-  /// support::OutputError if a file cannot be written, as do step() and end()
+  /// Adds the first frame or, in a resumed run, discards the frames after the checkpoint. Collective. @throws
+  /// support::OutputError if a file cannot be written, as do step() and end(), of this frame or of an earlier one
   void begin(bool resumed);
 
   /// Adds a frame if the tip has reached the position of the next one. Collective.
   void step();
 
-  /// Adds the last frame. Collective.
-  void end() { add_frame(); }
+  /// Adds the last frame and waits until all are written. Collective.
+  void end();
 
   /// Saves or loads the list of frames; see lattice::Simulation. The record of the crack must be loaded first.
   /// @throws std::invalid_argument if the frames do not match the record of the tip
@@ -35,7 +38,7 @@ public:
   void archive(Archive &archive)
   {
     const double first = next_frame_;
-    archive("frames", frames_);
+    archive("frames", *frames_);
     archive("next_frame", next_frame_);
     if constexpr (Archive::loads)
       check_loaded(first);
@@ -48,7 +51,8 @@ private:
 
   lattice::Simulation &simulation_;
   const CrackRecord &record_;
-  MotionWriter frames_;
+  support::TaskThread &writing_;
+  std::shared_ptr<MotionWriter> frames_; // also of the tasks that are pending
   bool is_enabled_;
   double pitch_;      // advance of the tip between frames [m]
   double next_frame_; // X of the tip at the next frame [m]

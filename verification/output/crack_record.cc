@@ -15,7 +15,6 @@
 #include "verification/analysis/fragments.h"
 #include "verification/output/crack_json.h"
 #include "verification/output/mechanism_names.h"
-#include "verification/output/output_file.h"
 
 namespace latcon::output
 {
@@ -197,48 +196,39 @@ analysis::CrackMeasurement CrackRecord::measure(double seed_tip_X) const
   return analysis::measure_crack(tip_, breaks, options);
 }
 
-void CrackRecord::write_tables(const std::filesystem::path &directory) const
+TextFiles CrackRecord::tables(const std::filesystem::path &directory) const
 {
-  write_file(directory / "crack.csv",
-             [this](std::ostream &out)
-             {
-               out << "t,X,Y,x,y,speed,bonds_broken\n";
-               for (std::size_t i = 0; i < tip_.size(); ++i)
-               {
-                 write_row(out, {tip_[i].t, tip_[i].X, tip_[i].Y, tip_[i].x, tip_[i].y, speeds_[i]});
-                 out << ',' << broken_at_tip_[i] << '\n';
-               }
-             });
-  write_file(directory / "broken_bonds.csv",
-             [this](std::ostream &out)
-             {
-               out << "t,site,other_site,X,Y,stretch\n";
-               const lattice::TriangularLattice &sheet = simulation_.lattice();
-               for (const lattice::BrokenBond &bond : broken_)
-               {
-                 out << support::full_precision(bond.time) << ',' << sheet.site_number(bond.near) << ','
-                     << sheet.site_number(bond.far) << ',';
-                 write_row(out, {bond.midpoint.x(), bond.midpoint.y(), bond.stretch});
-                 out << '\n';
-               }
-             });
-  write_file(
-    directory / "energy.csv",
-    [this](std::ostream &out)
-    {
-      out << "t,elastic,kinetic,viscous,broken,boundary_work,contact,imbalance";
-      for (const std::string &mechanism : mechanisms_)
-        out << ',' << mechanism << "_stored," << mechanism << "_dissipated";
-      out << '\n';
-      auto of_mechanism = mechanism_energies_.begin();
-      for (const auto &[time, e] : energies_)
-      {
-        write_row(out, {time, e.elastic, e.kinetic, e.viscous, e.broken, e.boundary_work, e.contact, e.imbalance()});
-        for (std::size_t i = 0; i < 2 * mechanisms_.size(); ++i)
-          out << ',' << support::full_precision(*of_mechanism++);
-        out << '\n';
-      }
-    });
+  std::ostringstream crack, broken, energy;
+  crack << "t,X,Y,x,y,speed,bonds_broken\n";
+  for (std::size_t i = 0; i < tip_.size(); ++i)
+  {
+    write_row(crack, {tip_[i].t, tip_[i].X, tip_[i].Y, tip_[i].x, tip_[i].y, speeds_[i]});
+    crack << ',' << broken_at_tip_[i] << '\n';
+  }
+  broken << "t,site,other_site,X,Y,stretch\n";
+  const lattice::TriangularLattice &sheet = simulation_.lattice();
+  for (const lattice::BrokenBond &bond : broken_)
+  {
+    broken << support::full_precision(bond.time) << ',' << sheet.site_number(bond.near) << ','
+           << sheet.site_number(bond.far) << ',';
+    write_row(broken, {bond.midpoint.x(), bond.midpoint.y(), bond.stretch});
+    broken << '\n';
+  }
+  energy << "t,elastic,kinetic,viscous,broken,boundary_work,contact,imbalance";
+  for (const std::string &mechanism : mechanisms_)
+    energy << ',' << mechanism << "_stored," << mechanism << "_dissipated";
+  energy << '\n';
+  auto of_mechanism = mechanism_energies_.begin();
+  for (const auto &[time, e] : energies_)
+  {
+    write_row(energy, {time, e.elastic, e.kinetic, e.viscous, e.broken, e.boundary_work, e.contact, e.imbalance()});
+    for (std::size_t i = 0; i < 2 * mechanisms_.size(); ++i)
+      energy << ',' << support::full_precision(*of_mechanism++);
+    energy << '\n';
+  }
+  return {{directory / "crack.csv", crack.str()},
+          {directory / "broken_bonds.csv", broken.str()},
+          {directory / "energy.csv", energy.str()}};
 }
 
 void CrackRecord::write_measurement(const std::filesystem::path &directory,

@@ -7,6 +7,7 @@
 #include "lattice/simulation.h"
 #include "verification/analysis/crack_measurement.h"
 #include "verification/output/energy_ledger.h"
+#include "verification/output/output_file.h"
 
 namespace latcon::output
 {
@@ -44,8 +45,8 @@ public:
 
   analysis::CrackMeasurement measure(double seed_tip_X) const;
 
-  /// Writes crack.csv, broken_bonds.csv and energy.csv. To be called on one rank. @throws OutputError
-  void write_tables(const std::filesystem::path &directory) const;
+  /// Returns crack.csv, broken_bonds.csv and energy.csv.
+  TextFiles tables(const std::filesystem::path &directory) const;
 
   /// Writes crack.json. Collective; the root rank writes.
   /// @param seed_tip_X reference X of the tip of the seed [m]

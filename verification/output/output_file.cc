@@ -25,4 +25,10 @@ void write_file(const std::string &path, const std::function<void(std::ostream &
   write_file(path, text.str());
 }
 
+void write_files(const TextFiles &files)
+{
+  for (const auto &[path, text] : files)
+    write_file(path, text);
+}
+
 } // namespace latcon::output

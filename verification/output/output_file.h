@@ -4,6 +4,8 @@
 #include <functional>
 #include <iosfwd>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace latcon::output
 {
@@ -17,5 +19,11 @@ void write_file(const std::string &path, const std::string &text);
 /// propagated. The whole text is in memory. The stream prints doubles with six digits by default; see full_precision().
 /// @throws OutputError as above, and if `writer` leaves the stream in a failed state
 void write_file(const std::string &path, const std::function<void(std::ostream &)> &writer);
+
+/// Paths and texts of files.
+using TextFiles = std::vector<std::pair<std::string, std::string>>;
+
+/// Replaces files one after the other, each as write_file() does.
+void write_files(const TextFiles &files);
 
 } // namespace latcon::output

@@ -11,8 +11,9 @@
 #include "support/errors.h"
 #include "support/machine_memory.h"
 #include "support/ranks.h"
-#include "verification/bridge/small_strain.h"
+#include "support/task_thread.h"
 #include "verification/bridge/lattice_sheet.h"
+#include "verification/bridge/small_strain.h"
 #include "verification/output/near_tip_record.h"
 
 namespace latcon::resources
@@ -22,6 +23,8 @@ namespace
 
 // Bytes per slot in State, its snapshot, Forces and the integrator, and additional bytes of RungeKuttaChebyshev.
 constexpr double bytes_of_place = 196., bytes_of_chebyshev_place = 48.;
+// Bytes per slot in a copy of State, of which each pending frame has one.
+constexpr double bytes_of_place_in_copy = 64.;
 // Bytes per site and per bond while a frame is gathered and written, and per site in the image of a checkpoint.
 constexpr double bytes_of_site_in_frame = 640., bytes_of_bond_in_frame = 50., bytes_of_site_in_checkpoint = 150.;
 // Bytes per site in the window around the tip, in the sums over all samples and over samples not yet folded.
@@ -147,12 +150,16 @@ MemoryNeed lattice_memory(const input::Case &input, const RunKind run, const boo
   const double frame = sites * (bytes_of_site_in_frame + bonds * bytes_of_bond_in_frame);
   const double history = run != RunKind::equilibrium ? bytes_of_history(input.material()) : 0.;
   const double checkpoint = run != RunKind::equilibrium ? sites * (bytes_of_site_in_checkpoint + history) : 0.;
-  const double fields = places * (bytes_of_place + (is_chebyshev ? bytes_of_chebyshev_place : 0.) + 2. * history +
-                                  factors_per_place(input, run == RunKind::fracture));
+  const double factors = factors_per_place(input, run == RunKind::fracture);
+  const double fields =
+    places * (bytes_of_place + (is_chebyshev ? bytes_of_chebyshev_place : 0.) + 2. * history + factors);
+  const double copies = run != RunKind::equilibrium ? static_cast<double>(support::TaskThread::max_pending) * places *
+                                                        (bytes_of_place_in_copy + history + factors)
+                                                    : 0.;
   MemoryNeed need;
   // Equilibrium is computed on the root rank only.
   (run == RunKind::equilibrium ? need.first_rank : need.shared) = fields;
-  need.first_rank += std::max(frame, checkpoint);
+  need.first_rank += std::max(frame + copies, checkpoint);
   if (run == RunKind::fracture && output::near_tip_interval(input) > 0.)
     need.first_rank += output::near_tip_window(input) / sheet.site_area() * bytes_of_site_near_tip;
   if (claims && need.shared + need.first_rank < bytes_of_claims)

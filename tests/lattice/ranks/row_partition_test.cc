@@ -1,4 +1,5 @@
 // Rows of the ranks, and communication between them.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
@@ -55,6 +56,13 @@ TEST(RowPartition, SharesOutAllRows)
     }
     EXPECT_LE(own.size(), rows / band.n_ranks() + 1);
     EXPECT_GE(own.size(), rows / band.n_ranks());
+    for (std::size_t rank = 0; rank < band.n_ranks(); ++rank)
+      for (std::size_t row = 0; row < rows; ++row)
+      {
+        const std::vector<std::size_t> halo = band.halo_of(rank);
+        EXPECT_EQ(band.is_relevant_to(rank, sheet.index(row, 3)),
+                  band.owner(row) == rank || std::find(halo.begin(), halo.end(), row) != halo.end());
+      }
     for (const std::size_t row : band.halo())
     {
       EXPECT_FALSE(band.owns(sheet.index(row, 0)));
@@ -153,9 +161,22 @@ TEST(RowPartition, SharesSitesAndGathersRows)
       field[place] = value_at(place);
       marks[place] = static_cast<std::uint8_t>(place % 7);
     }
-  const std::vector<std::size_t> places{sheet.index(30, 1), sheet.index(2, 5), sheet.index(17, 0), sheet.index(2, 3)};
-  band.broadcast_from_owners(places, {&field});
-  for (const std::size_t place : places)
+  // To each rank other sites.
+  const auto places = [&](std::size_t to)
+  {
+    return std::vector<std::size_t>{sheet.index(30, to), sheet.index(2, 5), sheet.index(17, 2 * to), sheet.index(2, 3)};
+  };
+  SitesOfRanks sent(band.n_ranks()), received(band.n_ranks());
+  for (std::size_t rank = 0; rank < band.n_ranks(); ++rank)
+    if (rank != band.rank())
+      for (const std::size_t place : places(rank))
+        if (band.owns(place))
+          sent[rank].push_back(place);
+  for (const std::size_t place : places(band.rank()))
+    if (!band.owns(place))
+      received[band.owner(sheet.row_of(place))].push_back(place);
+  band.exchange(sent, received, {&field});
+  for (const std::size_t place : places(band.rank()))
     EXPECT_EQ(field[place], value_at(place));
   const Rows rows{4, 29};
   band.gather(field, rows);
