@@ -1,8 +1,22 @@
-"""Fixtures of all tests in Python: folders that are removed after the test, and not kept as pytest keeps those of its last runs."""
+"""Fixtures of all tests in Python: folders that are removed after the test, and not kept as pytest keeps those of its last runs.
+
+Where LATCON_NO_SKIPS is set, as in hosted CI, a test that cannot run there fails: it is skipped for being long or short alone.
+"""
+import os
 import pathlib
 import tempfile
 
 import pytest
+
+
+CHOSEN = ("in full only", "long", "once is enough", "the quick versions are enough")
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_makereport(item, call):
+    report = (yield).get_result()
+    if report.skipped and os.environ.get("LATCON_NO_SKIPS") and not str(report.longrepr[2]).endswith(CHOSEN):
+        report.outcome, report.longrepr = "failed", f"{item.nodeid} may not be skipped: {report.longrepr[2]}"
 
 
 @pytest.fixture

@@ -1,15 +1,33 @@
 """The parts of tests/clean/run and the programs that each runs."""
+import dataclasses
 import pathlib
 import platform
 import shutil
 
-from checks import LOGS, ROOT, Job, Part
-
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LOGS = ROOT / "build" / "clean"
 SOURCES = ("support", "lattice", "continuum", "verification", "tests")
 CASES = ROOT / "verification" / "cases"
 HERE = ROOT / "tests" / "clean"
 # Format of the messages of clang, clang-tidy and cppcheck.
 MESSAGE = r"^\S+:\d+:\d+: (warning|error|style|performance|portability)"
+
+
+@dataclasses.dataclass
+class Job:
+    """A program to run."""
+    name: str
+    command: list
+    environment: dict = dataclasses.field(default_factory=dict)
+
+
+@dataclasses.dataclass
+class Part:
+    """Targets to build, jobs to run, and the pattern of log lines that are findings."""
+    jobs: object  # a function without arguments
+    finding: str
+    preset: str = ""
+    targets: tuple = ()
 
 
 def program(preset, path):

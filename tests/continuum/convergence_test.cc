@@ -228,7 +228,7 @@ std::vector<Errors> run(const Series &series, const unsigned int n_meshes)
 
 // Theoretical orders for a smooth solution and h < l: displacement 2 for p = 2 with a gradient law, otherwise p + 1;
 // gradient p; second gradient p - 1. Measured between the two finest meshes, where higher-order terms change the order
-// by less than 0.2. theory-continuum.md, eqs. (C.28) and (C.31).
+// by less than 0.2.
 void expect_orders(const Series &series, const unsigned int n_meshes)
 {
   const std::vector<Errors> e = run(series, n_meshes);
@@ -249,6 +249,7 @@ class CoarseConvergence : public testing::TestWithParam<Series>
 {
 };
 
+// theory-continuum.md, eqs. (C.28) and (C.31).
 TEST_P(Convergence, HasTheOrdersOfInteriorPenaltyElements)
 {
   expect_orders(GetParam(), 3);

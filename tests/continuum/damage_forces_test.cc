@@ -1,4 +1,4 @@
-// Stages in time, forces and damage of a sheet on a grid (theory-damage.md, eqs. (C.69) to (C.74)).
+// Stages in time, forces and damage of a sheet on a grid.
 #include "continuum/cauchy_born.h"
 #include "continuum/damage/damage_motion.h"
 #include "continuum/isotropic_network.h"
@@ -15,6 +15,7 @@ namespace damage_forces_test
 
 using namespace damaged_sheets;
 
+// theory-damage.md, eq. (C.73).
 TEST(ViscousStages, AreOfSecondOrderAndStableToTheirLimit)
 {
   for (const unsigned int n : {2u, 3u, 9u, 40u})
@@ -65,6 +66,7 @@ double energy(const FibreForces &forces, const RandomSheet &sheet)
   return sum;
 }
 
+// theory-damage.md, eq. (C.71).
 TEST(FibreForces, AreTheGradientOfTheDegradedEnergy)
 {
   std::vector<FibreFamily> fibres = springs();
@@ -124,7 +126,12 @@ TEST(FibreForces, AgreeWithTheLawsOfOtherSheets)
   EXPECT_NO_THROW(forces.energies(sheet.u, sheet.factors, cells));
 }
 
-TEST(GridDamage, MinimisesTheEnergyAndNeverHeals)
+class GridDamageMinimum : public testing::TestWithParam<bool>
+{
+};
+
+// theory-damage.md, eqs. (C.70) and (C.77): without and with energies of nodes.
+TEST_P(GridDamageMinimum, IsTheLowestOfTheEnergyAndNeverHeals)
 {
   const NodeGrid grid(Rectangle{12., 10., 12, 10});
   const DamageLaw law{1., 2., 1e-6};
@@ -134,20 +141,23 @@ TEST(GridDamage, MinimisesTheEnergyAndNeverHeals)
   GridDamage field(grid, law, intact);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> some(0., 4.);
-  std::vector<double> energies(grid.n_cells());
+  std::vector<double> energies(grid.n_cells()), of_nodes(GetParam() ? grid.n_nodes() : 0);
   const auto total = [&](const GridDamage &damage)
   {
     double sum = damage.fracture_energy();
     for (std::size_t c = 0; c < energies.size(); ++c)
       sum += damage.cell_factors()[c] * energies[c];
+    for (std::size_t a = 0; a < of_nodes.size(); ++a)
+      sum += damage.node_factors()[a] * of_nodes[a];
     return sum;
   };
   for (unsigned int round = 0; round < 3; ++round)
   {
-    for (double &E : energies)
-      E = some(random) * (round == 1 ? 0.1 : 1.);
+    for (std::vector<double> *part : {&energies, &of_nodes})
+      for (double &E : *part)
+        E = some(random) * (round == 1 ? 0.1 : 1.);
     const std::vector<double> before = field.nodal();
-    const bool changed = field.minimize(energies);
+    const bool changed = field.minimize(energies, of_nodes);
     EXPECT_EQ(changed, round != 1); // a tenth of the energies drives nothing
     const double lowest = total(field);
     // First-order conditions: no admissible change of one node lowers the energy.
@@ -174,6 +184,8 @@ TEST(GridDamage, MinimisesTheEnergyAndNeverHeals)
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(WithEnergiesOfNodes, GridDamageMinimum, testing::Bool());
 
 TEST(GridDamage, OfAHomogeneousSheetIsInClosedForm)
 {

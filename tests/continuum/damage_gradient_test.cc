@@ -1,4 +1,4 @@
-// Motions with gradient energy, micro-inertia and damage (theory-damage.md, eqs. (C.75) to (C.82)).
+// Motions with gradient energy, micro-inertia and damage.
 #include "continuum/damage/damage_motion.h"
 #include "continuum/damage/patch_bound.h"
 #include "continuum/errors.h"
@@ -23,6 +23,7 @@ DamageMotionSetup sheet(const Tensor<2, 2> &F, const Rectangle &rectangle, const
   return setup;
 }
 
+// theory-damage.md, eqs. (C.79) and (C.82).
 TEST(DamageMotion, MovesWavesAsTheirDispersionSays)
 {
   // One step from rest, in the middle of a sheet that is large enough: the mass operator forgets an edge as
@@ -136,6 +137,7 @@ bool is_accepted(const DamageMotionSetup &setup)
   }
 }
 
+// theory-damage.md, eq. (C.81).
 TEST(DamageMotion, IsStableUpToTheStepThatItStates)
 {
   // Noise on a sheet without pre-stretch does not grow, whatever its damage; with it, damage would set it in motion.

@@ -1,4 +1,4 @@
-// Motion of a sheet with damage (theory-damage.md, eqs. (C.69) to (C.74)).
+// Motion of a sheet with damage.
 #include "continuum/damage/damage_motion.h"
 #include "continuum/errors.h"
 #include "damaged_sheets.h"
@@ -31,6 +31,7 @@ DamageMotion bar(const double viscosity, const double step)
   return motion;
 }
 
+// theory-damage.md, eq. (C.69).
 TEST(DamageMotion, DoesNotSlowWavesDown)
 {
   // Semi-discrete frequency of linear elements with lumped mass, and that of velocity Verlet: exact for this mode. The
@@ -52,6 +53,7 @@ TEST(DamageMotion, DoesNotSlowWavesDown)
   }
 }
 
+// theory-damage.md, eqs. (C.71) and (C.73).
 TEST(DamageMotion, DampsWavesOfDamagedMaterialAsThoseOfIntactOnes)
 {
   const double h = 1. / 16., viscosity = 3000.;
@@ -100,6 +102,7 @@ DamageMotion strip(const unsigned int refinement = 1)
   return DamageMotion(setup);
 }
 
+// theory-damage.md, eq. (C.74).
 TEST(DamageMotion, RunsACrackWithTheSameBitsOnAnyNumberOfThreads)
 {
   std::vector<double> damage[2];
@@ -168,7 +171,7 @@ TEST(DamageMotion, DoesNotBreakWithoutASeed)
 
 // A sheet at large strain with a slit, whose threshold is out of reach: behind the slit it relaxes across, where rods
 // are several times as stiff as at F_0. The longest step that the constructor states stays stable there: what the slit
-// releases is all that moves.
+// releases is all that moves. theory-damage.md, eq. (C.72).
 TEST(DamageMotion, IsStableWhereItRelaxes)
 {
   for (const double viscosity : {0., 5.})

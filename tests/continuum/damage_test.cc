@@ -1,4 +1,4 @@
-// Damage field and quasi-static fracture of a bar (theory-damage.md, eqs. (C.59) to (C.68)).
+// Damage field and quasi-static fracture of a bar.
 #include "continuum/damage/damage_solver.h"
 
 #include <gtest/gtest.h>
@@ -110,6 +110,7 @@ struct BrokenBar : Bar
   }
 };
 
+// theory-damage.md, eqs. (C.59), (C.60) and (C.62).
 TEST(Damage, ScalesEveryTermOfTheEnergy)
 {
   Mesh mesh(MPI_COMM_WORLD);
@@ -153,6 +154,7 @@ TEST(Damage, ScalesEveryTermOfTheEnergy)
   }
 }
 
+// theory-damage.md, eqs. (C.63) and (C.64).
 TEST(Damage, IsTheMinimumOfTheEnergyAmongLargerOnes)
 {
   // With hanging nodes.
@@ -204,6 +206,7 @@ TEST(Damage, IsTheMinimumOfTheEnergyAmongLargerOnes)
   }
 }
 
+// theory-damage.md, eqs. (C.61) and (C.66).
 TEST(Damage, BeginsAtTheThresholdAndFollowsTheHomogeneousSolution)
 {
   Bar bar = short_bar();
@@ -240,6 +243,7 @@ TEST(Damage, StaysWhenTheLoadFalls)
   EXPECT_NEAR(solver.field().largest(), homogeneous_damage(2.6), 1e-11);
 }
 
+// theory-damage.md, eq. (C.65).
 TEST(Damage, ClosesTheLedgerToSecondOrderInTheLoadStep)
 {
   double last = 0.;
@@ -265,6 +269,7 @@ TEST(Damage, ClosesTheLedgerToSecondOrderInTheLoadStep)
   EXPECT_LT(std::abs(last), 2e-3);
 }
 
+// theory-damage.md, eqs. (C.67) and (C.68).
 TEST(Damage, BreaksABarForTheEnergyOfACrack)
 {
   std::vector<double> energies;

@@ -147,12 +147,12 @@ TEST(DynamicSolver, KeepsTheEnergyOfALongVibration)
     return e;
   };
   const Errors coarse = errors(2e-4, 500, 500);
-  const Errors fine = errors(1e-4, 1000, 10000);
+  const Errors fine = errors(1e-4, 1000, 3000);
   // The next term of the error is (w dt)^4 with w dt = 0.25 for the coarse step, so the ratio is 4 to within a few per
   // cent.
   EXPECT_NEAR(coarse.largest_at_first / fine.largest_at_first, 4., 0.2) << fine.largest_at_first;
   // The means of a stationary error differ by the phases at the ends of 0.1 s, about 20 periods: at most 1/50 of its
-  // size. A drift of a thousandth of it in each of 200 periods would be ten times that.
+  // size. A drift of a thousandth of it in each of the 60 periods would be three times that.
   EXPECT_LT(fine.largest, 1.02 * fine.largest_at_first);
   EXPECT_LT(std::abs(fine.mean_at_last - fine.mean_at_first), 0.02 * fine.largest_at_first);
   RecordProperty("largest error", std::to_string(1e6 * fine.largest) + "e-6");

@@ -1,7 +1,7 @@
 #pragma once
 
 // Properties of every gradient law: derivatives, compared with automatic differentiation of the energy in the form of
-// theory-continuum.md, eq. (C.22), and symmetries.
+// theory-continuum.md, eq. (C.22).
 
 #include "continuum/errors.h"
 #include "sheets.h"
@@ -179,15 +179,6 @@ void expect_derivatives(const GradientLaw &law, const Energy &energy, const doub
   }
 }
 
-inline Gradient rotated(const Tensor<2, 2> &R, const Gradient &G)
-{
-  Gradient result;
-  for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int j = 0; j < 2; ++j)
-      result[i] += R[i][j] * G[j];
-  return result;
-}
-
 // Returns G in a reference configuration rotated by R.
 inline Gradient turned(const Gradient &G, const Tensor<2, 2> &R)
 {
@@ -195,24 +186,6 @@ inline Gradient turned(const Gradient &G, const Tensor<2, 2> &R)
   for (unsigned int i = 0; i < 2; ++i)
     result[i] = R * G[i] * transpose(R);
   return result;
-}
-
-inline void expect_objective(const GradientLaw &law)
-{
-  std::mt19937 generator(5);
-  for (int sample = 0; sample < 30; ++sample)
-  {
-    const Tensor<2, 2> F = random_deformation(generator);
-    const Gradient G = random_gradient(generator, spacing);
-    const Gradient Z = random_gradient(generator, spacing);
-    const Tensor<2, 2> R = rotation(0.1 + 0.2 * sample);
-    const double scale = law.energy(F, G) + law.energy(F, Z);
-    EXPECT_NEAR(law.form(R * F, rotated(R, G), rotated(R, Z)), law.form(F, G, Z), roundings * epsilon * scale);
-    EXPECT_NEAR((law.first_piola_stress(R * F, rotated(R, G)) - R * law.first_piola_stress(F, G)).norm(), 0.,
-                10. * roundings * epsilon * scale);
-    EXPECT_NEAR((law.double_stress(R * F, rotated(R, G)) - rotated(R, law.double_stress(F, G))).norm(), 0.,
-                10. * roundings * epsilon * scale * spacing);
-  }
 }
 
 // Returns n . A . n with A from the second normal derivative, divided by the mass: contribution of the law to the

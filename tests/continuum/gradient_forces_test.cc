@@ -1,4 +1,4 @@
-// Forces and inertia of gradient energy on a grid with damage (theory-damage.md, eqs. (C.75) to (C.82)).
+// Forces and inertia of gradient energy on a grid with damage.
 #include "continuum/damage/damage_motion.h"
 #include "continuum/damage/patch_bound.h"
 #include "continuum/network_gradient.h"
@@ -30,6 +30,7 @@ bool is_inside(const NodeGrid &grid, const std::size_t a, const std::size_t marg
   return i >= margin && i + margin <= grid.cells_x && j >= margin && j + margin <= grid.cells_y;
 }
 
+// theory-damage.md, eqs. (C.75) and (C.76).
 TEST(GradientForces, CarryTheEnergyOfTheLaw)
 {
   // Differences of a quadratic field are exact: the energy of a node is that of the law.
@@ -80,6 +81,7 @@ TEST(GradientForces, CarryTheEnergyOfTheLaw)
   }
 }
 
+// theory-damage.md, eq. (C.79).
 TEST(GradientForces, AreTheGradientOfTheDegradedEnergy)
 {
   const NodeGrid grid(Rectangle{4., 4.4, 4, 4});
@@ -128,6 +130,7 @@ TEST(GradientForces, AreTheGradientOfTheDegradedEnergy)
   }
 }
 
+// theory-damage.md, eqs. (C.78) and (C.80).
 TEST(MassOperator, InvertsTheMassOfDamagedSheets)
 {
   const NodeGrid grid(Rectangle{6., 4.4, 6, 4});
@@ -174,6 +177,7 @@ TEST(MassOperator, InvertsTheMassOfDamagedSheets)
   EXPECT_THROW(MassOperator(grid, 950., 1e6, held), InvalidInput);
 }
 
+// theory-damage.md, eq. (C.82).
 TEST(GradientForces, HaveTheDispersionOfTheLatticeOnAGrid)
 {
   // Plane waves of the semi-discrete sheet: k^2 becomes (2 sin(k h/2) / h)^2, exactly. Forces and masses are compared,

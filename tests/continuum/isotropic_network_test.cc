@@ -159,32 +159,6 @@ TEST(StretchMeans, AreHomogeneous)
   }
 }
 
-// theory-continuum.md, eq. (C.1).
-TEST(IsotropicNetwork, StressIsEnergyGradient)
-{
-  expect_taylor_orders(mixed_network(), true);
-}
-
-TEST(IsotropicNetwork, TangentIsStressGradient)
-{
-  expect_taylor_orders(mixed_network(), false);
-}
-
-TEST(IsotropicNetwork, IsObjective)
-{
-  expect_objective(mixed_network());
-}
-
-TEST(IsotropicNetwork, HasMajorSymmetry)
-{
-  expect_major_symmetry(mixed_network());
-}
-
-TEST(IsotropicNetwork, RefusesNonPositiveDeterminant)
-{
-  expect_refusal(mixed_network());
-}
-
 // A rotation of the reference configuration by any angle has no effect.
 TEST(IsotropicNetwork, IsIsotropic)
 {

@@ -127,24 +127,6 @@ CauchyBorn mixed_network()
                      {Tensor<1, 2>({-0.28, 0.96}), 0.4, continuum::RodPotential{2e5, -0.5e5}}});
 }
 
-// theory-continuum.md, eq. (C.1).
-TEST(MooneyRivlin, StressIsEnergyGradient)
-{
-  expect_taylor_orders(rubber_sheet(), true);
-}
-TEST(MooneyRivlin, TangentIsStressGradient)
-{
-  expect_taylor_orders(rubber_sheet(), false);
-}
-TEST(CauchyBorn, StressIsEnergyGradient)
-{
-  expect_taylor_orders(mixed_network(), true);
-}
-TEST(CauchyBorn, TangentIsStressGradient)
-{
-  expect_taylor_orders(mixed_network(), false);
-}
-
 // theory-continuum.md, eqs. (C.4) to (C.8).
 TEST(MooneyRivlin, AgreesWithDifferentiatedThreeDimensionalEnergy)
 {
@@ -229,31 +211,6 @@ TEST(CauchyBorn, HasHandWorkedValues)
   EXPECT_NEAR(spring.energy(G), 96., 100. * epsilon);
   EXPECT_NEAR(spring.first_piola_stress(G)[0][1], 28.8, 100. * epsilon);
   EXPECT_NEAR(spring.first_piola_stress(G)[1][1], 38.4, 100. * epsilon);
-}
-
-TEST(MooneyRivlin, IsObjective)
-{
-  expect_objective(rubber_sheet());
-}
-TEST(CauchyBorn, IsObjective)
-{
-  expect_objective(rubber_network());
-}
-TEST(MooneyRivlin, HasMajorSymmetry)
-{
-  expect_major_symmetry(rubber_sheet());
-}
-TEST(CauchyBorn, HasMajorSymmetry)
-{
-  expect_major_symmetry(rubber_network());
-}
-TEST(MooneyRivlin, RefusesNonPositiveDeterminant)
-{
-  expect_refusal(rubber_sheet());
-}
-TEST(CauchyBorn, RefusesNonPositiveDeterminant)
-{
-  expect_refusal(rubber_network());
 }
 
 // theory-continuum.md, eq. (C.9).

@@ -93,12 +93,12 @@ TEST(Multigrid, IsSymmetricAndPositive)
 
 TEST(Multigrid, NeedsFewIterationsForTheLocalLaw)
 {
-  // Measured: 6 on every mesh, from 10^3 to 4 10^5 unknowns.
+  // Measured: 6 on every mesh, from 10^3 to 10^5 unknowns.
   for (const unsigned int degree : {2u, 3u})
-    for (const unsigned int halvings : {2u, 3u, 4u})
-      for (const unsigned int times : {0u, 2u})
-        EXPECT_LE(LinearProblem(0., degree, halvings, times).iterations(), 7u)
-          << "degree " << degree << ", " << halvings << " halvings, refined " << times << " times";
+    for (const auto &[halvings, times] :
+         {std::pair(2u, 0u), std::pair(2u, 2u), std::pair(3u, 0u), std::pair(3u, 2u), std::pair(4u, 0u)})
+      EXPECT_LE(LinearProblem(0., degree, halvings, times).iterations(), 7u)
+        << "degree " << degree << ", " << halvings << " halvings, refined " << times << " times";
 }
 
 TEST(Multigrid, NeedsAboutAsManyIterationsOnEveryMeshForTheFourthOrderForm)

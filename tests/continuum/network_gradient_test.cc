@@ -71,12 +71,6 @@ TEST(NetworkGradient, FormsAreDerivativesOfTheEnergy)
                      [&](const auto &v) { return lattice_energy(in_all_directions, l_d, v); });
 }
 
-TEST(NetworkGradient, IsObjective)
-{
-  const auto bonds = rubber_bonds(spacing);
-  expect_objective(NetworkGradient(bonds, LatticeGradient::smallest_length(bonds)));
-}
-
 // Isotropic up to the n-th power of (l1 - l2)/(l1 + l2), which is 1/2 for l1/l2 = 3.
 TEST(NetworkGradient, IsIsotropic)
 {

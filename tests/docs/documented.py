@@ -42,9 +42,10 @@ class Reference:
 
 
 def named(name, text):
+    """Whether a name is an item of a text, between separators of a list or of a table: a word of a sentence documents nothing."""
     if "`_uncertainty`" in text:
         name = name.removesuffix("_uncertainty")
-    return re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text) is not None
+    return re.search(rf"(?:^|[|,;:(`{{/]|\band|\bor)\s*{re.escape(name)}(?=\s*(?:[,;:.)`|}}/\[(]|and\b|or\b|$))", text, re.MULTILINE) is not None
 
 
 def columns(path):

@@ -68,7 +68,7 @@ def test_what_is_not_named_is_found(tmp_path):
     (made_up / "crack.json").write_text('{"pattern": "straight", "speed_lagrangian_uncertainty": 1, "mood": {"x": 1}}')
     (made_up / "lattice.pvd").write_text("")
     (made_up / "diary.txt").write_text("")
-    text = "| file | content |\n| --- | --- |\n| `crack.csv` | t [s], X [m] |\n| `crack.json` | pattern, speed_lagrangian, " \
+    text = "| file | content |\n| --- | --- |\n| `crack.csv` | t [s], X [m]; the colour of a line |\n| `crack.json` | pattern, speed_lagrangian, " \
            "each with `_uncertainty` |\n"
     assert undocumented(made_up, Reference(text)) == ["crack.csv: colour", "crack.json: mood", "crack.json: x",
                                                              "diary.txt", "lattice.pvd"]

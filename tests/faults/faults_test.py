@@ -1,154 +1,124 @@
-#!/usr/bin/python3
-"""A short version of the fault harness, and tests that the harness detects incomplete files.
-
-Usage: faults_test.py PATH_OF_LATCON PATH_OF_THE_LIBRARY_OF_FILE_FAULTS
-"""
+"""Runs survive kills, full disks and folders that cannot be written: a short version of tests/faults/run; and its checks see files
+that are not whole."""
 import os
-import pathlib
 import random
+import shlex
 import shutil
 import subprocess
-import sys
-import tempfile
-import unittest
 
-sys.dont_write_bytecode = True
+import pytest
+
 import kills
 import moments
 import victims
 import whole
 
-LIBRARY = pathlib.Path(sys.argv.pop(2))
-PROGRAM = victims.Program(sys.argv.pop(1), LIBRARY)
+PROGRAM = victims.Program(os.environ["LATCON"], os.environ["LATCON_FILE_FAULTS"])
 SEED = 1
-CAN_MOUNT = os.geteuid() == 0 and subprocess.run(["unshare", "-m", "mount", "-t", "tmpfs", "none", "/mnt"],
-                                                 capture_output=True).returncode == 0
+CRACK = victims.VICTIMS["crack"]
+needs_mount = pytest.mark.skipif(os.geteuid() != 0 or subprocess.run(["unshare", "-m", "mount", "-t", "tmpfs", "none", "/mnt"],
+                                                                     capture_output=True).returncode != 0, reason="no disk can be mounted here")
 
 
-class Folder(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+@pytest.mark.parametrize("name", victims.VICTIMS)
+def test_run_survives_kills_at_random_moments(name, tmp_path):
+    ranks = (1, 1, 2) if name in victims.ON_RANKS else (1,)
+    counted = kills.kill_at_random(PROGRAM, name, tmp_path / "run", random.Random(f"{SEED} {name}"), 2, ranks)
+    assert counted["kills"] >= 2
+    assert counted["runs"] > 0
 
 
-class Faults(Folder):
-    def test_runs_survive_kills_at_random_moments(self):
-        rng = random.Random(SEED)
-        for name in victims.VICTIMS:
-            with self.subTest(name):
-                ranks = (1, 1, 2) if name in victims.ON_RANKS else (1,)
-                told = kills.kill_at_random(PROGRAM, name, self.folder / name, rng, 2, ranks)
-                self.assertGreaterEqual(told["kills"], 2)
-                self.assertGreater(told["runs"], 0)
-
-    def test_run_without_checkpoints_starts_again(self):
-        told = kills.kill_at_random(PROGRAM, "relaxation", self.folder, random.Random(SEED), 1)
-        self.assertEqual(told["kills"], told["without_checkpoint"])
-
-    def test_runs_survive_kills_and_full_disks_at_calls_that_change_files(self):
-        rng = random.Random(SEED)
-        for name in victims.VICTIMS:
-            # tests/faults/run has both faults for all; files are written by the same functions.
-            for fault in {"crack": ("kill", "full"), "lattice in motion": ("kill",)}.get(name, ("full",)):
-                with self.subTest(f"{name}, {fault}"):
-                    told = moments.at_moments(PROGRAM, name, self.folder / name, fault,
-                                              lambda n: [rng.randint(1, n)])
-                    self.assertGreater(told["calls"], 30)
-
-    @unittest.skipUnless(CAN_MOUNT, "no disk can be mounted here")
-    def test_small_disk(self):
-        """A real disk becomes full in the middle of a file."""
-        arguments = victims.VICTIMS["crack"]
-        expected, _ = victims.undisturbed(PROGRAM, arguments, self.folder / "undisturbed")
-        disk, kept = self.folder / "disk", self.folder / "kept"
-        disk.mkdir()
-        size = sum(path.stat().st_size for path in (self.folder / "undisturbed").rglob("*") if path.is_file())
-        command = " ".join([PROGRAM.latcon, *(f"'{word}'" for word in arguments), "--output-dir", f"{disk}/out"])
-        run = subprocess.run(["unshare", "-m", "sh", "-c",
-                              f"mount -t tmpfs -o size={size // 2048}k none {disk} || exit 77; {command}; status=$?; "
-                              f"cp -r {disk}/out {kept}; exit $status"],
-                             capture_output=True, text=True, timeout=600)
-        self.assertEqual(run.returncode, 5, run.stderr)
-        self.assertIn(str(disk), run.stderr)
-        self.assertGreater(whole.check(kept), 5)
-        status, said = PROGRAM.run([*arguments, "--resume"], kept)
-        self.assertIn(status, victims.DONE, said)
-        kills.compare("crack", kept, expected)
-
-    @unittest.skipUnless(CAN_MOUNT, "no disk can be mounted here")
-    def test_disk_that_cannot_be_written(self):
-        run = subprocess.run(["unshare", "-m", "sh", "-c",
-                              f"mount -t tmpfs -o ro none {self.folder} || exit 77; exec "
-                              + " ".join([PROGRAM.latcon, *(f"'{word}'" for word in victims.VICTIMS["crack"]),
-                                          "--output-dir", f"{self.folder}/out"])],
-                             capture_output=True, text=True, timeout=600)
-        self.assertEqual(run.returncode, 5, run.stderr)
-        self.assertIn(f"{self.folder}/out", run.stderr)
-
-    def test_folder_of_somebody_else(self):
-        """A folder without write permission; as user nobody if the test runs as root."""
-        folder = self.folder / "locked"
-        folder.mkdir(mode=0o555)
-        self.folder.chmod(0o755)
-        prefix = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
-        run = subprocess.run([*prefix, PROGRAM.latcon, *victims.VICTIMS["crack"], "--output-dir", str(folder / "out")],
-                             capture_output=True, text=True, timeout=600,
-                             env=dict(os.environ, HOME=str(self.folder), XDG_CACHE_HOME=str(self.folder)))
-        self.assertEqual(run.returncode, 5, run.stderr)
-        self.assertIn("ermission denied", run.stderr)
-        self.assertIn(str(folder / "out"), run.stderr)
+def test_run_without_checkpoints_starts_again(tmp_path):
+    counted = kills.kill_at_random(PROGRAM, "relaxation", tmp_path, random.Random(SEED), 1)
+    assert counted["kills"] == counted["without_checkpoint"]
 
 
-class Harness(Folder):
-    """Tests that the harness detects the faults it looks for."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.run_folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.run_folder.cleanup)
-        cls.whole = pathlib.Path(cls.run_folder.name) / "out"
-        cls.expected, _ = victims.undisturbed(PROGRAM, victims.VICTIMS["crack"], cls.whole)
-
-    def copy(self):
-        out = self.folder / "out"
-        shutil.copytree(self.whole, out)
-        return out
-
-    def test_finds_nothing_wrong_with_a_good_run(self):
-        self.assertGreater(whole.check(self.copy()), 10)
-        kills.compare("crack", self.copy_again(), self.expected)
-
-    def copy_again(self):
-        shutil.rmtree(self.folder / "out", ignore_errors=True)
-        return self.copy()
-
-    def test_sees_files_that_are_cut(self):
-        names = ["crack.csv", "crack.json", "lattice.pvd", "lattice-0001.vtp", "near_tip.json"]
-        out = self.copy()
-        names += [str(path.relative_to(out)) for path in out.glob("checkpoints/*.h5")]
-        self.assertGreater(len(names), 5)
-        for name in names:
-            with self.subTest(name):
-                path = self.copy_again() / name
-                content = path.read_bytes()
-                path.write_bytes(content[:2 * len(content) // 3])
-                self.assertRaises(whole.Broken, whole.check, self.folder / "out")
-
-    def test_sees_a_flipped_bit(self):
-        path = max(self.copy().glob("checkpoints/*.h5"))
-        content = bytearray(path.read_bytes())
-        content[len(content) // 2] ^= 1
-        path.write_bytes(content)
-        self.assertRaises(whole.Broken, whole.check, self.folder / "out")
-
-    def test_sees_another_result(self):
-        path = self.copy() / "crack.csv"
-        path.write_text(path.read_text().replace("1", "2", 1))
-        self.assertRaises(kills.Failure, kills.compare, "crack", self.folder / "out", self.expected)
-        path.unlink()
-        self.assertRaises(kills.Failure, kills.compare, "crack", self.folder / "out", self.expected)
+# tests/faults/run has both faults for all; files are written by the same functions.
+@pytest.mark.parametrize("name, fault", [(name, fault) for name in victims.VICTIMS for fault in
+                                         {"crack": ("kill", "full"), "lattice in motion": ("kill",)}.get(name, ("full",))])
+def test_run_survives_a_fault_at_a_call_that_changes_files(name, fault, tmp_path):
+    pick = random.Random(f"{SEED} {name}")
+    assert moments.at_moments(PROGRAM, name, tmp_path / "run", fault, lambda n: [pick.randint(1, n)])["calls"] > 30
 
 
-if __name__ == "__main__":
-    unittest.main(verbosity=2)
+def crack_on(disk, options, then=""):
+    """Runs a crack with a file system of its own mounted at `disk`."""
+    script = f'mount -t tmpfs -o {options} none {disk} || exit 77; {shlex.join([PROGRAM.latcon, *CRACK])} --output-dir {disk}/out; status=$?; {then} exit $status'
+    return subprocess.run(["unshare", "-m", "sh", "-c", script], capture_output=True, text=True, timeout=600)
+
+
+@needs_mount
+def test_small_disk(tmp_path, whole_run):
+    """A real disk becomes full in the middle of a file."""
+    complete, expected = whole_run
+    disk, kept = tmp_path / "disk", tmp_path / "kept"
+    disk.mkdir()
+    size = sum(path.stat().st_size for path in complete.rglob("*") if path.is_file())
+    run = crack_on(disk, f"size={size // 2048}k", f"cp -r {disk}/out {kept};")
+    assert run.returncode == 5, run.stderr
+    assert str(disk) in run.stderr
+    assert whole.check(kept) > 5
+    status, said = PROGRAM.run([*CRACK, "--resume"], kept)
+    assert status in victims.DONE, said
+    kills.compare("crack", kept, expected)
+
+
+@needs_mount
+def test_disk_that_cannot_be_written(tmp_path):
+    run = crack_on(tmp_path, "ro")
+    assert run.returncode == 5, run.stderr
+    assert f"{tmp_path}/out" in run.stderr
+
+
+def test_folder_of_somebody_else(tmp_path):
+    """A folder without write permission; as user nobody if the test runs as root."""
+    folder = tmp_path / "locked"
+    folder.mkdir(mode=0o555)
+    tmp_path.chmod(0o755)
+    prefix = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
+    run = subprocess.run([*prefix, PROGRAM.latcon, *CRACK, "--output-dir", folder / "out"], capture_output=True, text=True, timeout=600,
+                         env=dict(os.environ, HOME=str(tmp_path), XDG_CACHE_HOME=str(tmp_path)))
+    assert run.returncode == 5, run.stderr
+    assert "ermission denied" in run.stderr
+    assert str(folder / "out") in run.stderr
+
+
+@pytest.fixture(scope="module")
+def whole_run(module_path):
+    """Folder and results of an undisturbed crack."""
+    return module_path / "out", victims.undisturbed(PROGRAM, CRACK, module_path / "out")[0]
+
+
+def test_a_good_run_is_whole(whole_run):
+    out, expected = whole_run
+    assert whole.check(out) > 10
+    kills.compare("crack", out, expected)
+
+
+def cut(path):
+    path.write_bytes(path.read_bytes()[:2 * path.stat().st_size // 3])
+
+
+def flip_a_bit(path):
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+
+
+@pytest.mark.parametrize("pattern, damage", [
+    *((name, cut) for name in ("crack.csv", "crack.json", "lattice.pvd", "lattice-0001.vtp", "near_tip.json", "checkpoints/*.h5")),
+    ("checkpoints/*.h5", flip_a_bit)])
+def test_a_file_that_is_not_whole_is_seen(pattern, damage, whole_run, tmp_path):
+    out = shutil.copytree(whole_run[0], tmp_path / "out")
+    damage(max(out.glob(pattern)))
+    with pytest.raises(whole.Broken):
+        whole.check(out)
+
+
+@pytest.mark.parametrize("change", [lambda path: path.write_text(path.read_text().replace("1", "2", 1)), lambda path: path.unlink()],
+                         ids=["another", "none"])
+def test_another_result_is_seen(change, whole_run, tmp_path):
+    out = shutil.copytree(whole_run[0], tmp_path / "out")
+    change(out / "crack.csv")
+    with pytest.raises(kills.Failure):
+        kills.compare("crack", out, whole_run[1])

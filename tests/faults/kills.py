@@ -1,5 +1,4 @@
 """Kills the program at random times, resumes it, and compares its results with those of the uninterrupted run."""
-import shutil
 import time
 
 import victims

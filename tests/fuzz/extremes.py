@@ -7,7 +7,6 @@ Allowed outcomes are the exit codes 0, 2 (the dry run ends likewise, and nothing
 timeouts, and non-finite numbers in a file of a run that ended with 0 are findings. A run is determined by seed and number alone.
 Failing runs are saved in DIR, with the command that repeats them.
 """
-import argparse
 import collections
 import json
 import math
@@ -17,7 +16,6 @@ import re
 import shutil
 import sys
 import tempfile
-import time
 
 sys.dont_write_bytecode = True
 import vtk
@@ -146,7 +144,7 @@ class Runner:
         self.work = pathlib.Path(tempfile.mkdtemp(prefix="latcon-extremes-"))
         self.server = mutate.started(options.server, self.work)
         self.counts = collections.Counter()
-        self.findings = 0
+        self.failures = []
         outcome, _, printed = self.run(["schema", str(BASE)])
         if outcome != "exit 0":
             raise SystemExit(f"no list of entries: {outcome}")
@@ -195,7 +193,7 @@ class Runner:
             finding = "exit 0, not finite: " + " ".join(found)
         self.counts[outcome] += 1
         if finding:
-            self.findings += 1
+            self.failures.append(number)
             place = pathlib.Path(self.options.failures) / f"extreme-{self.options.seed}-{number}"
             shutil.rmtree(place, ignore_errors=True)
             place.mkdir(parents=True)
@@ -209,33 +207,5 @@ class Runner:
         shutil.rmtree(self.work, ignore_errors=True)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("server")
-    parser.add_argument("--runs", type=int, default=3000)
-    parser.add_argument("--first", type=int, default=0, help="number of the first run")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", type=int, help="number of a single run")
-    parser.add_argument("--limit", type=float, default=20., help="seconds a run may take")
-    parser.add_argument("--failures", default=str(mutate.ROOT / "output" / "fuzz"))
-    options = parser.parse_args()
-    start = time.time()
-    done = 0
-    runner = Runner(options)
-    try:
-        for number in [options.only] if options.only is not None else range(options.first, options.first + options.runs):
-            runner.check(number)
-            done += 1
-            if done % 500 == 0:
-                print(f"{done} runs, {time.time() - start:.0f} s, {runner.findings} findings", flush=True)
-    except KeyboardInterrupt:
-        print("interrupted")
-    finally:
-        runner.close()
-    print(", ".join(f"{count} {outcome}" for outcome, count in sorted(runner.counts.items())), f"in {time.time() - start:.0f} s")
-    print(f"{runner.findings} findings of {done} runs, seed {options.seed}")
-    return 1 if runner.findings else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(mutate.campaign(__doc__.splitlines()[0], "runs", 3000, 20., Runner))

@@ -14,7 +14,6 @@ import os
 import pathlib
 import random
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
@@ -364,34 +363,34 @@ class Fuzzer:
         shutil.rmtree(self.work, ignore_errors=True)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def campaign(description, words, default, limit, make):
+    """Checks numbered inputs, as options choose. @param words what they are called @param make creates the object that checks one"""
+    parser = argparse.ArgumentParser(description=description)
     parser.add_argument("server")
-    parser.add_argument("--inputs", type=int, default=1000)
+    parser.add_argument(f"--{words}", dest="count", type=int, default=default)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--first", type=int, default=0, help="number of the first input")
-    parser.add_argument("--only", type=int, help="number of a single input")
-    parser.add_argument("--limit", type=float, default=60., help="seconds a run may take")
+    parser.add_argument("--first", type=int, default=0, help="number of the first")
+    parser.add_argument("--only", type=int, help="number of a single one")
+    parser.add_argument("--limit", type=float, default=limit, help="seconds that one may take")
     parser.add_argument("--failures", default=str(ROOT / "output" / "fuzz"))
     options = parser.parse_args()
     start = time.time()
     done = 0
-    fuzzer = Fuzzer(options)
+    subject = make(options)
     try:
-        numbers = [options.only] if options.only is not None else range(options.first, options.first + options.inputs)
-        for number in numbers:
-            fuzzer.check(number)
+        for number in [options.only] if options.only is not None else range(options.first, options.first + options.count):
+            subject.check(number)
             done += 1
-            if sys.stdout.isatty() or (number + 1) % 1000 == 0:
-                print(f"{number + 1} inputs, {time.time() - start:.0f} s, {len(fuzzer.failures)} findings", flush=True)
+            if sys.stdout.isatty() or done % 500 == 0:
+                print(f"{done} {words}, {time.time() - start:.0f} s, {len(subject.failures)} findings", flush=True)
     except KeyboardInterrupt:
         print("interrupted")
     finally:
-        fuzzer.close()
-    print(", ".join(f"{count} {outcome}" for outcome, count in sorted(fuzzer.counts.items())), f"in {time.time() - start:.0f} s")
-    print(f"{len(fuzzer.failures)} findings of {done} inputs, seed {options.seed}")
-    return 1 if fuzzer.failures else 0
+        subject.close()
+    print(", ".join(f"{count} {outcome}" for outcome, count in sorted(subject.counts.items())), f"in {time.time() - start:.0f} s")
+    print(f"{len(subject.failures)} findings of {done} {words}, seed {options.seed}")
+    return 1 if subject.failures else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(campaign(__doc__.splitlines()[0], "inputs", 1000, 60., Fuzzer))

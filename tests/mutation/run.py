@@ -1,224 +1,196 @@
 #!/usr/bin/python3
-"""Introduces small faults into the sources, one at a time, and checks whether a test fails.
+"""Plants small faults into the sources, one at a time, and records every test that fails: a matrix of faults and tests.
 
-tests/mutation/run installs and builds the prerequisites and calls this script. Faults are introduced into a copy; the
-checkout is not changed. A fault that no test detects is printed with its position: either a test is missing, or the fault has
-no observable effect, which equivalents.txt then records with the reason.
+tests/mutation/run installs the prerequisites and calls this script. Faults are planted in a git worktree of the last commit,
+build/mutation, with a build of its own; the checkout is not changed. A fault that no test detects is printed with its position:
+either a test is missing, or the fault has no observable effect, which equivalents.txt then records with the reason.
 """
 import argparse
 import collections
-import concurrent.futures
 import json
 import math
+import os
 import pathlib
-import shutil
+import re
 import signal
+import subprocess
 import sys
-import tempfile
 import time
 
 sys.dont_write_bytecode = True
 
 import mutants
-from equivalents import Equivalents
-from scratch import SOURCE_NAMES, Scratch
-from testing import Failed, GoogleTests, Ranks
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+TREE = ROOT / "build" / "mutation"
+BUILD = TREE / "build" / "develop"  # one object a source
 EQUIVALENTS = pathlib.Path(__file__).with_name("equivalents.txt")
-
-# Sources to mutate, by the longest matching prefix, and the test programs that should detect the faults.
+COMMANDS = ["CommandLine.KeepsItsContract", "CommandLine.RunsFiniteElementCases", "ExitCodes.AgreeWithRunJson", "NearTip.IsMeasuredAndWritten"]
+CLAIMS = ["claims_tests", "verification_tests"]
+# Tests of ctest that should detect the faults of a source, by the longest prefix of its name.
 PLACES = {
     "support/": ["support_tests"],
-    "lattice/": ["lattice_tests", "lattice_ranks_tests"],
-    "continuum/": ["continuum_tests"],
-    "continuum/damage/": ["continuum_damage_tests"],
-    "continuum/stiffness_factor.h": ["continuum_damage_tests"],
-    "verification/": ["verification_tests", "claims_tests"],
+    "lattice/": ["lattice_tests", "LatticeRanks.AgreeOn2"],
+    "continuum/": ["continuum_tests", "continuum_damage_tests"],
+    "verification/": CLAIMS,
     "verification/analysis/": ["analysis_tests"],
-    **dict.fromkeys(["verification/bridge/affine_displacement.h", "verification/bridge/bloch.", "verification/bridge/equivalent_sheet.",
-                     "verification/bridge/homogenisation.cc", "verification/bridge/plane_waves.",
-                     "verification/claims/continuum_waves.", "verification/claims/lattice_waves.", "verification/claims/order_fit.h",
-                     "verification/claims/oscillation.", "verification/claims/damage/", "verification/claims/energy/",
-                     "verification/claims/intrinsic_length/",
-                     "verification/claims/prestretch/", "verification/claims/steady_crack/",
-                     "verification/claims/wave_speeds/"], ["claims_tests", "verification_tests"]),
-    "verification/compare/": ["compare_tests"],
-    # Tested by scripts: commands, result files, messages.
-    **dict.fromkeys(["support/child_process.", "support/mpi_session.", "verification/bridge/continuum_model.",
-                     "verification/commands/", "verification/compare/difference_writer.", "verification/compare/quiet_vtk.",
-                     "verification/main.cc", "verification/output/continuum_record.", "verification/output/crack_film.",
-                     "verification/output/crack_record.", "verification/output/field_units.h", "verification/output/field_writer.",
-                     "verification/output/frame_series.", "verification/output/motion_writer.", "verification/output/near_tip_record.",
-                     "verification/output/near_tip_writer.", "verification/output/vtk_file.", "verification/linked.cc",
-                     "verification/module.cc", "verification/elements/"], []),
+    "verification/input/": ["verification_tests"],
+    "verification/output/": ["verification_tests", *COMMANDS],
+    "verification/compare/": ["compare_tests", "CommandLine.ComparesFrames"],
+    "verification/commands/": COMMANDS,
+    "verification/elements/": COMMANDS,
 }
-PROGRAMS = {"support_tests": GoogleTests(), "lattice_tests": GoogleTests(), "lattice_ranks_tests": Ranks(3),
-            "continuum_tests": GoogleTests(), "continuum_damage_tests": GoogleTests(), "analysis_tests": GoogleTests(),
-            "claims_tests": GoogleTests(), "compare_tests": GoogleTests(), "verification_tests": GoogleTests()}
+# Address space [bytes] and size of files of a test, since a fault may allocate or write without end.
+LIMITS = ["prlimit", f"--as={6 << 30}", f"--fsize={1 << 28}", "--core=0"]
 
 
-def programs_for(file):
-    """Names of the test programs that should detect faults of a source."""
+def tests_for(file):
     return PLACES[max(filter(file.startswith, PLACES), key=len)]
 
 
-def arguments():
-    parser = argparse.ArgumentParser(prog="tests/mutation/run", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--only", nargs="+", metavar="FILE", help="of these sources or folders, relative to the root; by "
-                        "default all that test programs, and not scripts alone, are to see")
-    parser.add_argument("--sample", type=int, metavar="N", help="N faults, drawn at random; by default all of them")
-    parser.add_argument("--hours", type=float, metavar="H", help="begin no further fault after H hours, those without faults included")
-    parser.add_argument("--seed", default="1", metavar="S", help="what the sample depends on (1)")
-    parser.add_argument("--list", action="store_true", help="show the faults, plant none")
-    parser.add_argument("--programs", nargs="+", choices=PROGRAMS, metavar="NAME", help="test programs to run instead of "
-                        "those of the folder that a fault is in, of " + ", ".join(PROGRAMS))
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="faults planted at once (1)")
-    parser.add_argument("--output", type=pathlib.Path, metavar="FILE", help="JSON file that gets every fault with its "
-                        "verdict; what it says was killed before is not planted again")
-    parser.add_argument("--at-least", type=float, default=0.9, metavar="SHARE", help="killed, or the exit status is 1 (0.9)")
-    parser.add_argument("--root", type=pathlib.Path, default=ROOT, help="folder of the sources")
-    parser.add_argument("--build", type=pathlib.Path, help="folder of the test programs (ROOT/build/release)")
-    options = parser.parse_args()
-    options.root = options.root.resolve()
-    options.build = options.build or options.root / "build" / "release"
-    return options
-
-
-def files(root, only):
-    """Names of the sources to mutate. @throws Failed for an unknown name"""
+def sources(root, only):
+    """Names of the sources to mutate. @throws ValueError for an unknown name"""
     known = [str(path.relative_to(root)) for folder in sorted({place.split("/")[0] for place in PLACES})
-             for path in sorted((root / folder).rglob("*")) if path.suffix in SOURCE_NAMES]
-    if not only:
-        return [file for file in known if programs_for(file)]
-    chosen = []
+             for path in sorted((root / folder).rglob("*")) if path.suffix in (".h", ".cc", ".inc")]
     for name in only:
-        inside = [file for file in known if (root / file).is_relative_to((root / name).resolve())]
-        if not inside:
-            raise Failed(f"--only {name}: neither a source of the program nor a folder with some")
-        chosen += inside
-    return list(dict.fromkeys(chosen))
+        if not any(file.startswith(name) for file in known):
+            raise ValueError(f"--only {name}: neither a source of the program nor a folder with some")
+    return [file for file in known if file.startswith(tuple(only))] if only else known
 
 
-class Report:
-    """Results so far, on the terminal and in a file."""
-
-    def __init__(self, path, equivalents, chosen, n_all):
-        self._path, self._equivalents, self._n_mutants, self._n_all = path, equivalents, len(chosen), n_all
-        self._records = []
-        self.survivors = []
-        self.rest = list(chosen)  # mutants not yet tested
-        if path and path.exists():
-            known = {(r["file"], r["line"], r["before"], r["after"]): r
-                     for r in json.loads(path.read_text(encoding="utf-8"))["mutants"] if r["outcome"] in ("killed", "no program")}
-            for mutant in chosen:
-                record = known.get((mutant.file, mutant.line, mutant.before.strip(), mutant.after.strip()))
-                if record:
-                    self._records.append(record)
-                    self.rest.remove(mutant)
-
-    def add(self, mutant, verdict, seconds):
-        outcome = verdict.outcome
-        reason = self._equivalents.reason(mutant) if outcome == "survived" else None
-        if reason:
-            outcome = "equivalent"
-        elif outcome == "survived":
-            self.survivors.append(mutant)
-        self._records.append({"file": mutant.file, "line": mutant.line, "kind": mutant.kind, "before": mutant.before.strip(),
-                              "after": mutant.after.strip(), "outcome": outcome, "by": reason or verdict.by,
-                              "seconds": round(seconds, 1)})
-        print(f"[{len(self._records)}/{self._n_mutants}] {outcome:10} {seconds:4.0f} s  {mutant.file}:{mutant.line} "
-              f"{mutant.kind}  {verdict.by}", file=sys.stderr, flush=True)
-        if self._path:
-            self._path.parent.mkdir(parents=True, exist_ok=True)
-            self._path.write_text(json.dumps({"score": self.score(), "mutants": self._records}, indent=1) + "\n",
-                                  encoding="utf-8")
-
-    def score(self, folder=""):
-        """Killed mutants over detectable ones; None if there are none. Equivalent mutants and those that do not compile are
-        excluded."""
-        outcomes = collections.Counter(r["outcome"] for r in self._records if r["file"].startswith(folder))
-        seen = outcomes["killed"] + outcomes["survived"]
-        return outcomes["killed"] / seen if seen else None
-
-    def uncertainty(self):
-        """Wilson's 95 % interval for the score of the population of which these mutants are a sample."""
-        n, p, z = sum(r["outcome"] in ("killed", "survived") for r in self._records), self.score(), 1.96
-        centre, half = p + z**2 / (2 * n), z * math.sqrt(p * (1 - p) / n + z**2 / (4 * n**2))
-        return [(centre + sign * half) / (1 + z**2 / n) for sign in (-1, 1)]
-
-    def text(self):
-        """Table of the folders and the survivors in full."""
-        lines = [f"{'folder':14}{'killed':>8}{'survived':>10}{'equivalent':>12}{'no program':>12}{'score':>8}"]
-        for folder in [*dict.fromkeys(r["file"].split("/")[0] + "/" for r in self._records), ""]:
-            outcomes = collections.Counter(r["outcome"] for r in self._records if r["file"].startswith(folder))
-            score = self.score(folder)
-            lines.append(f"{folder or 'all':14}{outcomes['killed']:8}{outcomes['survived']:10}{outcomes['equivalent']:12}"
-                         f"{outcomes['no program']:12}" + (f"{100. * score:6.1f} %" if score is not None else f"{'-':>8}"))
-        if self.score() is not None and len(self._records) < self._n_all:
-            low, high = self.uncertainty()
-            lines.append(f"{len(self._records)} of {self._n_all} faults were planted; with 95 % confidence the score of all is between "
-                         f"{100. * low:.1f} % and {100. * high:.1f} %")
-        for mutant in sorted(self.survivors, key=lambda m: (m.file, m.line)):
-            lines.append(f"\nsurvived: {mutant}")
-        return "\n".join(lines)
+def equivalents(root):
+    """Reason by (file, line, line with the fault). @throws ValueError for an incomplete entry, or one that is no fault of its file"""
+    reasons = {}
+    text = re.sub(r"^#.*\n?", "", EQUIVALENTS.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    for block in filter(None, (block.strip() for block in re.split(r"\n\s*\n", text))):
+        match = re.fullmatch(r"file: (\S+)\n- (.+)\n\+ (.+)\nreason: ((?:.|\n)+)", block)
+        if not match or (match[2], match[3]) not in {(m.before.strip(), m.after.strip()) for m in mutants.of_file(root / match[1], match[1])}:
+            raise ValueError(f"{EQUIVALENTS.name}: no entry of four lines, or no fault of the source: {block}")
+        reasons[match[1], match[2], match[3]] = " ".join(match[4].split())
+    return reasons
 
 
-def tested(chosen, options, report, deadline):
-    """Tests the mutants and records each result in the report."""
-    stages = {mutant.file: options.programs or programs_for(mutant.file) for mutant in chosen}
-    names = {name for programs in stages.values() for name in programs}
-    with tempfile.TemporaryDirectory(prefix="mutation-", dir=options.build.parent) as place:
-        folder = pathlib.Path(place)
-        scratch = Scratch(options.root, options.build, folder, {name: p for name, p in PROGRAMS.items() if name in names})
-        print("Running tests without a fault", file=sys.stderr, flush=True)
-        scratch.measure(options.build / "test_times")
+def worktree():
+    """The last commit in a worktree, configured. @return its folder"""
+    if not TREE.exists():
+        subprocess.run(["git", "-C", ROOT, "worktree", "add", "--quiet", "--detach", TREE], check=True)
+    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "HEAD"], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
+    subprocess.run(["git", "-C", TREE, "checkout", "--quiet", "--force", "--detach", commit], check=True)
+    subprocess.run(["cmake", "--preset", "develop"], cwd=TREE, stdout=subprocess.DEVNULL, check=True)
+    return TREE
 
-        def test(number):
-            start, own = time.monotonic(), folder / f"mutant-{number}"
-            if start > deadline:
-                return None
-            verdict = scratch.test(chosen[number], stages[chosen[number].file], own)
-            shutil.rmtree(own)
-            return chosen[number], verdict, time.monotonic() - start
 
-        with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-            running = [pool.submit(test, number) for number in range(len(chosen))]
-            try:
-                for done in concurrent.futures.as_completed(running):
-                    if done.result():
-                        report.add(*done.result())
-            except BaseException:
-                pool.shutdown(cancel_futures=True)
-                raise
+def built(tests):
+    """Builds the programs of tests. @return whether that was possible, and what was printed"""
+    targets = {"fork_server" if "." in test and "Ranks" not in test else "lattice_ranks_tests" if "." in test else test for test in tests}
+    done = subprocess.run(["ninja", "-C", BUILD, *sorted(targets)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    return done.returncode == 0, done.stdout
+
+
+def failing(tests, seconds):
+    """Names of all tests that fail within a time: of GoogleTest, of pytest, or of ctest for a program that crashes or does not end."""
+    command = [*LIMITS, "ctest", "--test-dir", BUILD, "--output-on-failure", "-R", f"^({'|'.join(map(re.escape, tests))})$"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True,
+                               env={**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                                    "OMPI_MCA_rmaps_base_oversubscribe": "1", "CTEST_PARALLEL_LEVEL": "2"})
+    try:
+        printed, _ = process.communicate(timeout=seconds)
+    except subprocess.TimeoutExpired:
+        return ["time limit"]
+    finally:
+        try:
+            os.killpg(process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+        process.wait()
+    single = re.findall(r"^\[  FAILED  \] ([\w./]+)|^FAILED (\S+)", printed, re.MULTILINE)
+    whole = re.findall(r"^\s*\d+ - (\S+) \(", printed, re.MULTILINE)
+    if process.returncode and not whole:
+        raise ValueError(f"ctest failed: {printed[-2000:]}")
+    return sorted({a or b for a, b in single}) or sorted(set(whole))
+
+
+def outcome(mutant, limits):
+    """Plants a fault. @return killed, survived, or no program (the fault does not compile), and the tests that fail"""
+    path, tests = TREE / mutant.file, tests_for(mutant.file)
+    text = path.read_text(encoding="utf-8")
+    path.write_text(mutant.planted(text), encoding="utf-8")
+    try:
+        if not built(tests)[0]:
+            return "no program", []
+        by = failing(tests, limits[tuple(tests)])
+        return "killed" if by else "survived", by
+    finally:
+        path.write_text(text, encoding="utf-8")
+
+
+def table(records, n_all):
+    """Scores of folders, with Wilson's interval of 95 % for all faults where these are a sample, and the survivors in full."""
+    lines = [f"{'folder':14}{'killed':>8}{'survived':>10}{'equivalent':>12}{'no program':>12}{'score':>8}"]
+    for folder in [*sorted({r["file"].split("/")[0] + "/" for r in records}), ""]:
+        n = collections.Counter(r["outcome"] for r in records if r["file"].startswith(folder))
+        lines.append(f"{folder or 'all':14}{n['killed']:8}{n['survived']:10}{n['equivalent']:12}{n['no program']:12}"
+                     f"{100. * n['killed'] / max(n['killed'] + n['survived'], 1):6.1f} %")
+    seen = n["killed"] + n["survived"]
+    if seen and len(records) < n_all:
+        p, z = n["killed"] / seen, 1.96
+        centre, half = p + z**2 / (2 * seen), z * math.sqrt(p * (1 - p) / seen + z**2 / (4 * seen**2))
+        low, high = (100. * (centre + sign * half) / (1 + z**2 / seen) for sign in (-1, 1))
+        lines.append(f"{len(records)} of {n_all} faults; with 95 % confidence the score of all is between {low:.1f} % and {high:.1f} %")
+    lines += [f"survived: {r['file']}:{r['line']}  {r['kind']}\n    - {r['before']}\n    + {r['after']}" for r in records
+              if r["outcome"] == "survived"]
+    return "\n".join(lines), n["killed"] / seen if seen else 1.
 
 
 def main():
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that the copy is deleted
-    options = arguments()
-    deadline = math.inf if options.hours is None else time.monotonic() + 3600. * options.hours
+    parser = argparse.ArgumentParser(prog="tests/mutation/run", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", nargs="+", default=[], metavar="FILE", help="of these sources or folders, relative to the root")
+    parser.add_argument("--sample", type=int, metavar="N", help="N faults, drawn at random; by default all")
+    parser.add_argument("--hours", type=float, default=math.inf, metavar="H", help="plant no further fault after H hours")
+    parser.add_argument("--seed", default="1", metavar="S", help="what the sample depends on (1)")
+    parser.add_argument("--list", action="store_true", help="show the faults, plant none")
+    parser.add_argument("--output", type=pathlib.Path, default=ROOT / "build" / "mutants.jsonl", metavar="FILE", help="gets a line of JSON for "
+                        "each fault, with the tests that fail; faults that it has are not planted again (build/mutants.jsonl)")
+    parser.add_argument("--at-least", type=float, default=0.9, metavar="SHARE", help="killed, or the exit status is 1 (0.9)")
+    options = parser.parse_args()
+    deadline = time.monotonic() + 3600. * options.hours
     try:
-        chosen = [mutant for file in files(options.root, options.only)
-                  for mutant in mutants.of_file(options.root / file, file)]
-        n_all = len(chosen)
-        if not options.list or options.sample is not None:
-            chosen = mutants.in_random_order(chosen, options.seed)[:options.sample]
+        root = ROOT if options.list else worktree()
+        chosen = [mutant for file in sources(root, options.only) for mutant in mutants.of_file(root / file, file)]
+        n_all, reasons = len(chosen), equivalents(root)
+        chosen = mutants.in_random_order(chosen, options.seed)[:options.sample]
         if options.list:
             print("\n".join(map(str, chosen)))
             return 0
-        equivalents = Equivalents.read(EQUIVALENTS)
-        if outdated := equivalents.outdated(lambda file: mutants.of_file(ROOT / file, file)):
-            raise ValueError(f"{EQUIVALENTS.name} has entries that are no faults of the sources: {outdated}")
-        report = Report(options.output, equivalents, chosen, n_all)
-        if report.rest:
-            tested(report.rest, options, report, deadline)
-    except (Failed, OSError, ValueError) as error:
+        known = {tuple(r[key] for key in ("file", "line", "before", "after")): r for r in
+                 map(json.loads, options.output.read_text(encoding="utf-8").splitlines() if options.output.exists() else [])}
+        limits, records = {}, []
+        for mutant in chosen:
+            name = (mutant.file, mutant.line, mutant.before.strip(), mutant.after.strip())
+            if name not in known:
+                if time.monotonic() > deadline:
+                    break
+                tests = tests_for(mutant.file)
+                if tuple(tests) not in limits:
+                    is_built, printed = built(tests)
+                    start = time.monotonic()
+                    if not is_built or (by := failing(tests, 3600.)):
+                        raise ValueError(f"{' '.join(tests)} without a fault: " + (" ".join(by) if is_built else printed[-2000:]))
+                    limits[tuple(tests)] = 60. + 10. * (time.monotonic() - start)
+                verdict, by = outcome(mutant, limits)
+                if verdict == "survived" and (reason := reasons.get((mutant.file, *name[2:]))):
+                    verdict, by = "equivalent", [reason]
+                known[name] = dict(zip(("file", "line", "before", "after"), name), kind=mutant.kind, outcome=verdict, by=by)
+                with options.output.open("a", encoding="utf-8") as file:
+                    file.write(json.dumps(known[name]) + "\n")
+                print(f"{verdict:10} {mutant.file}:{mutant.line} {mutant.kind}  {' '.join(by[:3])}", file=sys.stderr, flush=True)
+            records.append(known[name])
+    except (OSError, ValueError, subprocess.CalledProcessError) as error:
         print(f"tests/mutation/run: {error}", file=sys.stderr)
         return 2
-    print(report.text())
-    score = report.score()
-    return 1 if score is not None and score < options.at_least else 0
+    text, score = table(records, n_all)
+    print(text)
+    return 1 if score < options.at_least else 0
 
 
 if __name__ == "__main__":

@@ -72,59 +72,30 @@ def test_manual_has_every_command_and_option(commands):
         assert re.search(rf"(?m)^ +{code} +\S", page)
 
 
-def test_completes_commands_and_options(commands):
-    assert complete("") == commands
-    assert complete("fra") == ["fracture"]
+def test_completes_every_option(commands):
     for command in commands:
         assert set(complete(command, "--")) == options_of() | options_of(command)
-    assert complete("--out") == ["--output-dir"]
 
 
-def test_completes_claims_studies_and_files():
-    schema = json.loads(run(LATCON, "schema"))
-    assert complete("verify", "") == [claim["name"] for claim in schema["claims"]]
-    assert "energy" in complete("verify", "")
-    assert set(complete("study", "")) - {"cache"} == {path.stem for path in (SOURCE / "verification/studies").glob("*.json")}
-    assert complete("batch", "--slurm", "patt") == ["patterns"]
+@pytest.mark.parametrize("words, completions", [
+    (["fra"], "fracture"), (["--out"], "--output-dir"), (["verify", "ener"], "energy"), (["batch", "--slurm", "patt"], "patterns"),
     # Of --sweep STUDY is a case.
-    for command in ("study", "batch"):
-        assert complete(command, "--sweep", "Sheet/height=1 cm,2 cm", "fig1") == ["fig1", "fig1-wide"]
-        assert complete(command, "--sweep", "Sheet/height", "=", "1,2", "patt") == []
-    (FOLDER / "my case.prm").touch()
-    assert complete("fracture", "my") == ["my case.prm"]
-    assert complete("verify", "--case", "my") == ["my case.prm"]
-    (FOLDER / "results").mkdir()
-    assert complete("report", "re") == ["results"]
-    assert complete("init", "re") == ["results"]
-    assert complete("fracture", "fig1") == ["fig1", "fig1-wide"]
-    assert complete("fracture", "--output-dir", "re") == ["results"]
-    assert complete("fracture", "--threads", "") == []
-
-
-def test_completes_entries_of_cases():
-    assert complete("fracture", "--set", "Sheet/sp") == ["Sheet/spacing="]
-    assert complete("fracture", "--set", "Lattice/noise\\ s") == ["Lattice/noise\\ seed="]
-    assert complete("fracture", "--set", '"Lattice/noise s') == ["Lattice/noise seed="]
-    assert len(complete("fracture", "--set", "")) > 50
-    assert complete("fracture", "--set", "Sheet/spacing", "=") == []
-    assert complete("entries", "Fra") == ["Fracture"]
-    assert complete("entries", "Near\\ t") == ["Near\\ tip"]
-    assert complete("help", "comp") == ["compare"]
-    assert complete("help", "Sheet/sp") == ["Sheet/spacing"]
-
-
-def test_completes_values_of_entries():
-    entries = {f"{entry['section']}/{entry['name']}": entry for entry in json.loads(run(LATCON, "schema"))["entries"]}
-    integrators = entries["Time/integrator"]["words"]
-    assert len(integrators) > 1
+    (["study", "--sweep", "Sheet/height=1 cm,2 cm", "fig1"], "fig1|fig1-wide"), (["study", "--sweep", "Sheet/height", "=", "1,2", "patt"], ""),
+    (["fracture", "my"], "my case.prm"), (["verify", "--case", "my"], "my case.prm"), (["fracture", "--threads", ""], ""),
+    (["fracture", "--set", "Sheet/sp"], "Sheet/spacing="), (["fracture", "--set", "Lattice/noise\\ s"], "Lattice/noise\\ seed="),
+    (["fracture", "--set", '"Lattice/noise s'], "Lattice/noise seed="), (["entries", "Fra"], "Fracture"), (["help", "Sheet/sp"], "Sheet/spacing"),
     # Bash divides at "=" outside quotes, and not within.
-    assert complete("fracture", "--set", "Time/integrator", "=") == integrators
-    assert complete("fracture", "--set", "Time/integrator", "=", "run") == ["runge-kutta-chebyshev"]
-    assert complete("study", "--sweep", "Time/integrator", "=", "run") == ["runge-kutta-chebyshev"]
-    assert complete("fracture", "--set", '"Time/integrator=') == [f"Time/integrator={word}" for word in integrators]
-    assert complete("fracture", "--set", "Next-nearest\\ neighbours/present", "=", "") == ["false", "true"]
-    assert complete("fracture", "--set", '"Next-nearest neighbours/present=t') == ["Next-nearest neighbours/present=true"]
-    assert complete("fracture", "--output-dir", "=") == []
+    (["fracture", "--set", "Time/integrator", "=", "run"], "runge-kutta-chebyshev"), (["fracture", "--output-dir", "="], ""),
+    (["fracture", "--set", '"Next-nearest neighbours/present=t'], "Next-nearest neighbours/present=true")])
+def test_completes_a_word(words, completions):
+    (FOLDER / "my case.prm").touch()
+    assert "|".join(complete(*words)) == completions
+
+
+def test_completes_commands_and_claims(commands):
+    assert complete("") == commands
+    assert complete("verify", "") == [claim["name"] for claim in json.loads(run(LATCON, "schema"))["claims"]]
+    assert set(complete("study", "")) - {"cache", "my case.prm"} == {path.stem for path in (SOURCE / "verification/studies").glob("*.json")}
 
 
 def test_completes_at_the_prompt():

@@ -5,7 +5,7 @@ import types
 import numpy as np
 import pytest
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtk.util.numpy_support import vtk_to_numpy
 
 from program import CASES, frames, latcon, latcon_on_ranks, read, read_csv
 

@@ -1,10 +1,13 @@
-"""Checks that a dry run and the run refuse the same cases, with the same exit code and reason and without output files."""
+"""A dry run and the run refuse the same cases, with the same exit code and reason and without output files; and a dry run estimates
+memory and time."""
 import atexit
+import json
+import re
 
 import pytest
 
 from forked import Forked
-from program import CASES, LATCON
+from program import CASES, LATCON, latcon, latcon_on_ranks
 
 PROGRAM = Forked(LATCON)
 atexit.register(PROGRAM.close)
@@ -62,3 +65,89 @@ def test_refuses_nothing_else(out, command, entries):
     dry, run = both(out, command, entries)
     assert (dry[0], run[0]) == (0, 0), dry[1] + run[1]
     assert (out / "results.json").exists()
+
+
+def settings(*entries):
+    return [word for entry in entries for word in ("--set", entry)]
+
+
+# Dry runs estimate memory and time, and runs that exceed the memory of the machine are refused.
+def memory(*arguments):
+    """Estimated peak memory and the part that the program uses before the run, both in bytes."""
+    run = latcon(*arguments, "--dry-run")
+    assert run.returncode == 0, run.stderr
+    line, = re.findall("^# memory: .*$", run.stdout, re.M)
+    peak, own = re.fullmatch(r"# memory: about (\d+) bytes .* itself takes (\d+) bytes; available: .*", line).groups()
+    return int(peak), int(own)
+
+
+def assert_foreseen(out, *arguments):
+    """Checks the estimate to a factor of two, without the memory of the libraries."""
+    peak, own = memory(*arguments)
+    run = latcon(*arguments, "--output-dir", out, "--quiet")
+    assert run.returncode in (0, 3), run.stderr  # a ledger does not close within two steps
+    taken = json.loads((out / "run.json").read_text())["peak_memory_bytes"]
+    assert taken - own > 5e7  # large enough for a meaningful difference
+    assert peak - own > 0.5 * (taken - own)
+    assert peak - own < 2. * (taken - own)
+
+
+def test_memory_of_lattices(out):
+    fine = settings("Sheet/spacing=0.1 mm", "Time/end=2e-8", "Time/step=1e-8")
+    for command in [["lattice", CASES / "quick.prm", *settings("Lattice/solution=motion")],
+                    ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report"]]:
+        assert_foreseen(out, *command, *fine)
+
+
+def test_memory_of_finite_elements(out):
+    gradient = settings("Continuum/gradient=lattice", "Continuum/cells x=24", "Continuum/cells y=24")
+    for entries in [gradient, gradient + settings("Continuum/direct limit=0"), settings("Continuum/cells x=64",
+                                                                                        "Continuum/cells y=64")]:
+        assert_foreseen(out, "continuum", CASES / "quick.prm", *entries)
+
+
+def test_what_does_not_fit_is_refused_with_its_number(out):
+    for command, *entries in [("lattice", "Sheet/length=40 m", "Sheet/height=25 m"),
+                              ("fracture", "Sheet/length=40 m", "Sheet/height=25 m"),
+                              ("continuum", "Continuum/cells x=8192", "Continuum/cells y=8192")]:
+        for mode in [[], ["--dry-run"]]:
+            run = latcon(command, CASES / "quick.prm", "--output-dir", out, *settings(*entries), *mode)
+            assert run.returncode == 2, run.stderr
+            assert re.search(r"not enough memory: .* about \d{11,} bytes", run.stderr)
+            assert not out.exists()
+            assert ("# memory: about" in run.stdout) == bool(mode)
+    run = latcon("continuum", CASES / "quick.prm", *settings("Continuum/cells x=65536", "Continuum/cells y=65536"))
+    assert run.returncode == 2
+    assert "unknowns" in run.stderr
+
+
+def test_ranks_say_it_once():
+    for command in ["verify", "lattice", "continuum", "fracture"]:
+        case = ["--case", CASES / "quick.prm"] if command == "verify" else [CASES / "quick.prm"]
+        run = latcon_on_ranks(2, command, *case, "--dry-run", "--threads", 1)
+        assert run.returncode == 0, run.stderr
+        assert run.stdout.count("subsection Sheet") == 1
+        for line in ["# time: about", "# memory: about"]:
+            assert run.stdout.count(line) == (0 if command == "verify" else 1)
+
+
+def test_dry_run_says_the_time_at_most():
+    """A crack that does not run takes all steps, a thousand times as many as one that runs."""
+    run = latcon("fracture", CASES / "quick.prm", "--dry-run", "--threads", 1, "--set", "Time/end=10 s")
+    steps = re.search(r"s, (\S+) steps at most, (\S+) if the crack is as fast", run.stdout)
+    seconds = re.search(r"^# time: about (\S+) s on 1 threads of each rank, at most (\S+) s if", run.stdout, re.M)
+    ratio = float(steps[1]) / float(steps[2])
+    assert ratio > 1000.
+    # Both times are rounded up to whole seconds.
+    assert float(seconds[1]) * ratio * (1. + 1e-4) >= float(seconds[2]) - 1.
+    assert float(seconds[2]) > (float(seconds[1]) - 1.) * ratio
+
+
+def test_sizes_steps_and_time_are_there():
+    run = latcon("fracture", CASES / "quick.prm", "--dry-run", "--threads", 1)
+    for wanted in [r"^# lattice: 3032 sites, 17572 bonds, 6064 unknowns", r"^# time step: .* s, \d+ steps at most",
+                   r"^# time: about \d+ s on 1 threads"]:
+        assert re.search(re.compile(wanted, re.M), run.stdout)
+    run = latcon("continuum", CASES / "quick.prm", "--dry-run", *settings("Continuum/solution=motion"))
+    for wanted in [r"^# continuum: 96 cells, 1850 unknowns", r"^# motion: time step .* s, \d+ steps", r"^# time: about"]:
+        assert re.search(re.compile(wanted, re.M), run.stdout)

@@ -8,57 +8,33 @@ import os
 import pathlib
 import re
 import shutil
-import tempfile
-import unittest
 
-from program import CASES, FULL, LATCON, TemporaryFolder, claims_where, latcon, latcon_on_ranks
+import pytest
+
+from program import CASES, FULL, LATCON, claims_where, latcon, latcon_on_ranks
 from verdicts_fixture import REFUSED, TINY
 
-# Runs of the fixture, or, where each test checks the claims, of this script: the same, with nearest neighbours alone.
-MADE = None if FULL else pathlib.Path(os.environ["LATCON_VERDICTS"])
-NEAREST = ["--set", "Next-nearest neighbours/present=false"] if FULL else []
+NEAREST = ["--set", "Next-nearest neighbours/present=false"] if FULL else []  # faster to check
 # Seconds each. What they show is shown of the store and of its keys by verdict_store_test.cc, of the claims by claims_test.cc.
-in_full = unittest.skipUnless(FULL, "in full only")
+in_full = pytest.mark.skipif(not FULL, reason="in full only")
 
 
-class WithStore(TemporaryFolder):
-    """Every test starts with the cached verdicts of one verified run, in its own cache."""
-    MADE_RUN, MORE, EXPECT = "accepted", NEAREST, 0  # its name in the fixture, its entries, its exit code
+class Gate:
+    """A verified run, and cracks that start with a copy of the cache that it left."""
 
-    @classmethod
-    def setUpClass(cls):
-        cls.shared = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.shared.cleanup)
-        before = cls("stored")
-        if MADE:
-            before.out, before.cache = MADE / "runs" / cls.MADE_RUN, pathlib.Path(cls.shared.name) / "cache"
-            cls.first_text, cls.first = (before.out / "log.txt").read_text(), json.loads((before.out / "run.json").read_text())
-            (before.cache / "latcon" / "verdicts").mkdir(parents=True, mode=0o700)
-            for key in ("verification", "verification_of_program"):
-                if key in cls.first:  # a case that is refused does not reach the program's
-                    name = f"{cls.first[key]['hash']}.json"
-                    shutil.copy2(MADE / "latcon" / "verdicts" / name, before.cache / "latcon" / "verdicts" / name)
-            cls.first_rows, cls.first_cache = before.claims(), before.cache
-            return
-        before.folder = pathlib.Path(cls.shared.name)
-        before.out, before.cache = before.folder / "out", before.folder / "cache"
-        before.environment = dict(os.environ, XDG_CACHE_HOME=str(before.cache))
-        cls.first_text, cls.first = before.fracture(expect=cls.EXPECT)
-        cls.first_rows, cls.first_cache = before.claims(), before.cache
+    def __init__(self, folder, out, cache, more):
+        self.folder, self.out, self.cache, self.more = folder, out, cache, more
+        self.environment = dict(os.environ, XDG_CACHE_HOME=str(cache))
 
-    def setUp(self):
-        super().setUp()
-        self.cache = self.folder / "cache"
-        shutil.copytree(self.first_cache, self.cache)
-        self.environment = dict(os.environ, XDG_CACHE_HOME=str(self.cache))
-
-    def fracture(self, *arguments, expect=0, ranks=1):
+    def fracture(self, *arguments, expect=0, ranks=1, program=LATCON, report=("--no-report",)):
         """Runs the crack. @return (what was printed, run.json)"""
-        words = ["fracture", CASES / "quick.prm", "--no-report", "--output-dir", self.out, *TINY, *self.MORE, *arguments]
-        run = (latcon(*words, env=self.environment) if ranks == 1
-               else latcon_on_ranks(ranks, *words, env=self.environment))
-        self.assertEqual(run.returncode, expect, run.stdout + run.stderr)
+        words = ["fracture", CASES / "quick.prm", *report, "--output-dir", self.out, *TINY, *self.more, *arguments]
+        run = (latcon(*words, env=self.environment, program=program) if ranks == 1 else latcon_on_ranks(ranks, *words, env=self.environment))
+        assert run.returncode == expect, run.stdout + run.stderr
         return run.stdout + run.stderr, json.loads((self.out / "run.json").read_text())
+
+    def is_reused(self, *arguments, **keywords):
+        return self.fracture(*arguments, **keywords)[1]["verification"]["reused"]
 
     def stored(self):
         """Files of the cache with verdicts on a case."""
@@ -70,180 +46,198 @@ class WithStore(TemporaryFolder):
         rows = json.loads((self.out / "results.json").read_text())["claims"]
         return [row for row in rows if row["claim"] != "fracture"]
 
-
-class Gate(WithStore):
-    def test_second_run_reuses_and_says_so(self):
-        first, rows = self.first, self.first_rows
-        self.assertIn("claims: checked now", self.first_text)
-        self.assertEqual(list(first["verification"]), ["hash", "reused", "checked_at"])
-        self.assertFalse(first["verification"]["reused"])
-        self.assertEqual(list(first["verification_of_program"]), ["hash", "reused", "checked_at"])
-        self.assertEqual({row["claim"] for row in rows}, claims_where("before_fracture"))
-
-        text, second = self.fracture()
-        when, key = first["verification"]["checked_at"], first["verification"]["hash"]
-        self.assertIn(f"claims: verdicts of {when}, hash {key}, reused", text)
-        self.assertEqual(second["verification"], {"hash": key, "reused": True, "checked_at": when})
-        self.assertTrue(second["verification_of_program"]["reused"])
-        self.assertEqual(self.claims(), rows)
-        self.assertEqual([path.name for path in self.stored()], [f"{key}.json"])
-
-    def test_file_says_what_its_verdicts_hold_for(self):
-        run = self.first
-        document = json.loads(self.stored()[0].read_text())
-        self.assertEqual(hashlib.sha256(document["inputs"].encode()).hexdigest(), run["verification"]["hash"])
-        with open(LATCON, "rb") as file:
-            self.assertIn(f"program={hashlib.sha256(file.read()).hexdigest()}\n", document["inputs"])
-        self.assertIn("\nNearest neighbours/b=150000\n", document["inputs"])
-        self.assertEqual(document["checked_at"], run["verification"]["checked_at"])
-        for key in ("version", "git_commit", "hardware_threads"):
-            self.assertIn(key, document)
-
-    @in_full
-    def test_constant_changed_in_its_last_digits_is_checked(self):
-        text, run = self.fracture("--set", f"Material/density={944 * (1 + 1e-12)!r}")
-        self.assertIn("claims: checked now", text)
-        self.assertNotEqual(run["verification"]["hash"], self.first["verification"]["hash"])
-        self.assertEqual(len(self.stored()), 2)
-
-    @in_full
-    def test_verdict_on_the_program_serves_all_cases(self):
-        _, run = self.fracture("--set", "Material/density=947")
-        self.assertFalse(run["verification"]["reused"])
-        self.assertEqual(run["verification_of_program"]["hash"], self.first["verification_of_program"]["hash"])
-        self.assertTrue(run["verification_of_program"]["reused"])
-
-    def test_what_no_claim_reads_may_change(self):
-        text, _ = self.fracture("--set", "Lattice/noise seed=7", "--set", "Fracture/breaking stretch=3.1")
-        self.assertIn("reused", text)
-
-    @in_full
-    def test_another_program_checks_again(self):
-        other = self.folder / "latcon"
-        with open(LATCON, "rb") as file:
-            other.write_bytes(file.read() + b"\0")  # behind its end, which is not read
-        other.chmod(0o755)
-        words = ["fracture", CASES / "quick.prm", "--no-report", "--output-dir", self.out, *TINY, *self.MORE]
-        self.assertEqual(latcon(*words, program=other, env=self.environment).returncode, 0)
-        second = json.loads((self.out / "run.json").read_text())
-        self.assertFalse(second["verification"]["reused"])
-        self.assertNotEqual(second["verification"]["hash"], self.first["verification"]["hash"])
-
-    @in_full
-    def test_damaged_file_is_said_and_replaced(self):
-        path = self.stored()[0]
-        whole = path.read_text()
-        path.write_text(whole[:len(whole) // 2])
-        text, run = self.fracture()
-        self.assertIn(f"{path} is not used: ", text)
-        self.assertIn("is not used", run["verification"]["note"])
-        self.assertFalse(run["verification"]["reused"])
-        self.assertTrue(self.fracture()[1]["verification"]["reused"])
-        self.assertEqual(self.stored(), [path])
-
-    @in_full
-    def test_file_of_other_inputs_under_this_name_is_not_used(self):
-        right = self.stored()[0]
-        self.fracture("--set", "Material/density=950")
-        wrong = next(path for path in self.stored() if path != right)
-        right.write_bytes(wrong.read_bytes())
-        text, run = self.fracture()
-        self.assertIn("it belongs to other inputs", text)
-        self.assertFalse(run["verification"]["reused"])
-
-    @in_full
-    def test_file_that_others_may_have_written_is_not_used(self):
-        path = self.stored()[0]
-        mode = path.stat().st_mode & 0o777
-        self.assertEqual(mode & 0o022, 0)
-        path.chmod(mode | 0o020)
-        printed, info = self.fracture()
-        self.assertIn("is not used: it belongs to another user, or others may write it", printed)
-        self.assertFalse(info["verification"]["reused"])
-        path = self.stored()[0]  # rewritten
-        self.assertEqual(path.stat().st_mode & 0o022, 0)
-        self.assertTrue(self.fracture()[1]["verification"]["reused"])
-        if FULL and os.geteuid() == 0:
-            os.chown(path, 65534, 65534)
-            printed, info = self.fracture()
-            self.assertIn("is not used: it belongs to another user", printed)
-            self.assertFalse(info["verification"]["reused"])
-
-    @in_full
-    def test_link_in_place_of_a_file_is_not_used(self):
-        path = self.stored()[0]
-        path.rename(self.folder / "elsewhere.json")
-        path.symlink_to(self.folder / "elsewhere.json")
-        self.assertFalse(self.fracture()[1]["verification"]["reused"])
-
-    @in_full
-    def test_laws_that_no_crack_uses_do_not_refuse_it(self):
-        # The fitted law has its best ratio at the end of the interval, or a given one loses ellipticity on the way.
-        for settings, word in ((["Loading/strain x=0", "Fracture/breaking stretch=3.2"], "at the end of the search interval"),
-                               (["Continuum/ratio=-0.2"], "the law loses ellipticity")):
-            self.fracture(*(word for setting in settings for word in ("--set", setting)))
-            rows = [row for row in self.claims() if word in row["quantity"]]
-            self.assertEqual([row["verdict"] for row in rows], ["reported"], word)
-            self.assertGreater(sum(row["verdict"] == "holds" for row in self.claims()), 30)
-
-    @in_full
-    def test_store_that_cannot_be_written_stops_nothing(self):
-        shutil.rmtree(self.cache)
-        self.cache.write_text("in the way")
-        text, run = self.fracture()
-        self.assertIn("the verdicts are not kept: cannot write ", text)
-        self.assertIn("not kept", run["verification"]["note"])
-        self.assertTrue((self.out / "crack.json").exists())
-
-    @in_full
-    def test_without_a_home_nothing_is_kept(self):
-        for name in ("XDG_CACHE_HOME", "HOME"):
-            self.environment.pop(name, None)
-        text, run = self.fracture()
-        self.assertIn("no verdicts are kept", text)
-        self.assertFalse(run["verification"]["reused"])
-
-    @in_full
-    def test_all_ranks_decide_alike(self):
-        self.assertFalse(self.fracture(ranks=2)[1]["verification"]["reused"])  # one rank has another hash
-        self.assertEqual(len(self.stored()), 2)
-        self.assertTrue(self.fracture(ranks=2)[1]["verification"]["reused"])
-
-    def test_skipped_verification_neither_checks_nor_stores(self):
-        before = self.stored()
-        _, run = self.fracture("--skip-verification", "--set", "Material/density=951")
-        self.assertNotIn("verification", run)
-        self.assertEqual(self.stored(), before)
+    def take(self, run):
+        """Remembers the verified run with these results."""
+        self.first_text, self.first = (run / "log.txt").read_text(), json.loads((run / "run.json").read_text())
+        self.first_rows = [row for row in json.loads((run / "results.json").read_text())["claims"] if row["claim"] != "fracture"]
 
 
-class Refused(WithStore):
-    """A crack whose claims fail."""
-    MADE_RUN, MORE, EXPECT = "refused", REFUSED, 3
+@pytest.fixture(scope="module")
+def verified(module_path):
+    """Folder of the verified run of a name, and its cache: that of the fixture, or where each test checks the claims, of this file."""
+    made = {}
 
-    def test_failure_is_refused_also_from_the_store(self):
-        self.assertFalse(self.first["verification"]["reused"])
-        text, run = self.fracture(expect=3)
-        self.assertTrue(run["verification"]["reused"])
-        self.assertIn("no crack was run", text)
-        self.assertIn(f"delete {self.stored()[0]}", text)
-        self.assertTrue(any(row["verdict"] == "fails" for row in self.claims()))
-        self.assertFalse([path.name for path in self.out.iterdir() if re.match(r"crack|broken|lattice", path.name)])
+    def run(name, more, expect):
+        if not FULL:
+            made_by_fixture = pathlib.Path(os.environ["LATCON_VERDICTS"])
+            return made_by_fixture / "runs" / name, made_by_fixture
+        if name not in made:
+            gate = Gate(module_path, module_path / name, module_path / f"{name}-cache", more)
+            gate.fracture(expect=expect)
+            made[name] = gate.out, gate.cache
+        return made[name]
+    return run
 
-    def test_last_lines_name_the_rows_that_fail(self):
-        text, run = self.fracture(expect=3)
-        failing = [row for row in self.claims() if row["verdict"] == "fails"]
-        self.assertEqual(run["exit_code"], 3)
-        lines = text.splitlines()
-        self.assertIn(f"{len(failing)} of ", lines[-len(failing) - 1])
-        for row, line in zip(failing, lines[-len(failing):]):
-            self.assertIn(f"{row['claim']}: {row['quantity']}: error {row['error']:.3g}, tolerance", line)
-        self.assertTrue(any("it buckles in waves of kd = " in line for line in lines[-len(failing):]), text)
-        self.assertLess(len(lines), 16)
 
-    def test_refused_crack_leaves_its_report(self):
-        words = ["fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, *self.MORE]
-        run = latcon(*words, env=self.environment)
-        self.assertEqual(run.returncode, 3)
-        self.assertIn(f"{self.out}/report.html\n", run.stdout)
-        page = (self.out / "report.html").read_text()
-        self.assertIn("it buckles", page)
+def started(tmp_path, verified, name, more, expect):
+    run, cache = verified(name, more, expect)
+    gate = Gate(tmp_path, tmp_path / "out", tmp_path / "cache", more)
+    gate.take(run)
+    (gate.cache / "latcon" / "verdicts").mkdir(parents=True, mode=0o700)
+    for key in {"verification", "verification_of_program"} & set(gate.first):  # a case that is refused does not reach the program's
+        name = f"{gate.first[key]['hash']}.json"
+        shutil.copy2(cache / "latcon" / "verdicts" / name, gate.cache / "latcon" / "verdicts" / name)
+    return gate
+
+
+@pytest.fixture
+def accepted(tmp_path, verified):
+    return started(tmp_path, verified, "accepted", NEAREST, 0)
+
+
+@pytest.fixture
+def refused(tmp_path, verified):
+    return started(tmp_path, verified, "refused", REFUSED, 3)
+
+
+def test_second_run_reuses_and_says_so(accepted):
+    first, rows = accepted.first, accepted.first_rows
+    assert "claims: checked now" in accepted.first_text
+    for key in ("verification", "verification_of_program"):
+        assert list(first[key]) == ["hash", "reused", "checked_at"]
+    assert not first["verification"]["reused"]
+    assert {row["claim"] for row in rows} == claims_where("before_fracture")
+    text, second = accepted.fracture()
+    when, key = first["verification"]["checked_at"], first["verification"]["hash"]
+    assert f"claims: verdicts of {when}, hash {key}, reused" in text
+    assert second["verification"] == {"hash": key, "reused": True, "checked_at": when}
+    assert second["verification_of_program"]["reused"]
+    assert accepted.claims() == rows
+    assert [path.name for path in accepted.stored()] == [f"{key}.json"]
+
+
+def test_file_says_what_its_verdicts_hold_for(accepted):
+    document = json.loads(accepted.stored()[0].read_text())
+    assert hashlib.sha256(document["inputs"].encode()).hexdigest() == accepted.first["verification"]["hash"]
+    assert f"program={hashlib.sha256(pathlib.Path(LATCON).read_bytes()).hexdigest()}\n" in document["inputs"]
+    assert "\nNearest neighbours/b=150000\n" in document["inputs"]
+    assert document["checked_at"] == accepted.first["verification"]["checked_at"]
+    assert {"version", "git_commit", "hardware_threads"} <= set(document)
+
+
+def test_what_no_claim_reads_may_change(accepted):
+    assert accepted.is_reused("--set", "Lattice/noise seed=7", "--set", "Fracture/breaking stretch=3.1")
+
+
+def test_skipped_verification_neither_checks_nor_stores(accepted):
+    before = accepted.stored()
+    assert "verification" not in accepted.fracture("--skip-verification", "--set", "Material/density=951")[1]
+    assert accepted.stored() == before
+
+
+@in_full
+def test_constant_changed_in_its_last_digits_is_checked_and_the_program_is_not(accepted):
+    _, run = accepted.fracture("--set", f"Material/density={944 * (1 + 1e-12)!r}")
+    assert not run["verification"]["reused"]
+    assert run["verification"]["hash"] != accepted.first["verification"]["hash"]
+    assert len(accepted.stored()) == 2
+    assert run["verification_of_program"] == {**accepted.first["verification_of_program"], "reused": True}
+
+
+@in_full
+def test_another_program_checks_again(accepted):
+    other = accepted.folder / "latcon"
+    other.write_bytes(pathlib.Path(LATCON).read_bytes() + b"\0")  # behind its end, which is not read
+    other.chmod(0o755)
+    assert not accepted.is_reused(program=other)
+
+
+def halve(accepted, path):
+    path.write_text(path.read_text()[:path.stat().st_size // 2])
+
+
+def exchange(accepted, path):
+    accepted.fracture("--set", "Material/density=950")
+    wrong, = (other for other in accepted.stored() if other != path)
+    shutil.move(wrong, path)
+
+
+def open_to_others(accepted, path):
+    path.chmod(path.stat().st_mode & 0o777 | 0o020)
+
+
+def give_away(accepted, path):
+    if os.geteuid():
+        pytest.skip("only root can")
+    os.chown(path, 65534, 65534)
+
+
+def link(accepted, path):
+    path.rename(accepted.folder / "elsewhere.json")
+    path.symlink_to(accepted.folder / "elsewhere.json")
+
+
+def empty(accepted, path):
+    """Leaves one row, with the checksum that belongs to it."""
+    document = json.loads(path.read_text())
+    del document["checksum"]
+    document["results"]["claims"] = [next(row for row in document["results"]["claims"] if row["verdict"] == "holds")]
+    text = json.dumps(document, separators=(",", ":"), ensure_ascii=False)
+    document["checksum"] = hashlib.sha256(text.encode()).hexdigest()
+    path.write_text(json.dumps(document, separators=(",", ":"), ensure_ascii=False))
+
+
+@in_full
+@pytest.mark.parametrize("damage, reason", [
+    (halve, ""), (exchange, "it belongs to other inputs"), (open_to_others, "it belongs to another user, or others may write it"),
+    (give_away, "it belongs to another user"), (link, ""), (empty, "the claim [a-z-]+ judged nothing")])
+def test_file_that_cannot_be_trusted_is_said_and_replaced(accepted, damage, reason):
+    path, = accepted.stored()
+    assert path.stat().st_mode & 0o022 == 0
+    damage(accepted, path)
+    text, run = accepted.fracture()
+    assert re.search(f"{path} is not used: .*{reason}", text)
+    assert "is not used" in run["verification"]["note"]
+    assert not run["verification"]["reused"]
+    assert accepted.is_reused()
+    assert path.stat().st_mode & 0o022 == 0
+
+
+# The fitted law has its best ratio at the end of the interval, or a given one loses ellipticity on the way.
+@in_full
+@pytest.mark.parametrize("settings, words", [
+    (["Loading/strain x=0", "Fracture/breaking stretch=3.2"], "at the end of the search interval"),
+    (["Continuum/ratio=-0.2"], "the law loses ellipticity")])
+def test_laws_that_no_crack_uses_do_not_refuse_it(accepted, settings, words):
+    accepted.fracture(*(word for setting in settings for word in ("--set", setting)))
+    assert [row["verdict"] for row in accepted.claims() if words in row["quantity"]] == ["reported"]
+    assert sum(row["verdict"] == "holds" for row in accepted.claims()) > 30
+
+
+@in_full
+def test_store_that_cannot_be_written_stops_nothing(accepted):
+    shutil.rmtree(accepted.cache)
+    accepted.cache.write_text("in the way")
+    text, run = accepted.fracture()
+    assert "the verdicts are not kept: cannot write " in text
+    assert "not kept" in run["verification"]["note"]
+    for name in ("XDG_CACHE_HOME", "HOME"):
+        accepted.environment.pop(name, None)
+    assert "no verdicts are kept" in accepted.fracture()[0]
+
+
+@in_full
+def test_all_ranks_decide_alike(accepted):
+    assert not accepted.is_reused(ranks=2)  # one rank has another hash
+    assert len(accepted.stored()) == 2
+    assert accepted.is_reused(ranks=2)
+
+
+def test_failure_is_refused_also_from_the_store(refused):
+    assert not refused.first["verification"]["reused"]
+    text, run = refused.fracture(expect=3, report=())
+    assert run["verification"]["reused"]
+    assert run["exit_code"] == 3
+    assert "no crack was run" in text
+    assert f"delete {refused.stored()[0]}" in text
+    assert not [path.name for path in refused.out.iterdir() if re.match(r"crack|broken|lattice", path.name)]
+    # The last lines name the rows that fail; before them is the report, which says so too.
+    failing = [row for row in refused.claims() if row["verdict"] == "fails"]
+    lines = text.splitlines()
+    first = next(number for number, line in enumerate(lines) if f"{len(failing)} of " in line)
+    for row, line in zip(failing, lines[first + 1:], strict=False):
+        assert f"{row['claim']}: {row['quantity']}: error {row['error']:.3g}, tolerance" in line
+    assert any("it buckles in waves of kd = " in line for line in lines[first:])
+    assert len(lines) < 18
+    assert f"{refused.out}/report.html\n" in text
+    assert "it buckles" in (refused.out / "report.html").read_text()

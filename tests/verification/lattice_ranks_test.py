@@ -1,7 +1,7 @@
 """Checks that a distributed lattice writes the same files as one rank, byte for byte, and that an error of one rank ends all."""
 import json
 
-from program import CASES, latcon, latcon_on_ranks, read_csv
+from program import CASES, expect_same, files, latcon, latcon_on_ranks, read_csv
 
 # All features: toughening, contact, an absorbing end, samples near the tip, frames.
 STRIP = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report", "--quiet", "--threads", "1", "--set",
@@ -11,21 +11,13 @@ MOTION = ["lattice", CASES / "quick.prm", "--quiet", "--threads", "1", "--set", 
           "Time/end=0.1 ms", "--set", "Output/frame interval=0.05 ms"]
 
 
-def files(folder):
-    """Contents of files by name, without those that record the circumstances of the run."""
-    return {path.name: path.read_bytes() for path in folder.iterdir() if path.name not in ("run.json", "log.txt")}
-
-
 def compare(tmp_path, arguments, ranks):
     alone = latcon(*arguments, "--output-dir", tmp_path / "alone")
     assert alone.returncode in (0, 3), alone.stderr
     expected = files(tmp_path / "alone")
     run = latcon_on_ranks(ranks, *arguments, "--output-dir", tmp_path / "shared")
     assert run.returncode == alone.returncode, run.stderr
-    found = files(tmp_path / "shared")
-    assert sorted(found) == sorted(expected)
-    for name, content in expected.items():
-        assert found[name] == content, f"{name} on {ranks} ranks"
+    expect_same(tmp_path / "shared", expected)
     return expected
 
 

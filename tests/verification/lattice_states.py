@@ -17,7 +17,7 @@ def spring(modulus):
 
 class Lattice:
     """A lattice of one bond law at the stretches (x, y), eq. (W.1): for each bond direction its unit vector N, length l,
-    weight c = A0 l / V and stiffness matrix h."""
+    weight c = A0 l / V, force over stretch and stiffness matrix h."""
 
     def __init__(self, law, shells, x, y):
         force, stiffness = law
@@ -30,7 +30,8 @@ class Lattice:
         stretch = np.linalg.norm(bond, axis=1)
         n = bond / stretch[:, np.newaxis]
         along = n[:, :, np.newaxis] * n[:, np.newaxis, :]
-        axial, pull = np.array([[stiffness(s), force(s) / s] for s in stretch]).T[:, :, np.newaxis, np.newaxis]
+        self.pull = np.array([force(s) / s for s in stretch])
+        axial, pull = np.array([stiffness(s) for s in stretch])[:, np.newaxis, np.newaxis], self.pull[:, np.newaxis, np.newaxis]
         self.h = axial * along + pull * (np.eye(2) - along)
 
     def smallest_squared_speed(self):

@@ -8,10 +8,11 @@ import pytest
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader
 
+from lattice_states import SECTIONS, Lattice, rod
 from program import CASES, latcon, read, read_csv
 
-S, S_NNN = 0.72, 0.81  # area factors of the shells
-STRIP = ["--set", f"Nearest neighbours/area factor={S}", "--set", f"Next-nearest neighbours/area factor={S_NNN}",
+LOADED = Lattice(rod(1e5, 1.5e5), "NN+NNN", 2.3, 2.8)  # the sheet ahead of the crack
+STRIP = ["--set", f"Nearest neighbours/area factor={SECTIONS['nearest']}", "--set", f"Next-nearest neighbours/area factor={SECTIONS['next']}",
          "--skip-verification", "--quiet", "--threads", "1", "--set", "Sheet/length=4 cm", "--set",
          "Sheet/height=2.5 cm", "--set", "Output/frame interval=0", "--set", "Near tip/ahead=8 mm", "--set",
          "Near tip/behind=10 mm", "--set", "Near tip/half height=9 mm"]
@@ -48,16 +49,8 @@ def test_writes_numbers_and_fields(once):
     crack = json.loads((once.out / "crack.json").read_text())
     ratio = crack["speed_lagrangian"] / found["shear_speed"]
     assert found["speed_over_shear"] == pytest.approx(ratio, abs=5e-13)
-    # The speed of long shear waves along x, from the bonds by hand (theory-comparison.md, eqs. (W.1) and (W.2)).
-    stiffness = 0.
-    for s, length, angles in ((S, 1., (0, 60, 120)), (S_NNN, math.sqrt(3), (30, 90, 150))):
-        for angle in angles:
-            X, Y = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-            stretch = math.hypot(2.3 * X, 2.8 * Y)
-            force = 1e5 * (stretch - stretch**-2) + 1.5e5 * (1 - stretch**-3)
-            tangent = 1e5 * (1 + 2 * stretch**-3) + 4.5e5 * stretch**-4
-            across = (2.8 * Y / stretch)**2  # of the bond's direction, squared
-            stiffness += s * length * X**2 * (tangent * across + force / stretch * (1 - across))
+    # The speed of long shear waves along x, from the bonds (theory-comparison.md, eqs. (W.1) and (W.2)).
+    stiffness = (LOADED.weight * LOADED.N[:, 0]**2 * LOADED.h[:, 1, 1]).sum()
     assert found["shear_speed"] / math.sqrt(stiffness / 944) == pytest.approx(1, abs=1e-6)
 
     for name in ("near_tip.vti", "near_tip_folded.vti"):
@@ -96,14 +89,8 @@ def test_measures_of_samples_and_of_their_mean_agree_in_kind(once):
         assert found[name] <= 1
     assert found["negative_zone_depth_of_samples"] < 0
     assert found["negative_zone_area_of_samples"] > 0
-    # Cauchy sigma_yy of the loaded sheet, from the bonds by hand: P_yY F_yy / det F, V = (sqrt3 / 2) d^2.
-    stress = 0.
-    for s, length, angles in ((S, 1., (0, 60, 120)), (S_NNN, math.sqrt(3), (30, 90, 150))):
-        for angle in angles:
-            X, Y = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-            stretch = math.hypot(2.3 * X, 2.8 * Y)
-            force = 1e5 * (stretch - stretch**-2) + 1.5e5 * (1 - stretch**-3)
-            stress += s * length * force * 2.8 * Y / stretch * Y / 2.3
+    # Cauchy sigma_yy of the loaded sheet, from the bonds: P_yY F_yy / det F.
+    stress = (LOADED.weight * LOADED.pull * LOADED.N[:, 1]**2).sum() * 2.8 / 2.3
     assert found["far_opening_stress"] / stress == pytest.approx(1, abs=1e-12)
     for radius in ("4d", "8d"):
         assert found[f"opening_stress_concentration_{radius}"] * stress == (

@@ -75,6 +75,19 @@ def read(reader, path):
     return reader.GetOutput()
 
 
+def files(folder):
+    """Results of a run by name: its files without those that record its circumstances and without the report and its pictures."""
+    return {path.name: path.read_bytes() for path in folder.iterdir()
+            if path.is_file() and path.name not in ("run.json", "log.txt", "report.html") and path.suffix != ".png"}
+
+
+def expect_same(folder, expected):
+    """Checks that a folder has these results, byte for byte."""
+    found = files(folder)
+    assert sorted(found) == sorted(expected)
+    assert [name for name, content in expected.items() if found[name] != content] == [], folder.name
+
+
 # Time [s] after which a process is assumed never to start, even on a busy machine.
 BEGINS = 600
 

@@ -406,7 +406,7 @@ class SizeTest(unittest.TestCase):
             self.assertIsNone(sheet_data.sheet_data(run, motion, most // 20))
 
     def test_fig_1_is_below_8_megabytes(self):
-        """Checks the limits of a page. For Fig. 1 see fig1_test.py, which checks that its pictures are below 3 MB."""
+        """Checks the limits of a page. For Fig. 1 see published_test.py, which checks that its pictures are below 3 MB."""
         scripts = sum(path.stat().st_size for path in [*(report.Path(report.__file__).parent).glob("*.js"),
                                                        report.Path("/usr/share/javascript/dygraphs/dygraph.min.js")])
         self.assertLess(sheet_data.LARGEST_SHEETS + scripts + 3_000_000, 8_000_000)

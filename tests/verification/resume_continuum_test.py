@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 import pytest
 
-from program import CASES, LATCON, children, frames, latcon, latcon_on_ranks, read_csv
+from program import CASES, LATCON, children, expect_same, files, frames, latcon, latcon_on_ranks, read_csv
 
 # Waves in a layer between held faces: 20 steps, checkpoints after every third, six frames.
 WAVES = {
@@ -37,10 +37,6 @@ ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROO
 def command(case, folder, *more):
     entries = [word for key, value in case.items() for word in ("--set", f"{key}={value}")]
     return ["continuum", str(CASES / "shear_layer.prm"), *entries, "--output-dir", str(folder), *more]
-
-
-def files(folder):
-    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file() and path.name not in ("run.json", "log.txt")}
 
 
 def checkpoints(out):
@@ -98,10 +94,7 @@ def goes_on_to_the_same_files(out, tmp_path, which, case=WAVES, ranks=1, victim=
     run = run_to_end(out, "--resume", case=case, ranks=ranks)
     assert f"step {step}," in run.stdout
     assert run_json(out)["resumed_from"]["step"] == step
-    found = files(out)
-    assert sorted(found) == sorted(expected)
-    for name, content in expected.items():
-        assert found[name] == content, name
+    expect_same(out, expected)
     return status
 
 

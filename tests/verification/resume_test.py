@@ -16,15 +16,11 @@ import h5py
 import pytest
 import vtk
 
-from program import CASES, LATCON, frames, latcon, latcon_on_ranks, read, read_csv
+from program import CASES, LATCON, expect_same, files, frames, latcon, latcon_on_ranks, read, read_csv
 
 STRIP = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report", "--set", "Sheet/length=2.5 cm", "--set",
          "Sheet/height=1.25 cm", "--set", "Output/frame interval=0.1 ms", "--set", "Checkpoints/steps=160", "--set",
          "Time/end=0.8 ms", "--set", "Near tip/interval=0"]
-
-
-def files(folder):
-    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file() and path.name not in ("run.json", "log.txt")}
 
 
 @pytest.fixture(scope="module")
@@ -100,10 +96,7 @@ def test_stopped_run_goes_on_with_the_same_bits_on_other_ranks_and_threads(ended
     assert run.returncode in (0, 3), run.stderr
     assert f"step {step}," in run.stdout
     assert step_told(out) == step
-    found = files(out)
-    assert sorted(found) == sorted(expected)
-    for name, content in expected.items():
-        assert found[name] == content, name
+    expect_same(out, expected)
 
 
 def test_checkpoint_of_another_program_is_named(out, tmp_path, ended):
@@ -174,7 +167,7 @@ def test_older_one_is_taken_if_the_last_is_damaged(out, ended):
     run = run_to_end(out, "--resume")
     assert f"{last}: it was changed or damaged" in run.stderr
     assert str(first) in run.stdout
-    assert files(out) == expected
+    expect_same(out, expected)
 
 
 def test_nothing_is_touched_if_none_can_be_used(out, ended):

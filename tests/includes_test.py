@@ -1,0 +1,183 @@
+"""Includes and namespaces follow docs/architecture.md: a folder includes only those that ALLOWED gives it, and no library that
+LIBRARIES keeps from it or HEADERS from its headers; a source opens no namespace of another folder than its own; and
+docs/pictures/includes.svg is the graph of the sources (`cmake --build build/release --target include_graph` draws it).
+"""
+import collections
+import html
+import pathlib
+import re
+import subprocess
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
+SIDES = ("support", "lattice/bonds", "lattice", "continuum", "continuum/damage")
+MODELS = (*SIDES, "verification/input", "verification/bridge", "verification/analysis", "verification/output")
+# The folders that a folder may include in addition to itself, each below those that it includes; `claims/*` is the folder of any one claim.
+ALLOWED = {
+    "support": (),
+    "lattice/bonds": ("support",),
+    "lattice": ("support", "lattice/bonds"),
+    "continuum": ("support",),
+    "continuum/damage": ("support", "continuum"),
+    "verification/analysis": ("support", "lattice/bonds", "lattice"),
+    "verification/input": ("support", "lattice/bonds", "lattice"),
+    "verification/bridge": (*SIDES, "verification/input"),
+    "verification/output": (*SIDES, "verification/input", "verification/bridge", "verification/analysis"),
+    "verification/compare": ("support", "verification/output"),
+    "verification/resources": MODELS,
+    "verification/claims": MODELS,
+    "verification/claims/*": (*MODELS, "verification/claims"),
+    "verification/elements": ("support", "verification/input", "verification/claims"),
+    "verification/commands": (*MODELS, "verification/compare", "verification/resources", "verification/claims",
+                              "verification/elements"),
+    # The program, and the module with the finite elements.
+    "verification": ("support", "continuum", "verification/bridge", "verification/commands", "verification/elements"),
+    # Tests of one side must not depend on the other either.
+    "tests/support": ("support",),
+    "tests/lattice": ("support", "lattice/bonds", "lattice", "tests/support"),
+    "tests/continuum": ("support", "continuum", "continuum/damage", "tests/support"),
+    "tests/verification/analysis": ("support", "lattice", "verification/analysis", "tests/support", "tests/lattice"),
+}
+# Folders that may not include a library, by the beginning of its headers' names.
+LIBRARIES = {
+    "deal.II/": ("support", "verification/input", "verification/compare", "verification/elements", "verification/resources",
+                 "lattice/bonds", "lattice", "verification/analysis", "tests/support", "tests/lattice", "tests/verification/analysis"),
+    "vtk": [folder for folder in ALLOWED if folder not in ("verification/output", "verification/compare")],
+}
+# Headers below the folder of the first column that may include a library: every source that includes them pays for it.
+HEADERS = [
+    ("verification/", "deal.II/", ("verification/bridge/affine_displacement.h", "verification/bridge/field_function.h",
+                                   "verification/claims/wave_sheet.h")),
+    ("", "vtk", ("verification/compare/frame.h", "verification/compare/quiet_vtk.h", "verification/output/field_units.h")),
+    ("", "nlohmann/json.hpp", ()),
+    *[("", f"Eigen/{part}", ()) for part in ("Cholesky", "Dense", "Eigen", "LU", "QR", "SVD")],
+]
+NAMESPACE = re.compile(r"^namespace latcon::(\w+)", re.MULTILINE)
+# Opened to declare names of another folder, whose header is not included.
+DECLARATION = re.compile(r"^namespace latcon::\w+\n\{\n(?:(?:class|struct) \w+;\n)+\}", re.MULTILINE)
+ROOTS = ("support", "lattice", "continuum", "verification", "tests")
+PICTURE = "docs/pictures/includes.svg"
+# Side of the comparison, by the start of a folder's name, and its colour.
+COLOURS = {"support": "#cfe3c0", "lattice": "#f4c7a1", "continuum": "#a9cbe8", "verification": "#e4e4e4"}
+
+
+def included(text):
+    """Names of the included files, without steps up and down."""
+    return ["/".join(part for part in pathlib.PurePosixPath(name).parts if part not in ("..", "."))
+            for name in INCLUDE.findall(text)]
+
+
+def rule(folder):
+    """Key of ALLOWED for a folder, None if there is none."""
+    return folder if folder in ALLOWED else "verification/claims/*" if folder.startswith("verification/claims/") else None
+
+
+def violations(folder, text):
+    """Includes in `text` that a source in `folder` may not have."""
+    own, found = rule(folder), []
+    for name in included(text):
+        other = str(pathlib.PurePosixPath(name).parent)
+        is_ours = other not in (folder, ".") and other.split("/")[0] in ROOTS
+        if is_ours and (rule(other) or other) not in ALLOWED[own]:
+            found.append(name)
+        if any(name.startswith(library) and own in folders for library, folders in LIBRARIES.items()):
+            found.append(name)
+    return found
+
+
+def heavy(path, text):
+    """Libraries that the header with this name, relative to the root, may not include."""
+    if not path.endswith(".h") or path.startswith("tests/"):
+        return []
+    return [name for name in included(text) for below, library, headers in HEADERS
+            if path.startswith(below) and name.startswith(library) and path not in headers]
+
+
+def namespace(folder):
+    """The namespace, below latcon, of the sources in a folder."""
+    parts = folder.split("/")
+    return parts[1] if parts[0] == "verification" else parts[0]
+
+
+def wrong_namespaces(folder, text):
+    """Namespaces other than its folder's that a source opens."""
+    return [name for name in NAMESPACE.findall(DECLARATION.sub("", text)) if name != namespace(folder)]
+
+
+def sources():
+    """Pairs (folder, source) of all sources with a rule; folders are relative to the root."""
+    files = sorted(path for top in ROOTS for path in (ROOT / top).rglob("*") if path.suffix in (".h", ".cc", ".inc"))
+    return [(folder, path) for path in files if rule(folder := str(path.relative_to(ROOT).parent))]
+
+
+def graph():
+    """Pairs (folder, included folder) without those implied by others; main.cc, which is above all folders, is omitted."""
+    after = collections.defaultdict(set)
+    for folder, path in sources():
+        if folder != "verification" and folder.split("/")[0] != "tests":
+            others = {rule(str(pathlib.PurePosixPath(name).parent)) for name in included(path.read_text())}
+            after[rule(folder)] |= others - {None, rule(folder)}
+
+    def reached(folder):
+        return after[folder].union(*(reached(other) for other in after[folder]))
+
+    return {(folder, other) for folder in list(after) for other in after[folder]
+            if not any(other in reached(step) for step in set(after[folder]))}
+
+
+def drawing(pairs):
+    """The graph in Graphviz' language."""
+    lines = ["digraph {", 'graph [bgcolor=white, nodesep=0.25, ranksep=0.4]', 'edge [color="#555555", arrowsize=0.7]',
+             'node [shape=box, style="filled,rounded", fontname="DejaVu Sans", fontsize=11, penwidth=0]']
+    for folder in sorted({folder for pair in pairs for folder in pair}):
+        lines.append(f'"{folder}" [label="{folder}/", fillcolor="{COLOURS[folder.split("/")[0]]}"]')
+    lines += [f'"{folder}" -> "{other}"' for folder, other in sorted(pairs)]
+    return "\n".join([*lines, "}"])
+
+
+def drawn(picture):
+    """The pairs that a picture made by Graphviz shows."""
+    titles = re.findall(r"<title>(.*?)</title>", picture)
+    return {tuple(html.unescape(title).split("->")) for title in titles if "->" in html.unescape(title)}
+
+
+@pytest.mark.parametrize("folder, line", [
+    ("support", "#include <deal.II/base/mpi.h>"), ("lattice", '#include "continuum/material.h"'), ("lattice", "#include <vtkPolyData.h>"),
+    ("lattice", '  #  include "../verification/input/case.h"'), ("continuum", '#include "continuum/damage/damage_field.h"'),
+    ("verification/claims/energy", '#include "verification/claims/prestretch/cut_study.h"'),
+    ("tests/verification/analysis", '#include "tests/verification/claims/subjects.h"')])
+def test_a_forbidden_include_is_seen(folder, line):
+    assert len(violations(folder, line)) == 1
+
+
+def test_folders_are_listed_above_those_that_include_them():
+    order = list(ALLOWED)
+    assert [folder for folder, others in ALLOWED.items() if any(order.index(other) >= order.index(folder) for other in others)] == []
+
+
+def test_every_source_has_a_rule():
+    checked = sources()
+    assert {rule(folder) for folder, _ in checked} == set(ALLOWED)
+    every = {path for top in ROOTS[:-1] for path in (ROOT / top).rglob("*.cc")}
+    assert every - {path for _, path in checked} == set()
+
+
+def test_sources_include_what_their_folder_may():
+    assert [f"{path.relative_to(ROOT)} includes {name}" for folder, path in sources() for text in [path.read_text()]
+            for name in violations(folder, text) + heavy(str(path.relative_to(ROOT)), text)] == []
+
+
+def test_namespaces_follow_folders():
+    assert [f"{path.relative_to(ROOT)} opens latcon::{name}" for folder, path in sources()
+            if folder != "verification" and folder.split("/")[0] != "tests" for name in wrong_namespaces(folder, path.read_text())] == []
+
+
+def test_picture_is_the_graph_of_the_sources():
+    assert drawn((ROOT / PICTURE).read_text()) == graph()
+
+
+if __name__ == "__main__":
+    (ROOT / PICTURE).write_text(subprocess.run(["dot", "-Tsvg"], input=drawing(graph()), capture_output=True, text=True, check=True).stdout)

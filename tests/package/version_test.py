@@ -1,0 +1,14 @@
+"""Checks that every file that repeats the version has that of CMakeLists.txt."""
+import re
+
+import pytest
+
+from folders import SOURCE
+
+
+@pytest.mark.parametrize("file, pattern", [
+    ("CITATION.cff", r"^version: (\S+)"), ("python/pyproject.toml", r'^version = "(\S+)"'), ("packaging/conda/meta.yaml", r"^  version: (\S+)"),
+    ("packaging/spack/packages/latcon/package.py", r'^    version\("(\S+)"\)')])
+def test_version_is_that_of_the_project(file, pattern):
+    version, = re.findall(r"project\(latcon VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text())
+    assert re.findall(pattern, (SOURCE / file).read_text(), re.M) == [version]
