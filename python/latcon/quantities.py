@@ -51,8 +51,17 @@ class Value:
             return "not determined"
         if not self.uncertainty > 0:
             return f"{self.value:.6g}{unit}"
-        digits = max(0, 1 - math.floor(math.log10(self.uncertainty)))  # two digits of the uncertainty
-        return f"{self.value:.{digits}f} ± {self.uncertainty:.{digits}f}{unit}"
+        return number_text(self.value, self.uncertainty) + unit
+
+
+def number_text(value: float, uncertainty: float | None, sign: str = "±") -> str:
+    """Formats a number to the digits that its uncertainty justifies, "20.06 ± 0.23"; four digits if there is none."""
+    if uncertainty is None or not 1e-12 * abs(value) < uncertainty < math.inf:  # of equal values it is round-off
+        return f"{value:.4g}"
+    digits = min(max(1 - math.floor(math.log10(uncertainty)), 0), 12)
+    if digits > 6 and abs(value) < 1e-3:
+        return f"{value:.1e} {sign} {uncertainty:.1e}"
+    return f"{value:.{digits}f} {sign} {uncertainty:.{digits}f}"
 
 
 class Quantities(Mapping[str, Any]):

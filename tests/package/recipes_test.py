@@ -33,7 +33,7 @@ NAMES = {
     "libmuparser-dev": ("muparser", "muparser"),
     "nlohmann-json3-dev": ("nlohmann-json", "nlohmann_json"), "python3": ("python", "python"),
     "python3-numpy": ("py-numpy", "numpy"), "python3-matplotlib": ("py-matplotlib", "matplotlib-base"),
-    "python3-scipy": ("py-scipy", "scipy"),
+    "python3-scipy": ("py-scipy", "scipy"), "python3-jinja2": ("py-jinja2", "jinja2"),
     "python3-pil": None,  # of the report, as below
     "python3-vtk9": None,  # the modules come with VTK
     "libjs-dygraphs": None,  # the report is drawn by Debian's interpreter

@@ -133,7 +133,7 @@ Json shipped_case_files()
 
 } // namespace
 
-support::ExitCode print_schema(const input::Options &options)
+nlohmann::ordered_json schema_document(const input::Options &options)
 {
   input::Case input;
   input::Parameters parameters;
@@ -170,6 +170,12 @@ support::ExitCode print_schema(const input::Options &options)
     document["case"] = {
       {"file", options.case_file}, {"values", std::move(values)}, {"resolved", parameters.resolved_text()}};
   }
+  return document;
+}
+
+support::ExitCode print_schema(const input::Options &options)
+{
+  const Json document = schema_document(options);
   if (support::is_root_rank())
     std::cout << document.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
   return support::ExitCode::done;

@@ -6,11 +6,10 @@ namespace
 {
 
 // Adds a measured quantity and its uncertainty, one standard deviation.
-void add_measured(std::vector<CrackQuantity> &all, const std::string &name, const std::string &unit,
-                  CrackQuantity::Source source)
+void add_measured(std::vector<CrackQuantity> &all, const std::string &name, const std::string &unit)
 {
-  all.push_back({name, unit, source});
-  all.push_back({name + "_uncertainty", unit, source});
+  all.push_back({name, unit});
+  all.push_back({name + "_uncertainty", unit});
 }
 
 // Lengths that are recorded in m and divided by d.
@@ -18,33 +17,32 @@ const std::vector<std::string> lengths_of_oscillation{"wavelength", "amplitude",
 
 std::vector<CrackQuantity> all_quantities()
 {
-  using Source = CrackQuantity::Source;
-  std::vector<CrackQuantity> all{{"zeta", "1", Source::derived}};
+  std::vector<CrackQuantity> all{{"zeta", "1"}};
   for (const char *name : {"speed_lagrangian", "speed_laboratory"})
-    add_measured(all, name, "m/s", Source::crack);
+    add_measured(all, name, "m/s");
   for (const std::string &name : lengths_of_oscillation)
   {
-    add_measured(all, name, "m", Source::crack);
-    add_measured(all, name + "_over_d", "1", Source::derived);
+    add_measured(all, name, "m");
+    add_measured(all, name + "_over_d", "1");
   }
-  all.push_back({"periods", "1", Source::crack});
-  all.push_back({"window_begin", "m", Source::crack});
-  all.push_back({"window_end", "m", Source::crack});
-  all.push_back({"branched_fraction", "1", Source::crack});
+  all.push_back({"periods", "1"});
+  all.push_back({"window_begin", "m"});
+  all.push_back({"window_end", "m"});
+  all.push_back({"branched_fraction", "1"});
   for (const char *name :
        {"bonds_broken", "detached_sites", "detached_fragments", "largest_fragment", "overstretched_bonds"})
-    all.push_back({name, "1", Source::crack});
-  all.push_back({"bridged_length", "m", Source::crack});
-  all.push_back({"flank_damage_depth", "m", Source::crack});
-  all.push_back({"flank_damage_share", "1", Source::crack});
-  all.push_back({"end_time", "s", Source::crack});
-  all.push_back({"energy_imbalance", "1", Source::crack});
+    all.push_back({name, "1"});
+  all.push_back({"bridged_length", "m"});
+  all.push_back({"flank_damage_depth", "m"});
+  all.push_back({"flank_damage_share", "1"});
+  all.push_back({"end_time", "s"});
+  all.push_back({"energy_imbalance", "1"});
   const auto add_near_tip = [&all](const std::vector<std::string> &names, const std::string &unit)
   {
     for (const std::string &name : names)
-      add_measured(all, name, unit, Source::near_tip);
+      add_measured(all, name, unit);
   };
-  all.push_back({"samples", "1", Source::near_tip});
+  all.push_back({"samples", "1"});
   add_near_tip({"negative_zone_area", "negative_zone_area_of_samples"}, "m^2");
   add_near_tip({"negative_zone_length", "negative_zone_distance"}, "m");
   add_near_tip({"negative_zone_depth", "negative_zone_depth_of_samples"}, "m/s");
@@ -67,8 +65,8 @@ std::vector<CrackQuantity> all_quantities()
   add_near_tip({"wedge_angle"}, "degrees");
   add_near_tip({"speed_over_shear", "speed_over_longitudinal"}, "1");
   for (const std::string name : {"shear_speed", "longitudinal_speed", "process_zone_speed"})
-    all.push_back({name, "m/s", Source::near_tip});
-  all.push_back({"far_opening_stress", "Pa", Source::near_tip});
+    all.push_back({name, "m/s"});
+  all.push_back({"far_opening_stress", "Pa"});
   return all;
 }
 
@@ -78,14 +76,6 @@ const std::vector<CrackQuantity> &crack_quantities()
 {
   static const std::vector<CrackQuantity> all = all_quantities();
   return all;
-}
-
-void add_derived(Values &values, const double spacing)
-{
-  for (const std::string &name : lengths_of_oscillation)
-    for (const std::string suffix : {"", "_uncertainty"})
-      if (const auto found = values.find(name + suffix); found != values.end())
-        values[name + "_over_d" + suffix] = found->second / spacing;
 }
 
 } // namespace latcon::output
