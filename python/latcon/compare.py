@@ -16,11 +16,11 @@ from .errors import UnreadableFile
 from .files import read_columns, read_json
 from .folder import write_file
 from .frames import Floats
+from .quantities import quantity_text
 from .study.outcome import measured_values, unfit_rows
 from .study.output import shortest
 from .study.program import CLAIM_FAILED, DONE, InputError, Program
 from .study.record import Printed, Record, draw_page, json_text
-from .study.seeds import quantity_text
 
 SIDES = ("first", "second")
 _PARTS = ("first", "first_uncertainty", "second", "second_uncertainty", "difference", "difference_over_uncertainty")

@@ -89,7 +89,7 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
 support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen); ///< `latcon batch`
 support::ExitCode print_schema(const input::Options &options);                            ///< `latcon schema`
 
-/// Declared entries, shipped cases, claims and quantities as JSON; with a case its values.
+/// Declared entries, shipped cases and claims as JSON; with a case its values.
 [[nodiscard]] nlohmann::ordered_json schema_document(const input::Options &options);
 /// `latcon resolve`: a line of JSON with the schema, cores and record of the program, then one for each line on
 /// standard input, which asks for the base case to be read ("base"), for the nearest of some words, numbers in SI

@@ -9,7 +9,6 @@
 #include "verification/commands/command.h"
 #include "verification/input/case_text.h"
 #include "verification/input/shipped_cases.h"
-#include "verification/output/crack_quantities.h"
 
 namespace latcon::commands
 {
@@ -152,8 +151,6 @@ nlohmann::ordered_json schema_document(const input::Options &options)
   document["version"] = output::program_version();
   document["git_commit"] = output::git_commit();
   document["cases"] = shipped_case_files();
-  for (const output::CrackQuantity &quantity : output::crack_quantities())
-    document["quantities"][quantity.name] = quantity.unit;
   const lattice::Material material = input.material();
   for (const claims::Claim &claim : claim_registry())
     document["claims"].push_back({{"name", claim.name},

@@ -3,13 +3,12 @@ import numpy as np
 
 from ..errors import UnreadableFile
 from ..files import read_json
-from ..quantities import number_text
+from ..quantities import SHOWN, number_text
 from .pages import FAILED, has_dygraphs, plain_row, write_page
 from .live import rows_of, thinned
 from .motion import read_motion
 from .runs import has_rows, read_run
 from .sheet_data import LARGEST_SHEETS, sheet_data, sheet_of
-from .study_quantities import SHOWN
 
 SIDES = ("first", "second")
 

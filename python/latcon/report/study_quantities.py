@@ -1,4 +1,5 @@
 """Quantities and entries shown for a study: customary units, and names in tables and on axes."""
+from ..quantities import SHOWN
 
 # Columns of the tables of runs: quantity, scale to the unit shown, head.
 MEASURED = (("speed_lagrangian", 1, "speed\n[m/s]"), ("wavelength", 100, "wavelength\n[cm]"),
@@ -20,8 +21,6 @@ AGAINST = {"zeta": (1, "ζ = (η/a) / (d √(ρ/a))"), "Sheet/spacing": (1e3, "d
            "Sheet/length": (100, "length of the sheet, undeformed [cm]"),
            "Lattice/noise amplitude": (1, "noise amplitude / d"),
            "Loading/strain x": (1, "strain x, along the crack"), "Loading/strain y": (1, "strain y, across the crack")}
-# Scale and unit shown for each SI unit, for quantities that are in no table.
-SHOWN = {"m": (100, "cm"), "m^2": (1e6, "mm²"), "s": (1e3, "ms"), "degrees": (1, "°")}
 
 
 def quantity_axis(quantity, unit):

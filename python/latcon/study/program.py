@@ -11,6 +11,7 @@ from types import FrameType
 from typing import Any
 
 from ..errors import LatconError
+from ..quantities import RECORDED
 from ..schema import Schema
 from .pool import end_with_parent, environment_of_children
 
@@ -113,7 +114,7 @@ class Program:
         facts = self._answer()
         self.entries = Schema(facts)
         self.sorted_entries = sorted(self.entries)
-        self.units = self.entries.quantities
+        self.units = RECORDED
         self.cores: int = facts["cores"]
         self.facts: dict[str, Any] = facts["record"] | {"command_line": options["arguments"]}
 

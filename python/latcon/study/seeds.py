@@ -7,12 +7,10 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-from ..quantities import number_text
+from ..quantities import quantity_text
 from .outcome import RunOutcome, RunState
 from .statistical_tests import SampleMean
 from .study_file import UNDECIDED
-
-_DISPLAY = {"m": (1e2, " cm"), "m^2": (1e6, " mm²"), "s": (1e3, " ms"), "degrees": (1.0, "°"), "1": (1.0, "")}
 
 
 @dataclasses.dataclass
@@ -122,15 +120,3 @@ def _sum(values: Sequence[float]) -> float:
     for value in values:
         total += value
     return total
-
-
-def quantity_text(value: float, deviation: float | None, unit: str) -> str:
-    """Formats a number with a readable unit: lengths in cm, areas in mm^2, times in ms.
-
-    Parameters
-    ----------
-    deviation
-        Standard deviation in the same unit, or None.
-    """
-    scale, shown = _DISPLAY.get(unit, (1.0, " " + unit))
-    return number_text(scale * value, None if deviation is None else scale * deviation) + shown
