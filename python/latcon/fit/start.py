@@ -109,8 +109,8 @@ class _Search:
             done = len(self._record.evaluations)
             rate = (time.monotonic() - begin) / max(1, done - held)
             misfits = tabulate(self._problem, list(self._record.evaluations.values())).misfits
-            indicator.line(f"{done} of {self._evaluations} points, least misfit {misfits.min():.4g}, "
-                           f"{max(0, self._evaluations - done) * rate:.0f} s left")
+            left = max(0, self._evaluations - done) * rate
+            indicator.line(f"{done} of {self._evaluations} points, least misfit {misfits.min():.4g}, {left:.0f} s left", left)
         try:
             for first in range(0, self._evaluations, self._batch):
                 numbers = range(first, min(first + self._batch, self._evaluations))
