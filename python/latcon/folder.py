@@ -6,15 +6,18 @@ import fcntl
 import os
 import re
 import secrets
+import shutil
 import socket
 import stat
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from .study.program import InputError
 
 EARLIER = "earlier-run"  # folder of the files of the run before
 _LOCK, _LIST = ".latcon.lock", ".latcon-files"
+# Runs of a killed process get SIGTERM, and write a checkpoint before they end [s].
+_PATIENCE_WITH_ORPHANS = 10.0
 _held: dict[str, FolderLock] = {}  # by absolute path
 
 
@@ -87,6 +90,28 @@ class FolderLock:
             if os.fstat(self._file).st_nlink == 1:
                 os.ftruncate(self._file, 0)
                 os.pwrite(self._file, os.fsencode(owner), 0)
+
+
+def prepare_run(folder: str, is_begun: Callable[[], bool]) -> bool:
+    """Prepares the output directory of a run: keeps one in which a run has begun, which continues, and removes any other.
+
+    Returns whether it continues. A run that a killed process left there is waited for.
+    """
+    if os.path.exists(folder):  # released at once: the run locks it for itself
+        FolderLock(folder, _PATIENCE_WITH_ORPHANS).release()
+    continues = os.path.exists(folder) and is_begun()
+    if not continues:
+        remove(folder)
+    os.makedirs(folder, exist_ok=True)
+    return continues
+
+
+def remove(path: str) -> None:
+    """Removes a folder with all that is in it, a file or a link, if it exists."""
+    if os.path.islink(path) or os.path.isfile(path):
+        os.remove(path)
+    elif os.path.exists(path):
+        shutil.rmtree(path)
 
 
 def require_in_place(place: str) -> None:

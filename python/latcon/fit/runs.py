@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping
 from ..case import Case
 from ..commands import run_words
 from ..errors import BadInput, ClaimFailed, Interrupted, OutputFailed, error_of
-from ..folder import FolderLock
+from ..folder import prepare_run
 from ..program import find_program
 from ..results import Run, open_run
 from ..study.outcome import content, last_words, unfit_rows
@@ -19,9 +19,6 @@ from .record import Evaluation, Outcome, Record
 
 Point = tuple[int, str, Mapping[str, float]]
 """Number, stage and values of a point to evaluate."""
-
-# The runs of a killed fit get SIGTERM, and write a checkpoint before they end [s].
-_PATIENCE_WITH_ORPHANS = 60.0
 
 
 def evaluate(record: Record, points: Iterable[Point], workers: int, keep_runs: bool, added: Callable[[], None]
@@ -50,13 +47,9 @@ def evaluate(record: Record, points: Iterable[Point], workers: int, keep_runs: b
     def start(job: int) -> tuple[list[str], str]:
         number, seed = jobs[job]
         case, place = case_of(problem, record.case, wanted[number][1], seed), folder(job)
-        if place.exists():
-            FolderLock(os.fspath(place), _PATIENCE_WITH_ORPHANS).release()
-            if content(f"{place}/case.prm") != case.text():
-                shutil.rmtree(place)
+        continues = prepare_run(os.fspath(place), lambda: content(f"{place}/case.prm") == case.text())
         options = [] if problem.command != "fracture" else ["--no-report", *["--skip-verification"] * problem.skip_verification]
-        words = run_words(problem.command, case, place, 1, place.exists(), False, options)
-        place.mkdir(parents=True, exist_ok=True)
+        words = run_words(problem.command, case, place, 1, continues, False, options)
         return [os.fspath(find_program()), *words], f"{place}/log.txt"
 
     def ended(job: int, status: int) -> None:

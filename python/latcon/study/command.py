@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import signal
 import time
 import traceback
@@ -10,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..compare import compare_cracks
-from ..folder import FolderLock, require_in_place, write_file
+from ..folder import FolderLock, prepare_run, remove, require_in_place, write_file
 from .batch import write_batch
 from .outcome import RunOutcome, RunState, is_begun, is_finished, read_outcome
 from .output import StudyResults, plan_table, result_table, study_csv, study_json
@@ -24,8 +23,6 @@ from .requested import read_requested_study, require_folder_of, require_no_refin
 from .shard import PLAN_FILE, parse_shard, plan_difference, plan_text, runs_of_shard
 from .table import judge_study
 
-# The runs of a killed study get SIGTERM, and write a checkpoint before they end [s].
-_PATIENCE_WITH_ORPHANS = 10.0
 # Each shard holds the lock of the study for the time that writing its plan takes [s].
 _PATIENCE_WITH_SHARDS = 60.0
 
@@ -184,12 +181,7 @@ class _StudyCommand:
             # A run that failed, as on a full disk, may have checkpoints.
             if self.resume and not os.path.exists(part) and is_begun(program, planned, whole, self.case(planned), skip):
                 os.rename(whole, part)
-            if os.path.exists(part):  # released at once: the run locks it for itself
-                FolderLock(part, _PATIENCE_WITH_ORPHANS).release()
-            continues = self.resume and is_begun(program, planned, part, self.case(planned), skip)
-            if not continues:
-                _remove(part)
-            os.makedirs(part, exist_ok=True)
+            continues = prepare_run(part, lambda: self.resume and is_begun(program, planned, part, self.case(planned), skip))
             command = [program.executable, "fracture", self.case(planned), "--side", planned.side, "--output-dir", part,
                        "--threads", "1", "--no-report"]
             command += ["--skip-verification"] * skip + ["--resume"] * continues + ["--yes"] * self.options["yes"]
@@ -200,7 +192,7 @@ class _StudyCommand:
             planned = plan[jobs[job]]
             whole = self.folder(planned)
             require_in_place(whole)
-            _remove(whole)
+            remove(whole)
             os.rename(whole + ".part", whole)
             outcome = outcomes[jobs[job]] = read_outcome(program, planned, whole, status)
             n_ended += 1
@@ -295,10 +287,3 @@ class _StudyCommand:
             named = ", ".join(missing[:8]) + (", ..." if len(missing) > 8 else "")
             raise InputError(f"--collect: {len(missing)} of {len(self.results.plan)} runs have not been run to their end by this "
                              f"program: {named}; run their shards again")
-
-
-def _remove(folder: str) -> None:
-    if os.path.islink(folder) or os.path.isfile(folder):
-        os.remove(folder)
-    elif os.path.exists(folder):
-        shutil.rmtree(folder)
