@@ -181,7 +181,7 @@ def read_vtk(path: pathlib.Path, reader_name: str, only: Collection[str] | None 
         from vtkmodules.vtkCommonCore import vtkObject
     except ImportError as error:
         raise LatconError("frames need the Python package vtk (Debian: python3-vtk9)") from error
-    if not path.is_file():
+    if not path.exists():
         raise UnreadableFile(path, "no such file")
     vtkObject.GlobalWarningDisplayOff()  # the callers report damaged files
     reader = getattr(vtkIOXML, reader_name)()
