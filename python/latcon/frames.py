@@ -123,6 +123,34 @@ def read_frame(path: pathlib.Path, time: float, only: Collection[str] | None = N
     return Frame(time, reference, position, ends, stretch, fields, bond_fields, {**cell_units, **units})
 
 
+def write_frame(path: str | os.PathLike[str], frame: Frame) -> None:
+    """Writes a frame of a lattice as a `.vtp` file, which :func:`read_frame` reads."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+    sheet, points, sites, bonds = vtkPolyData(), vtkPoints(), vtkCellArray(), vtkCellArray()
+    points.SetData(numpy_to_vtk(np.column_stack((frame.reference, np.zeros(len(frame.reference)))), deep=True))
+    sites.SetData(1, numpy_to_vtkIdTypeArray(np.arange(len(frame.reference)), deep=True))
+    bonds.SetData(2, numpy_to_vtkIdTypeArray(frame.bonds.astype(np.int64).ravel(), deep=True))
+    sheet.SetPoints(points)
+    sheet.SetVerts(sites)
+    sheet.SetLines(bonds)
+    of_cells: dict[str, Any] = {"stretch": np.concatenate((np.ones(len(frame.reference)), frame.stretch))}  # vertices first
+    of_sites: dict[str, Any] = frame.fields
+    for data, fields in ((sheet.GetPointData(), of_sites), (sheet.GetCellData(), of_cells)):
+        for name, values in fields.items():
+            three = np.column_stack((values, np.zeros(len(values)))) if values.ndim == 2 else values
+            array = numpy_to_vtk(np.ascontiguousarray(three), deep=True)
+            array.SetName(name)
+            data.AddArray(array)
+    writer = vtkXMLPolyDataWriter()
+    writer.SetFileName(os.fsencode(path))
+    writer.SetInputData(sheet)
+    if not writer.Write():
+        raise OSError(5, "the frame cannot be written", os.fspath(path))
+
+
 def read_near_tip(path: pathlib.Path) -> xarray.Dataset:
     """Reads the mean fields around the tip, `near_tip.vti` or `near_tip_folded.vti`.
 
