@@ -14,7 +14,8 @@ def main(words: list[str]) -> int:
     if words[:1] == ["--parsed"]:
         from .study.command import run
         # Paths, which need not be UTF-8, then the other options.
-        return run(words[1], dict(zip(("output_dir", "program", "data", "study" if words[1] != "compare" else "first", "second"), words[2:-1])) | json.loads(words[-1]))
+        paths = ("output_dir", "program", "data", *(("first", "second") if words[1] == "compare" else ("study",)))
+        return run(words[1], dict(zip(paths, words[2:-1])) | json.loads(words[-1]))
     try:
         program = os.fspath(find_program())
     except ProgramNotFound as error:

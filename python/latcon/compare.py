@@ -98,15 +98,16 @@ def _read_crack(program: Program, name: str) -> _Crack:
     if (back := np.flatnonzero(np.diff(path["X"]) < 0)).size:
         raise InputError(f"{folder / 'crack.csv'}: line {back[0] + 3}: damaged: X decreases")
     # Cracks of the lattice do not name their side.
-    return _Crack(name, pattern, crack.get("side", "lattice"), unfit_rows(info) if info["exit_code"] == CLAIM_FAILED else "", entries,
-                  spacing, measured_values(program, name, spacing), path["X"], path["Y"])
+    side, problem = crack.get("side", "lattice"), unfit_rows(info) if info["exit_code"] == CLAIM_FAILED else ""
+    return _Crack(name, pattern, side, problem, entries, spacing, measured_values(program, name, spacing), path["X"], path["Y"])
 
 
 def _quantities(program: Program, cracks: Sequence[_Crack]) -> list[dict[str, Any]]:
     """Returns the quantities that at least one crack has, with uncertainties of one standard deviation."""
     rows = []
     for name, unit in program.units.items():
-        (one, one_sigma), (other, other_sigma) = ((crack.values.get(name), crack.values.get(f"{name}_uncertainty")) for crack in cracks)
+        (one, one_sigma), (other, other_sigma) = (
+            (crack.values.get(name), crack.values.get(f"{name}_uncertainty")) for crack in cracks)
         if name.endswith("_uncertainty") or one is None and other is None:
             continue
         difference = None if one is None or other is None else other - one
@@ -161,9 +162,14 @@ def _text(cracks: Sequence[_Crack], quantities: Sequence[Mapping[str, Any]], ent
         ratio = row["difference_over_uncertainty"]
         rows.append([row["name"], *(cell(row, part) for part in (*SIDES, "difference")), "" if ratio is None else f"{ratio:+.1f}"])
     text = _table(rows) + "\n"
-    text += "".join(f"{crack.name} failed its checks, and is no measurement: {crack.problem}\n" for crack in cracks if crack.problem)
-    text += _table([["entry", *names, "unit"], *([entry["key"], entry["first"], entry["second"], entry["unit"].removeprefix("1")]
-                                                 for entry in entries)]) if entries else "The cases have the same entries.\n"
+    text += "".join(f"{crack.name} failed its checks, and is no measurement: {crack.problem}\n"
+                    for crack in cracks if crack.problem)
+    if entries:
+        units = ["" if entry["unit"] == "1" else entry["unit"] for entry in entries]
+        text += _table([["entry", *names, "unit"],
+                        *([entry["key"], entry["first"], entry["second"], unit] for entry, unit in zip(entries, units))])
+    else:
+        text += "The cases have the same entries.\n"
     if not paths:
         return text + "\nThe paths have no stretch of X in common.\n"
     begin, end, at = (quantity_text(paths[name], None, "m") for name in ("X_begin", "X_end", "largest_distance_X"))

@@ -22,7 +22,8 @@ def module_of(path):
 
 
 # {name of a claim: its module}
-MODULES = {path.parent.name.replace("_", "-"): module_of(path) for path in sorted([*ROOT.glob("claims/*/plots.py"), *ROOT.glob("verification/claims/*/plots.py")])}
+MODULES = {path.parent.name.replace("_", "-"): module_of(path)
+           for folder in ("claims", "verification/claims") for path in sorted(ROOT.glob(f"{folder}/*/plots.py"))}
 TABLES = {name: columns for module in MODULES.values() for name, columns in module.TABLES.items()}
 # {name of a claim: its plots}
 PLOTS = {claim: module.PLOTS for claim, module in MODULES.items()}
