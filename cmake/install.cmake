@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME runtime)
 install(TARGETS latcon latcon_elements LIBRARY DESTINATION lib/latcon)
 # verification/input/data_folder.h looks for it.
-foreach(folder cases studies report paraview)
+foreach(folder cases studies paraview)
   install(DIRECTORY verification/${folder} DESTINATION share/latcon PATTERN __pycache__ EXCLUDE)
 endforeach()
 # Plots of the claims in the report.
@@ -44,7 +44,7 @@ install(FILES ${PROJECT_BINARY_DIR}/latconConfig.cmake ${PROJECT_BINARY_DIR}/lat
 install(DIRECTORY examples/own-laws examples/nonlocal-crack DESTINATION share/doc/latcon-dev/examples)
 install(FILES docs/library.md cmake/copyright ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION share/doc/latcon-dev)
 
-# The program starts it for studies, whatever package is installed beside it.
+# The program starts it for studies and reports, whatever package is installed beside it.
 install(DIRECTORY python/latcon DESTINATION share/latcon/python COMPONENT runtime PATTERN __pycache__ EXCLUDE)
 # Module path of Debian's interpreter below /usr.
 install(DIRECTORY python/latcon DESTINATION lib/python3/dist-packages COMPONENT python PATTERN __pycache__ EXCLUDE)

@@ -15,7 +15,7 @@ of bonds, compares it with the finite element continuum that it approximates,
 and runs a crack only once the two agree.")
 # Libraries, and the Python modules of studies and of the report.
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "libjs-dygraphs, python3, python3-matplotlib, python3-numpy, python3-pil, python3-scipy, python3-vtk9")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "libjs-dygraphs, python3, python3-jinja2, python3-matplotlib, python3-numpy, python3-pil, python3-scipy, python3-vtk9")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "libopenblas0-pthread, openmpi-bin")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "paraview")
 

@@ -27,6 +27,7 @@ ALLOWED = {
     "verification/bridge": (*SIDES, "verification/input"),
     "verification/output": (*SIDES, "verification/input", "verification/bridge", "verification/analysis"),
     "verification/compare": ("support", "verification/output"),
+    "verification/stepping": ("support", "lattice/bonds", "lattice", "verification/input", "verification/bridge"),
     "verification/resources": MODELS,
     "verification/claims": MODELS,
     "verification/claims/*": (*MODELS, "verification/claims"),

@@ -13,14 +13,12 @@ import sys
 
 sys.dont_write_bytecode = True
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "verification" / "report"))
-
-import own_settings  # before matplotlib
+sys.path.insert(0, str(HERE.parents[1] / "python"))
 
 import numpy as np
 
-from phase_map import Cell, draw_phase_map
-from pictures import BLACK, BLUE, GREEN, RED, WIDTH, Page, save
+from latcon.report.phase_map import Cell, draw_phase_map
+from latcon.report.pictures import BLACK, BLUE, GREEN, RED, WIDTH, Page, save
 
 ENTRIES = {"strain_x": "Loading/strain x", "strain_y": "Loading/strain y", "viscosity": "Nearest neighbours/viscosity"}
 VALUES = ("speed_lagrangian", "wavelength", "amplitude", "periods", "window_begin")

@@ -1,4 +1,4 @@
-"""``python3 -m latcon``: commands of the program that are Python, ``study`` and ``batch``."""
+"""``python3 -m latcon``: commands of the program that are Python: ``study``, ``batch``, ``compare`` of two cracks."""
 from __future__ import annotations
 
 import json
@@ -14,7 +14,8 @@ def main(words: list[str]) -> int:
     if words[:1] == ["--parsed"]:
         from .study.command import run
         # Paths, which need not be UTF-8, then the other options.
-        return run(words[1], dict(zip(("study", "output_dir", "program", "data"), words[2:6])) | json.loads(words[6]))
+        paths = ("output_dir", "program", "data", *(("first", "second") if words[1] == "compare" else ("study",)))
+        return run(words[1], dict(zip(paths, words[2:-1])) | json.loads(words[-1]))
     try:
         program = os.fspath(find_program())
     except ProgramNotFound as error:

@@ -3,12 +3,12 @@ from __future__ import annotations
 
 import os
 import pathlib
-import secrets
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from .errors import BadInput, LatconError, UnknownEntry
+from .folder import write_atomically
 from .schema import EntryValue, ResolvedCase, resolve, schema
 
 Settable = str | float | int | bool | None | Sequence[float] | np.generic | np.ndarray
@@ -122,13 +122,7 @@ class Case:
         path = pathlib.Path(path)
         if path.suffix == ".json":
             raise ValueError(f"{path}: a resolved case has deal.II's parameter format; choose a name that ends in .prm")
-        text = self.text()
-        part = path.with_name(f"{path.name}.{secrets.token_hex(8)}.part")
-        try:
-            part.write_text(text, encoding="utf-8")
-            os.replace(part, path)
-        finally:
-            part.unlink(missing_ok=True)
+        write_atomically(os.fspath(path), self.text())
         return path
 
     def arguments(self) -> list[str]:

@@ -99,7 +99,8 @@ def verify(*claims: str, directory: Directory, case: CaseLike | None = None, qui
     if case is not None:
         case = _case(case)
         words += ["--case", os.fspath(case.file), *case.arguments()]
-    return _start(words, directory, threads, progress)
+    run([*words, *_common_words(directory, threads)], pathlib.Path(directory).absolute(), progress)
+    return open_run(directory)
 
 
 def _case(case: CaseLike) -> Case:
@@ -108,12 +109,17 @@ def _case(case: CaseLike) -> Case:
 
 def _run(command: str, case: CaseLike, directory: Directory, threads: int | None, resume: bool, yes: bool, progress: Progress,
          options: list[str] | None = None) -> Run:
-    case = _case(case)
-    words = [command, os.fspath(case.file), *case.arguments(), *(options or []), *["--resume"] * resume, *["--yes"] * yes]
-    return _start(words, directory, threads, progress)
+    run(run_words(command, _case(case), directory, threads, resume, yes, options or []), pathlib.Path(directory).absolute(), progress)
+    return open_run(directory)
 
 
-def _start(words: list[str], directory: Directory, threads: int | None, progress: Progress) -> Run:
+def run_words(command: str, case: Case, directory: Directory, threads: int | None, resume: bool, yes: bool, options: list[str]
+              ) -> list[str]:
+    """Returns the words of a command of the program that runs a case."""
+    return [command, os.fspath(case.file), *case.arguments(), *options, *["--resume"] * resume, *["--yes"] * yes,
+            *_common_words(directory, threads)]
+
+
+def _common_words(directory: Directory, threads: int | None) -> list[str]:
     path = pathlib.Path(directory).absolute()  # of use after a change of folder
-    run([*words, "--output-dir", os.fspath(path), *([] if threads is None else ["--threads", str(threads)])], path, progress)
-    return open_run(path)
+    return ["--output-dir", os.fspath(path), *([] if threads is None else ["--threads", str(threads)])]

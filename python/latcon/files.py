@@ -1,16 +1,22 @@
 """Readers of single files of a run; errors name the file."""
 from __future__ import annotations
 
+import csv
 import io
 import json
 import pathlib
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
 from xml.etree import ElementTree
 
-import pandas as pd
+import numpy as np
 
 from .errors import UnreadableFile
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Result = TypeVar("Result")
 
 
 def read_text(path: pathlib.Path) -> str:
@@ -61,6 +67,7 @@ def read_table(path: pathlib.Path, units: Mapping[str, str]) -> pd.DataFrame:
     UnreadableFile
         If it is missing, a cell is not a number, or rows differ in length.
     """
+    import pandas as pd
     text = read_text(path)
     lines = text.splitlines()
     if not lines:
@@ -79,6 +86,45 @@ def read_table(path: pathlib.Path, units: Mapping[str, str]) -> pd.DataFrame:
             raise UnreadableFile(path, f"column {name!r} has a cell that is not a number")
     table.attrs["units"] = {name: units[name] for name in table if name in units}
     return table
+
+
+def read_columns(path: pathlib.Path, columns: Sequence[str], texts: Sequence[str] = (), finite: bool = True) -> dict[str, Any]:
+    """Returns columns of a CSV file as arrays by name; other columns are ignored.
+
+    Parameters
+    ----------
+    columns
+        Columns of numbers, all finite if `finite`.
+    texts
+        Columns of words.
+
+    Raises
+    ------
+    UnreadableFile
+        If it is missing, lacks a column, or a cell is not such a number.
+    """
+    rows = list(csv.reader(read_text(path).splitlines()))
+    header = rows[0] if rows else []
+    if missing := [name for name in (*texts, *columns) if name not in header]:
+        raise UnreadableFile(path, f"has no column {missing[0]!r}")
+    places = [header.index(name) for name in columns]
+    values = np.empty((len(rows) - 1, len(columns)))
+    for line, row in enumerate(rows[1:], start=2):
+        if len(row) != len(header):
+            raise UnreadableFile(path, f"line {line} has {len(row)} fields, the header has {len(header)}")
+        try:
+            values[line - 2] = [float(row[place]) for place in places]
+        except ValueError as error:
+            raise UnreadableFile(path, f"line {line}: {error}") from error
+        if finite and not np.isfinite(values[line - 2]).all():
+            raise UnreadableFile(path, f"line {line} holds a number that is not finite")
+    words = {name: np.array([row[header.index(name)] for row in rows[1:]], dtype=object) for name in texts}
+    return {**words, **dict(zip(columns, values.T))}
+
+
+def if_present(read: Callable[..., Result], path: pathlib.Path, *arguments: Any, **options: Any) -> Result | None:
+    """Returns what a reader returns for a file; None if there is no such file."""
+    return read(path, *arguments, **options) if path.exists() else None
 
 
 def read_series(path: pathlib.Path) -> list[tuple[float, pathlib.Path]]:

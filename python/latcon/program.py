@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import os
 import pathlib
 import re
@@ -20,6 +21,7 @@ Progress = bool | Callable[[str], None]
 
 # Largest part of the program's standard output in an error message [bytes].
 _TAIL = 4000
+_COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 # Seconds between progress lines where standard error is neither a terminal nor a notebook.
 _LOG_INTERVAL = 60.0
 
@@ -72,7 +74,7 @@ def ask(*arguments: str) -> str:
     ended = subprocess.run([find_program(), *arguments], capture_output=True, text=True, encoding="utf-8", errors="replace",
                            stdin=subprocess.DEVNULL, check=False)
     if ended.returncode != 0:
-        raise error_of(ended.returncode, _message([ended.stderr], ended.stdout))
+        raise error_of(ended.returncode, _message(ended.stderr.strip(), ended.stdout))
     return ended.stdout
 
 
@@ -96,46 +98,39 @@ def run(arguments: Sequence[str], directory: pathlib.Path, progress: Progress) -
     ProgramError, Interrupted
         If the exit code of the program is not 0.
     """
-    # The program updates its progress line in place only if its standard error is a terminal.
-    try:
-        terminal, end_of_child = os.openpty()
-    except OSError:  # no /dev/pts, as in some containers: progress lines end with line ends
-        terminal, end_of_child = os.pipe()
-    try:
-        with tempfile.TemporaryFile() as output:
-            child = subprocess.Popen([find_program(), *arguments], stdin=subprocess.DEVNULL, stdout=output,
-                                     stderr=end_of_child, start_new_session=True)
-            os.close(end_of_child)
-            end_of_child = -1
-            lines = _Lines(progress_indicator(progress))
-            try:
-                _follow(child, terminal, lines)
-            finally:
-                if child.poll() is None:  # an exception of the progress function
-                    child.send_signal(signal.SIGINT)
-                    _drain(terminal)
-                    child.wait()
-                lines.close()
-            if child.returncode != 0:
-                raise error_of(child.returncode, _message(lines.messages, _tail(output)), directory)
-    finally:
-        os.close(terminal)
-        if end_of_child >= 0:
-            os.close(end_of_child)
-    for message in lines.messages:
-        print(message, file=sys.stderr)
+    reading, writing = os.pipe()
+    indicator = progress_indicator(progress)
+    with open(reading, "rb") as updates, tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
+        try:
+            child = subprocess.Popen([find_program(), *arguments], stdin=subprocess.DEVNULL, stdout=output, stderr=errors,
+                                     env=os.environ | {"LATCON_PROGRESS": str(writing)}, pass_fds=[writing], start_new_session=True)
+        finally:
+            os.close(writing)
+        try:
+            _follow(child, updates, indicator)
+        finally:
+            if child.poll() is None:  # an exception of the progress function
+                child.send_signal(signal.SIGINT)
+                child.wait()
+            indicator.close()
+        errors.seek(0)
+        lines = _COLOUR.sub("", errors.read().decode("utf-8", "replace")).splitlines()
+        messages = "\n".join(line.rstrip() for line in lines if line.strip())
+        if child.returncode != 0:
+            raise error_of(child.returncode, _message(messages, _tail(output)), directory)
+    if messages:
+        print(messages, file=sys.stderr)
 
 
-def _follow(child: subprocess.Popen[bytes], terminal: int, lines: _Lines) -> None:
-    """Forwards the standard error of the program until it has ended."""
+def _follow(child: subprocess.Popen[bytes], updates: IO[bytes], indicator: _Shower) -> None:
+    """Shows the progress of the program until it has ended."""
     interrupted = False
     while True:
         try:
-            data = _read(terminal)
-            if not data:
+            if not (line := updates.readline()):
                 child.wait()
                 return
-            lines.feed(data.decode("utf-8", "replace"))
+            indicator.line(**json.loads(line))
         except KeyboardInterrupt:
             if interrupted:
                 child.kill()
@@ -144,76 +139,22 @@ def _follow(child: subprocess.Popen[bytes], terminal: int, lines: _Lines) -> Non
             interrupted = True
 
 
-def _read(terminal: int) -> bytes:
-    """Returns the next bytes; none after every writer has closed its end."""
-    try:
-        return os.read(terminal, 65536)
-    except OSError:  # EIO: end of a pseudo-terminal
-        return b""
-
-
-def _drain(terminal: int) -> None:
-    while _read(terminal):
-        pass
-
-
 def _tail(output: IO[bytes]) -> str:
     size = output.seek(0, os.SEEK_END)
     output.seek(max(0, size - _TAIL))
     return output.read().decode("utf-8", "replace")
 
 
-def _message(errors: Sequence[str], output: str) -> str:
+def _message(errors: str, output: str) -> str:
     """Returns the message of an error: standard error, or the end of standard output if that is empty."""
-    text = "\n".join(errors).strip() or output.strip()[-_TAIL:] or "the program ended without a message"
+    text = errors or output.strip()[-_TAIL:] or "the program ended without a message"
     return re.sub(r"^latcon: ", "", text, flags=re.MULTILINE)
-
-
-class _Lines:
-    """Splits the standard error of the program into progress lines and messages.
-
-    A progress line follows ``\\r ESC [K`` and has no line end; a message ends with one. A message of the scripts of the report may
-    follow a progress line directly. Escape sequences for colours are removed.
-    """
-
-    _SEPARATOR = re.compile(r"(\r\x1b\[K|\r*\n)")
-    _PROGRESS = re.compile(r".*?, \d+ s (?:left|so far)")
-    _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
-
-    def __init__(self, show: _Shower) -> None:
-        self.messages: list[str] = []
-        self._show = show
-        self._pending = ""
-        self._in_progress = False  # whether the pending text belongs to a progress line
-
-    def feed(self, text: str) -> None:
-        pieces = self._SEPARATOR.split(self._pending + text)
-        for piece, separator in zip(pieces[::2], pieces[1::2]):
-            if separator.endswith("\n"):
-                self._add(self._PROGRESS.sub("", piece, count=1) if self._in_progress else piece)
-            self._in_progress = not separator.endswith("\n")
-        self._pending = pieces[-1]
-        # Without a partial separator at the end.
-        line = self._pending.partition("\r")[0]
-        if self._in_progress and line:
-            self._show.line(line)
-
-    def close(self) -> None:
-        if not self._in_progress:
-            self._add(self._pending)
-        self._pending = ""
-        self._show.close()
-
-    def _add(self, message: str) -> None:
-        message = self._COLOUR.sub("", message)
-        if message.strip():
-            self.messages.append(message.rstrip())
 
 
 class _Shower:
     """Progress indicator; the base class shows nothing."""
 
-    def line(self, text: str) -> None:
+    def line(self, text: str, seconds_left: float | None = None) -> None:
         """Shows a progress line."""
 
     def close(self) -> None:
@@ -224,7 +165,7 @@ class _Function(_Shower):
     def __init__(self, function: Callable[[str], None]) -> None:
         self._function = function
 
-    def line(self, text: str) -> None:
+    def line(self, text: str, seconds_left: float | None = None) -> None:
         self._function(text)
 
 
@@ -236,7 +177,7 @@ class _Stream(_Shower):
         self._width = 0
         self._last = time.monotonic()
 
-    def line(self, text: str) -> None:
+    def line(self, text: str, seconds_left: float | None = None) -> None:
         if self._in_place:
             print("\r" + text.ljust(self._width), end="", file=sys.stderr, flush=True)
             self._width = max(self._width, len(text))
@@ -257,10 +198,10 @@ class _Bar(_Shower):
         self._bar = tqdm(total=100, bar_format="{l_bar}{bar}| {postfix}", leave=False)
         self._begin = time.monotonic()
 
-    def line(self, text: str) -> None:
-        if left := re.search(r", (\d+) s left$", text):
+    def line(self, text: str, seconds_left: float | None = None) -> None:
+        if seconds_left is not None:
             elapsed = time.monotonic() - self._begin
-            self._bar.n = round(100 * elapsed / max(elapsed + float(left[1]), 1e-9))
+            self._bar.n = round(100 * elapsed / max(elapsed + seconds_left, 1e-9))
         self._bar.set_postfix_str(text)
 
     def close(self) -> None:

@@ -8,20 +8,31 @@ from typing import Any
 
 _UNCERTAINTY = "_uncertainty"
 
-_NAMES_BY_UNIT = {
-    "m": "wavelength amplitude crest_amplitude window_begin window_end flank_damage_depth bridged_length X Y sampled_from "
-         "sampled_to negative_zone_length negative_zone_distance negative_zone_depth_X negative_zone_depth_Y vortex_distance "
-         "process_zone_length",
-    "m^2": "negative_zone_area negative_zone_area_of_samples",
-    "m^2/s": "vortex_circulation tip_circulation",
-    "m/s": "speed_lagrangian speed_laboratory negative_zone_depth negative_zone_depth_of_samples process_zone_speed "
-           "process_zone_fastest longitudinal_speed shear_speed",
-    "s": "end_time",
-    "Pa": "opening_stress_peak_4d opening_stress_peak_8d far_opening_stress",
-    "degrees": "opening_stress_angle_4d opening_stress_angle_8d wedge_angle",
-}
-UNITS: dict[str, str] = {name: unit for unit, names in _NAMES_BY_UNIT.items() for name in names.split()}
+_TABLE = (
+    ("1", "zeta"), ("m/s", "speed_lagrangian+ speed_laboratory+"), ("m", "wavelength+"), ("1", "wavelength_over_d+"), ("m", "amplitude+"),
+    ("1", "amplitude_over_d+"), ("m", "crest_amplitude+"), ("1", "crest_amplitude_over_d+ periods"), ("m", "window_begin window_end"),
+    ("1", "branched_fraction bonds_broken detached_sites detached_fragments largest_fragment overstretched_bonds"),
+    ("m", "bridged_length flank_damage_depth"), ("1", "flank_damage_share"), ("s", "end_time"), ("1", "energy_imbalance samples"),
+    ("m^2", "negative_zone_area+ negative_zone_area_of_samples+"), ("m", "negative_zone_length+ negative_zone_distance+"),
+    ("m/s", "negative_zone_depth+ negative_zone_depth_of_samples+"), ("m", "negative_zone_depth_X+ negative_zone_depth_Y+"),
+    ("1", "velocity_asymmetry+ velocity_asymmetry_of_samples+ vortices+ vortices_of_samples+ samples_with_vortex+"),
+    ("m", "vortex_distance+"), ("m^2/s", "vortex_circulation+ tip_circulation+"), ("m", "process_zone_length+"),
+    ("1", "process_zone_share+ process_zone_share_of_samples+"), ("m/s", "process_zone_fastest+"),
+    ("degrees", "opening_stress_angle_4d+"), ("1", "opening_stress_ratio_4d+"), ("Pa", "opening_stress_peak_4d+"),
+    ("1", "opening_stress_concentration_4d+"), ("degrees", "opening_stress_angle_8d+"), ("1", "opening_stress_ratio_8d+"),
+    ("Pa", "opening_stress_peak_8d+"), ("1", "opening_stress_concentration_8d+"), ("degrees", "wedge_angle+"),
+    ("1", "speed_over_shear+ speed_over_longitudinal+"), ("m/s", "shear_speed longitudinal_speed process_zone_speed"),
+    ("Pa", "far_opening_stress"))
+# A name that ends with + has an uncertainty, one standard deviation.
+RECORDED: dict[str, str] = {name: unit for unit, words in _TABLE for word in words.split()
+                            for name in ((word[:-1], word[:-1] + _UNCERTAINTY) if word[-1] == "+" else (word,))}
+"""SI units of the quantities that a study records of a run, in the order of `study.csv`: numbers in `crack.json` and
+`near_tip.json`, and zeta and lengths over d, which follow from those and the case."""
+UNITS: dict[str, str] = RECORDED | dict.fromkeys(("X", "Y", "sampled_from", "sampled_to"), "m")
 """SI units of the numbers in `crack.json` and `near_tip.json`; all others are pure numbers."""
+
+SHOWN = {"m": (100.0, "cm"), "m^2": (1e6, "mm²"), "s": (1e3, "ms"), "degrees": (1.0, "°")}
+"""Scale and unit shown for SI units."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -51,8 +62,24 @@ class Value:
             return "not determined"
         if not self.uncertainty > 0:
             return f"{self.value:.6g}{unit}"
-        digits = max(0, 1 - math.floor(math.log10(self.uncertainty)))  # two digits of the uncertainty
-        return f"{self.value:.{digits}f} ± {self.uncertainty:.{digits}f}{unit}"
+        return number_text(self.value, self.uncertainty) + unit
+
+
+def quantity_text(value: float, uncertainty: float | None, unit: str) -> str:
+    """Formats a number with a readable unit: lengths in cm, areas in mm², times in ms."""
+    scale, shown = SHOWN.get(unit, (1.0, "" if unit == "1" else unit))
+    number = number_text(scale * value, None if uncertainty is None else scale * uncertainty)
+    return number + ("" if shown in ("", "°") else " ") + shown
+
+
+def number_text(value: float, uncertainty: float | None, sign: str = "±") -> str:
+    """Formats a number to the digits that its uncertainty justifies, "20.06 ± 0.23"; four digits if there is none."""
+    if uncertainty is None or not 1e-12 * abs(value) < uncertainty < math.inf:  # of equal values it is round-off
+        return f"{value:.4g}"
+    digits = min(max(1 - math.floor(math.log10(uncertainty)), 0), 12)
+    if digits > 6 and abs(value) < 1e-3:
+        return f"{value:.1e} {sign} {uncertainty:.1e}"
+    return f"{value:.{digits}f} {sign} {uncertainty:.{digits}f}"
 
 
 class Quantities(Mapping[str, Any]):

@@ -6,8 +6,6 @@ import os
 import pathlib
 from typing import TYPE_CHECKING, Any
 
-import pandas as pd
-
 from .case import Case
 from .errors import UnreadableFile
 from .files import read_json, read_table
@@ -17,6 +15,7 @@ from .quantities import Quantities
 
 if TYPE_CHECKING:
     import matplotlib.axes
+    import pandas as pd
     import xarray
 
 _ENERGIES = ("elastic", "kinetic", "micro_inertia", "viscous", "broken", "boundary_work", "contact", "imbalance")
@@ -112,6 +111,7 @@ class Run:
         ``verdict`` (``holds``, ``fails``, ``reported``); numbers that do not apply are NaN. The first three numbers are in
         ``unit``, error and tolerance as the claim defines them.
         """
+        import pandas as pd
         path = self.directory / "results.json"
         rows = read_json(path).get("claims")
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):

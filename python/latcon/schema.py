@@ -73,8 +73,6 @@ class Schema(Mapping[str, Entry]):
         Version of the program.
     cases : dict
         Files of the shipped cases by name.
-    quantities : dict
-        Units of the quantities of `crack.json` and `near_tip.json` by name.
     """
 
     def __init__(self, document: Mapping[str, Any]) -> None:
@@ -83,7 +81,6 @@ class Schema(Mapping[str, Entry]):
                               f"{document.get('format_version')}, not {_FORMAT_VERSION}); install both from the same version")
         self.version: str = document["version"]
         self.cases = {name: pathlib.Path(path) for name, path in document["cases"].items()}
-        self.quantities: dict[str, str] = document["quantities"]
         self._entries = {entry.key: entry for entry in map(_entry, document["entries"])}
 
     def __getitem__(self, key: str) -> Entry:

@@ -17,11 +17,11 @@ import sys
 import tempfile
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "verification" / "report"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
 
 from matplotlib.lines import Line2D
 
-from pictures import BLACK, BLUE, GREEN, GREY, RED, WIDTH, Page, save
+from latcon.report.pictures import BLACK, BLUE, GREEN, GREY, RED, WIDTH, Page, save
 
 NORMS = ("L2", "H1", "H2")  # columns of a table
 TITLES = {"L2": "displacement, $L_2$ [m$^2$]", "H1": "gradient, $H_1$ [m]", "H2": "second gradient, broken $H_2$ [1]"}

@@ -44,7 +44,7 @@ def check_program(prefix):
     quick = data / "cases" / "quick.prm"
     assert "sites" in run(latcon, "fracture", quick, "--dry-run")
     assert "little-viscosity" in run(latcon, "study", "patterns", "--quick", "--dry-run")
-    style = data / "report" / "style.css"
+    style = data / "python" / "latcon" / "report" / "templates" / "style.css"
     style.write_text(style.read_text() + "/* of this installation */\n")
     output = prefix.parent / "crack"
     run(latcon, "fracture", quick, "--skip-verification", "--output-dir", output, *TINY)

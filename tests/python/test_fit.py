@@ -5,7 +5,7 @@ A function stands in for the crack.
 import fcntl
 import json
 import math
-import time
+import pathlib
 import types
 
 import numpy as np
@@ -13,9 +13,7 @@ import pytest
 from scipy.stats import chi2
 
 import latcon
-from latcon import commands
-from latcon.errors import error_of
-from latcon.fit import Fit, Observation, Parameter, fit_case
+from latcon.fit import Fit, Observation, Parameter, fit_case, runs
 from latcon.fit.local_model import PRIOR, fit_local_model
 from latcon.fit.misfit import UNDETERMINED, tabulate
 from latcon.fit.problem import Axis, Problem
@@ -32,9 +30,10 @@ SOLUTION = {STRETCH: 3.03417, DENSITY: 1000}  # of 20 - 30 e + 20 e^2 = 19
 
 
 class Crack:
-    """Stands in for `latcon.fracture`: two quantities, of which each seed has its own error; notes its runs.
+    """Stands in for the pool and the program: two quantities, of which each seed has its own error; notes its runs.
 
-    `body` is called first, with the values of the case and the directory. An error that it returns is raised last.
+    `body` is called first, with the values of the case and the directory; it returns the exit code and message of the run, or None.
+    An error of the body is raised before the quantities are measured.
     """
 
     def __init__(self):
@@ -42,29 +41,44 @@ class Crack:
         self.body = None
         self.failed_rows = {}
 
-    def __call__(self, case, directory, *, threads, resume, skip_verification, report, progress):
-        assert threads == 1 and not report and callable(progress)
-        stretch, density, seed = (float(case.overrides[key]) for key in (STRETCH, DENSITY, SEED))
-        directory.mkdir(parents=True, exist_ok=True)
-        self.runs.append((directory.name, resume, case.overrides))
-        problem = None
+    def pool(self, n_jobs, limit, start, ended, waiting, stop):
+        for begin in range(0, n_jobs, limit):
+            together = [(job, *start(job)) for job in range(begin, min(begin + limit, n_jobs))]
+            for job, command, log in reversed(together):  # they end in another order
+                ended(job, self.run(command[1:], pathlib.Path(log)))
+
+    def run(self, words, log):
+        assert words[0] == "fracture" and {"--no-report", "--skip-verification", "--threads"} - set(words) <= {"--skip-verification"}
+        overrides = dict(word.split("=", 1) for option, word in zip(words, words[1:]) if option == "--set")
+        directory = pathlib.Path(words[words.index("--output-dir") + 1])
+        assert log == directory / "log.txt"
+        stretch, density, seed = (float(overrides[key]) for key in (STRETCH, DENSITY, SEED))
+        self.runs.append((directory.name, "--resume" in words, overrides))
+        code, message, measured = 0, "", True
         if self.body:
-            problem = self.body(stretch=stretch, density=density, seed=seed, directory=directory, progress=progress)
+            code, message, *rest = self.body(stretch=stretch, density=density, seed=seed, directory=directory) or (0, "")
+            measured = not rest
+        log.write_text(f"done\nlatcon: {message}\n")
+        if not measured:
+            return code
         speed = 20 - 30 * (stretch - 3) + 20 * (stretch - 3)**2 + 0.1 * (-1)**seed
         crack = {"speed_lagrangian": speed, "speed_lagrangian_uncertainty": 0.3,
                  "wavelength": density / 1e5 if density < 1150 else None,
                  "pattern": "oscillating" if density < 1200 else "straight"}
         (directory / "crack.json").write_text(json.dumps(crack))
         (directory / "run.json").write_text(json.dumps({"failed_rows": self.failed_rows}))
-        if problem:
-            raise problem
-        return latcon.open(directory)
+        return code
+
+
+def without_crack(code, message):
+    """End of a run that measured nothing."""
+    return code, message, "nothing"
 
 
 @pytest.fixture
 def crack(monkeypatch):
     found = Crack()
-    monkeypatch.setattr(commands, "fracture", found)
+    monkeypatch.setattr(runs, "run_processes", found.pool)
     return found
 
 
@@ -144,9 +158,10 @@ def test_words_are_compared_with_the_fraction_of_seeds(small_fit, crack, tmp_pat
 def test_refused_failed_and_undetermined_points_are_recorded_and_worse(small_fit, crack, tmp_path):
     def end(stretch, seed, **_):
         if stretch > 3.1:
-            raise error_of(2, "too stretched")
+            return without_crack(2, "too stretched")
         if stretch < 2.85 and seed == 2:
-            raise error_of(4, "blew up")
+            return without_crack(4, "blew up")
+        return None
     crack.body = end
     result = small_fit(tmp_path / "fit", evaluations=24)
     points = result.points
@@ -163,19 +178,19 @@ def test_refused_failed_and_undetermined_points_are_recorded_and_worse(small_fit
 
 
 def test_a_crack_that_misses_its_reference_values_is_measured(small_fit, crack, tmp_path):
-    crack.body = lambda **_: error_of(3, "the wavelength differs")
+    crack.body = lambda **_: (3, "the wavelength differs")
     crack.failed_rows = {"fracture: wavelength": "reference"}
     assert set(small_fit(tmp_path / "fit", evaluations=4).points["ended"]) == {"done"}
 
     def refuse(**_):
-        raise error_of(3, "no rubber")
+        return without_crack(3, "no rubber")
     crack.body = refuse
     with pytest.raises(latcon.LatconError, match="was refused: no rubber"):
         small_fit(tmp_path / "refused", evaluations=4)
 
 
 def test_a_crack_whose_energies_do_not_balance_is_not_measured(small_fit, crack, tmp_path):
-    crack.body = lambda stretch, **_: error_of(3, "") if stretch > 3.1 else None
+    crack.body = lambda stretch, **_: (3, "") if stretch > 3.1 else None
     crack.failed_rows = {"fracture: wavelength": "reference", "fracture: energy imbalance": "ledger"}
     points = small_fit(tmp_path / "fit", evaluations=16).points
     lost = points[STRETCH] > 3.1
@@ -187,7 +202,7 @@ def test_a_crack_whose_energies_do_not_balance_is_not_measured(small_fit, crack,
 
 def test_a_first_batch_without_result_is_an_error(small_fit, crack, tmp_path):
     def refuse(**_):
-        raise error_of(2, "no rubber")
+        return without_crack(2, "no rubber")
     crack.body = refuse
     with pytest.raises(latcon.LatconError, match="no run of the first 4 points is done; the first was refused: no rubber"):
         small_fit(tmp_path / "fit")
@@ -198,7 +213,8 @@ def test_a_first_batch_without_result_is_an_error(small_fit, crack, tmp_path):
 def test_a_full_disk_or_a_signal_stops_the_fit_and_a_later_call_continues_it(small_fit, crack, tmp_path, code, kind):
     def fill(directory, **_):
         if directory.name.startswith("00005"):
-            raise error_of(code, "disk full")
+            return without_crack(code, "disk full")
+        return None
     crack.body = fill
     with pytest.raises(kind, match="disk full"):
         small_fit(tmp_path / "fit")
@@ -233,27 +249,19 @@ def test_an_interrupted_fit_continues_with_the_same_bits(small_fit, crack, tmp_p
 
 
 def test_points_do_not_depend_on_the_number_of_workers(small_fit, crack, tmp_path):
-    crack.body = lambda seed, **_: time.sleep(0.03 if seed == 1 else 0.001)
     small_fit(tmp_path / "one", evaluations=12)
     small_fit(tmp_path / "four", evaluations=12, workers=4)
     assert sorted(lines(tmp_path / "four"), key=lambda line: json.loads(line)["number"]) == lines(tmp_path / "one")
 
 
-def test_a_stopped_fit_stops_its_runs_and_a_folder_with_another_case_is_removed(small_fit, crack, tmp_path):
-    def run_for_ever(directory, progress, **_):
-        if directory.name.startswith("00001"):
+def test_a_stopped_fit_continues_and_a_folder_with_another_case_is_removed(small_fit, crack, tmp_path):
+    def stop(directory, **_):
+        if directory.name == "00001-1":
             (directory / "case.prm").write_text("another case")
-            while True:
-                progress("step")
-                time.sleep(0.01)
-    crack.body = run_for_ever
-
-    def interrupt(_line):
-        while not (tmp_path / "fit" / "runs" / "00001-1" / "case.prm").exists():
-            time.sleep(0.01)
-        raise KeyboardInterrupt
+            raise KeyboardInterrupt
+    crack.body = stop
     with pytest.raises(KeyboardInterrupt):
-        small_fit(tmp_path / "fit", workers=3, progress=interrupt)
+        small_fit(tmp_path / "fit")
     crack.body = None
     small_fit(tmp_path / "fit", evaluations=4)
     assert [resume for name, resume, _ in crack.runs if name == "00001-1"] == [False, False]
@@ -338,7 +346,8 @@ def test_wrong_arguments_are_refused_before_anything_runs(small_fit, crack, tmp_
 def test_page_has_tables_and_pictures(small_fit, crack, tmp_path):
     def refuse(stretch, **_):
         if stretch > 3.1:
-            raise error_of(2, "<stretched>")
+            return without_crack(2, "<stretched>")
+        return None
     crack.body = refuse
     result = small_fit(tmp_path / "fit")
     page = result.to_html()

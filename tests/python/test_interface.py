@@ -2,6 +2,8 @@
 import inspect
 import pathlib
 import re
+import subprocess
+import sys
 
 import latcon
 import latcon.fit
@@ -49,3 +51,10 @@ def test_parameters_and_results_are_annotated():
 def test_page_has_every_name():
     known = set(re.findall(r"\w+", PAGE))
     assert not set(PUBLIC) - known
+
+
+def test_the_package_and_studies_do_without_packages_that_only_tables_and_pages_need():
+    absent = "import sys; sys.modules.update(dict.fromkeys(['pandas', 'jinja2', 'matplotlib', 'vtkmodules']))"
+    done = subprocess.run([sys.executable, "-c", f"{absent}; import latcon, latcon.study.command, latcon.compare"],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

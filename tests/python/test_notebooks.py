@@ -5,11 +5,15 @@ import nbformat
 import pytest
 from nbconvert.preprocessors import ExecutePreprocessor
 
+import latcon
+
 NOTEBOOKS = sorted((pathlib.Path(__file__).resolve().parents[2] / "docs" / "notebooks").glob("*.ipynb"))
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook_runs(path, tmp_path, monkeypatch):
+    if path.stem == "stepping" and not any(latcon.find_program().parent.glob("latcon_stepping*")):
+        pytest.skip("built without LATCON_STEPPING")
     for name in ("IPYTHONDIR", "JUPYTER_RUNTIME_DIR", "JUPYTER_DATA_DIR"):
         monkeypatch.setenv(name, str(tmp_path / name))
     monkeypatch.delenv("MPLBACKEND", raising=False)  # pictures are in the notebook

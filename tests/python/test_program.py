@@ -76,10 +76,15 @@ def test_a_program_without_message_is_described_by_its_output(stand_in, tmp_path
     assert caught.value.exit_code == -signal.SIGKILL
 
 
-PROGRESS = r"""
-for line in ("step 1, 9 s left", "step 2, 4 s left"):
-    sys.stderr.write("\r\x1b[K" + line); sys.stderr.flush(); time.sleep(0.2)
-sys.stderr.write("\r\x1b[K"); sys.stderr.write("a remark\n")
+UPDATE = """
+import json, os
+def update(text, left):
+    os.write(int(os.environ["LATCON_PROGRESS"]), (json.dumps({"text": text, "seconds_left": left}) + "\\n").encode())
+"""
+PROGRESS = UPDATE + r"""
+for left in (9, 4):
+    update(f"step {1 if left == 9 else 2}, {left} s left", left); time.sleep(0.2)
+sys.stderr.write("\x1b[0m\x1b[31ma remark\x1b[0m\n\n")
 """
 
 
@@ -87,16 +92,7 @@ def test_progress_lines_are_passed_on_and_messages_are_kept(stand_in, tmp_path, 
     stand_in(PROGRESS)
     lines = []
     program.run(["lattice"], tmp_path, lines.append)
-    assert list(dict.fromkeys(lines)) == ["step 1, 9 s left", "step 2, 4 s left"]
-    assert capsys.readouterr().err == "a remark\n"
-
-
-def test_without_pseudo_terminals_a_pipe_takes_messages(stand_in, tmp_path, monkeypatch, capsys):
-    def none():
-        raise OSError(19, "No such device")
-    monkeypatch.setattr(os, "openpty", none)
-    stand_in("sys.stderr.write('a remark\\n')")
-    program.run(["lattice"], tmp_path, False)
+    assert lines == ["step 1, 9 s left", "step 2, 4 s left"]
     assert capsys.readouterr().err == "a remark\n"
 
 
@@ -106,7 +102,7 @@ def test_results_are_found_after_a_change_of_folder(stand_in, tmp_path, monkeypa
     case = tmp_path / "a.prm"
     case.write_text("")
     monkeypatch.chdir(tmp_path)
-    run = latcon.commands._start(["lattice", str(case)], "out", None, False)
+    run = latcon.commands._run("lattice", case, "out", None, False, False, False)
     monkeypatch.chdir("/")
     assert run.directory == latcon.results.Run(tmp_path / "out").directory == tmp_path / "out"
 
@@ -120,27 +116,6 @@ def test_progress_is_shown_in_place_in_a_terminal_and_sparsely_in_a_log(stand_in
         monkeypatch.setattr(sys, "stderr", stream)
         program.run(["lattice"], tmp_path, True)
         assert stream.getvalue().startswith(shown)
-
-
-def test_messages_have_neither_progress_lines_nor_colours():
-    lines = program._Lines(program._Shower())
-    lines.feed("\r\x1b[Kdrawing report.html, 2 s so farerror: no package\n\x1b[0m\x1b[31mred\x1b[0m\n\x1b[0m\nover 5, 2 s left\n")
-    lines.close()
-    assert lines.messages == ["error: no package", "red", "over 5, 2 s left"]
-
-
-def test_progress_lines_are_found_however_they_are_cut():
-    text = "\r\x1b[Kstep 1\r\x1b[Kstep 22\r\x1b[Kone\r\nlatcon: two\n"
-    for size in range(1, len(text)):
-        shown = program._Shower()
-        seen = []
-        shown.line = seen.append
-        lines = program._Lines(shown)
-        for at in range(0, len(text), size):
-            lines.feed(text[at:at + size])
-        lines.close()
-        assert lines.messages == ["one", "latcon: two"]
-        assert all("step 22".startswith(line) or "step 1".startswith(line) or "one".startswith(line) for line in seen)
 
 
 STOPPABLE = """
@@ -194,8 +169,8 @@ def test_a_second_ctrl_c_kills_a_program_that_does_not_end(stand_in, tmp_path):
 
 def test_an_exception_of_the_progress_function_stops_the_program(stand_in, tmp_path):
     count, ready = tmp_path / "count", tmp_path / "ready"
-    stand_in(STOPPABLE.format(count=str(count), ready=str(ready)).replace(
-        "time.sleep(60)", "sys.stderr.write('\\r\\x1b[Kstep 1'); sys.stderr.flush(); time.sleep(60)"))
+    stand_in(UPDATE + STOPPABLE.format(count=str(count), ready=str(ready)).replace(
+        "time.sleep(60)", "update('step 1', None); time.sleep(60)"))
     def fail(line):
         raise ZeroDivisionError(line)
     with pytest.raises(ZeroDivisionError, match="step 1"):

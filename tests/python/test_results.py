@@ -12,6 +12,7 @@ import pytest
 
 import latcon
 from conftest import tiny_case
+from latcon.quantities import RECORDED
 
 CAN_MOUNT = os.geteuid() == 0 and subprocess.run(["unshare", "-m", "mount", "-t", "tmpfs", "none", "/mnt"], capture_output=True,
                                                  check=False).returncode == 0
@@ -37,6 +38,14 @@ def test_crack_has_values_uncertainties_and_units(crack):
         crack.crack.wavelenght
     assert str(latcon.Value(0.0243900138, 0.000292, "m")) == "0.02439 ± 0.00029 m"
     assert len(crack.near_tip) > 30
+
+
+def test_recorded_quantities_are_those_of_the_files(crack):
+    written = {name for file in ("crack", "near_tip") for name in json.loads((crack.directory / f"{file}.json").read_text())}
+    derived = {"zeta", *(name for name in RECORDED if "_over_d" in name)}
+    assert set(RECORDED) - derived <= written and not derived & written
+    others = {"pattern", "reason", "thresholds", "nearest_to_breaking", "skip_verification", "units", "sampled_from", "sampled_to"}
+    assert written - set(RECORDED) == others
 
 
 @pytest.mark.parametrize("file, name", [("crack.csv", "path"), ("energy.csv", "energy"), ("broken_bonds.csv", "broken_bonds")])

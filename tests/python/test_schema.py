@@ -156,11 +156,3 @@ def test_bad_input_is_refused_with_the_nearest_entry():
                             (("schema", quick, "--set", "Sheet/heigth=1"), "nearest known key: Sheet/height")):
         ended = run(*arguments)
         assert ended.returncode == 2 and not ended.stdout and part in ended.stderr
-
-
-def test_quantities_have_the_units_of_the_package():
-    from latcon.quantities import UNITS
-    known = latcon.schema().quantities
-    assert len(known) > 30
-    for name, unit in known.items():
-        assert UNITS.get(name.removesuffix("_uncertainty"), "1") == unit, name

@@ -13,15 +13,17 @@ import numpy as np
 import pytest
 from PIL import Image
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification" / "report"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
 import made_up_claims
-import pictures
-import report
-from claim_plots import MODULES, TABLES, all_plots
-from claim_tables import fitted_order, groups, largest_text, range_text
-from files import DamagedFile, read_table
 from made_up_claims import DECAY, FIRST_ROW, RUN_ERROR, write_claims
+
+from latcon.errors import UnreadableFile
+from latcon.files import read_columns
+from latcon.report import pictures
+from latcon.report.__main__ import main
+from latcon.report.claim_plots import MODULES, TABLES, all_plots
+from latcon.report.claim_tables import fitted_order, groups, largest_text, range_text
 
 
 decay_of = MODULES["intrinsic-length"].decay_of
@@ -51,7 +53,7 @@ def drawn_report(tmp_path, expect=0):
     """Runs the script. Returns the page and its messages on stderr."""
     errors = io.StringIO()
     with contextlib.redirect_stderr(errors):
-        assert report.main([str(tmp_path), "--quiet"]) == expect, errors.getvalue()
+        assert main(["report", str(tmp_path), "--quiet"]) == expect, errors.getvalue()
     page = tmp_path / "report.html"
     return page.read_text(encoding="utf-8") if page.exists() else "", errors.getvalue()
 
@@ -88,8 +90,8 @@ def test_each_claim_has_its_text_plots_and_error_metrics(tmp_path):
     html, _ = drawn_report(tmp_path)
     metrics = {
         "energy": ("order of the local energy 2.0", "order of the filtered energy 4.00",
-                   "elastic energy of the finite elements off the lattice&#x27;s by up to 1.0e-03",
-                   "kinetic energy of the finite elements off the lattice&#x27;s by up to 1.0e-03",
+                   "elastic energy of the finite elements off the lattice&#39;s by up to 1.0e-03",
+                   "kinetic energy of the finite elements off the lattice&#39;s by up to 1.0e-03",
                    "finite elements off the gradient energy by up to 2.0e-06"),
         "wave-speeds": ("order of the local continuum 2.0", "order of the gradient continuum 4.00",
                         f"a run of the lattice off the exact dispersion by up to {RUN_ERROR:.1e}",
@@ -119,7 +121,7 @@ def test_each_claim_has_its_text_plots_and_error_metrics(tmp_path):
             assert text in section
         for plot in plots:
             assert f"({plot.name}.csv)" in section
-            assert plot.claimed in section.replace("&#x27;", "'")
+            assert plot.claimed in section.replace("&#39;", "'")
     assert {plot.name for plot in all_plots()} | {"dispersion_runs", "steady_crack_curve"} == set(TABLES)
     for plot in all_plots():
         pixels = np.asarray(Image.open(tmp_path / f"{plot.name}.png").convert("RGB"), dtype=float)
@@ -239,11 +241,11 @@ def test_says_how_much_was_not_computed():
 def test_table_of_words_and_numbers(tmp_path):
     path = tmp_path / "t.csv"
     path.write_text('law,"x, y [m]",z\n"a, b",1,nan\nc,2,3\n')
-    table = read_table(path, ("x, y [m]", "z"), texts=("law",), finite=False)
+    table = read_columns(path, ("x, y [m]", "z"), texts=("law",), finite=False)
     assert list(table["law"]) == ["a, b", "c"]
     assert list(table["x, y [m]"]) == [1.0, 2.0]
     assert [key for key, _ in groups(table, "law")] == [("a, b",), ("c",)]
-    with pytest.raises(DamagedFile, match="line 2 holds a number that is not finite"):
-        read_table(path, ("z",), texts=("law",))
-    with pytest.raises(DamagedFile, match="has no column 'wave'"):
-        read_table(path, ("z",), texts=("wave",))
+    with pytest.raises(UnreadableFile, match="line 2 holds a number that is not finite"):
+        read_columns(path, ("z",), texts=("law",))
+    with pytest.raises(UnreadableFile, match="has no column 'wave'"):
+        read_columns(path, ("z",), texts=("wave",))

@@ -27,6 +27,8 @@ def test_typing_errors_have_a_nearest_word():
             (["help", "fractre"], "no command, section or entry 'fractre'; nearest: fracture")]:
         assert refused(*arguments) == "latcon: " + message
     assert re.search(r"unknown command 'zzz'; commands: verify, lattice, .*, schema; see", refused("zzz"))
+    for words in (["help", "gat"], ["resolv"], ["zzz"], []):  # commands that only the Python package starts are not suggested
+        assert not re.search(r"\b(gate|resolve)\b", refused(*words))
     assert re.search(r"a command is required: verify, lattice, ", refused())
 
 

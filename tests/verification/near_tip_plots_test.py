@@ -10,10 +10,10 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification" / "report"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
-from files import DamagedFile
-from near_tip_plots import opening_stress_picture, read_near_tip, triangulation, velocity_picture
+from latcon.errors import UnreadableFile
+from latcon.report.near_tip_plots import opening_stress_picture, read_near_tip, triangulation, velocity_picture
 
 PITCH, BEHIND, AHEAD, HALF = 1e-3, 20, 16, 18
 STRETCH = 2.0  # of the made-up sheet along x and y
@@ -112,8 +112,8 @@ def test_shows_the_stress_where_it_is(made):
 
 def test_names_what_is_wrong(made):
     made.vti.write_bytes(b"nothing of the kind")
-    with pytest.raises(DamagedFile):
+    with pytest.raises(UnreadableFile):
         read_near_tip(made.vti)
     write_field(made.vti, without=("velocity",))
-    with pytest.raises(DamagedFile, match="velocity"):
+    with pytest.raises(UnreadableFile, match="velocity"):
         read_near_tip(made.vti)

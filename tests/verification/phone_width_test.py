@@ -1,7 +1,7 @@
 """Checks in Chromium that on a screen as narrow as a phone neither the report nor a box in it scrolls horizontally."""
 from browser import Browser
 from made_up_sheet import write_torn_sheet
-from report_test import FAILS, HOLDS, PUBLISHED, REPORTED, report, write_fracture, write_verification
+from report_test import FAILS, HOLDS, PUBLISHED, REPORTED, main, write_fracture, write_verification
 
 WIDTH = 390  # [pixels]
 # Elements that extend beyond the window, and boxes whose contents do not fit.
@@ -25,7 +25,7 @@ def test_nothing_scrolls_sideways(tmp_path):
         write_fracture(runs / "fig1", [HOLDS, PUBLISHED])
         write_torn_sheet(runs / "torn")
         (runs / "torn" / "case.prm").write_text(f"subsection Sheet\n  set height = 0.1 # {'m' * WIDTH}\nend\n")
-        report.main([str(runs), "--quiet"])
+        main(["report", str(runs), "--quiet"])
         browser.resize(WIDTH, 844, phone=True)
         browser.open(runs / "report.html")
         browser.value(UNFOLD)

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification" / "report"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
-from frame import Frame
-from raster import Mesh, Raster
+from latcon.frames import Frame
+from latcon.report.raster import Mesh, Raster
 
 COLUMNS, ROWS, BREAKS = 10, 9, 2e-3  # sites; time at which the bonds across the middle break [s]
 
@@ -20,7 +20,7 @@ def made_up_frame():
     place = np.array(sites)
     distance = np.linalg.norm(place[:, None] - place[None], axis=2)
     bonds = np.argwhere(np.triu((distance > 0.5) & (distance < 1.1)))
-    return Frame(0.0, place, place, bonds, np.ones(len(bonds)), {"site": 100 + np.arange(len(place))})
+    return Frame(0.0, place, place, bonds, np.ones(len(bonds)), {"site": 100 + np.arange(len(place))}, {}, {})
 
 
 def broken_bonds(frame):
@@ -79,6 +79,6 @@ def test_what_flew_away_is_left_out(made):
 
 
 def test_bonds_without_triangles_are_lines(made):
-    chain = Frame(0.0, made.frame.reference, made.frame.position, np.array([(0, 1), (1, 2)]), np.ones(2), {})
+    chain = Frame(0.0, made.frame.reference, made.frame.position, np.array([(0, 1), (1, 2)]), np.ones(2), {}, {}, {})
     picture = made.raster.draw(Mesh(chain), chain.position, np.ones(len(chain.position)))
     assert np.count_nonzero(~np.isnan(picture)) == pytest.approx(2 * made.raster.pixels_per_unit, abs=2)

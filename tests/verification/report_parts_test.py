@@ -18,10 +18,9 @@ from PIL import Image
 from report_test import (AMPLITUDE, BEGIN, END, FOLDER, HOLDS, MOTION_FRAMES, OFFSET, PHASE, PICTURES, SLOPE, WAVELENGTH, drawn,
                          path_of_tip, read_page, write_fracture, write_verification)
 
-import animation
-import report
-from crack_path import fit_sinusoid
-from summary import with_uncertainty
+from latcon.quantities import number_text
+from latcon.report import animation, report
+from latcon.report.crack_path import fit_sinusoid
 
 
 def refusal(error):
@@ -31,7 +30,7 @@ def refusal(error):
         package.mkdir()
         (package / "__init__.py").touch()
         (package / "Image.py").write_text(f"raise {error}")
-        done = subprocess.run([sys.executable, FOLDER / "own_settings.py"], env=dict(os.environ, PYTHONPATH=folder),
+        done = subprocess.run([sys.executable, FOLDER / "__main__.py"], env=dict(os.environ, PYTHONPATH=folder),
                               capture_output=True, text=True, check=False)
     assert done.returncode == 69, done.stderr
     assert "(apt-get install python3-pil" in done.stderr
@@ -129,7 +128,7 @@ def test_a_name_that_is_no_text_is_shown_with_a_question_mark(runs):
 def test_a_user_without_a_home_gets_no_advice(runs):
     write_verification(runs, [HOLDS])
     environment = {name: value for name, value in os.environ.items() if name not in ("MPLCONFIGDIR", "XDG_CACHE_HOME", "XDG_CONFIG_HOME")}
-    done = subprocess.run([sys.executable, FOLDER / "report.py", runs, "--quiet"], env=dict(environment, HOME="/dev/null"),
+    done = subprocess.run([sys.executable, FOLDER / "__main__.py", "report", runs, "--quiet"], env=dict(environment, HOME="/dev/null"),
                           capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
 
@@ -149,8 +148,8 @@ def test_needs_more_points_than_coefficients():
 
 
 def test_gives_the_digits_that_the_uncertainty_leaves():
-    assert with_uncertainty(20.0576, 0.2328) == "20.06 ± 0.23"
-    assert with_uncertainty(2.34468, 0.0225) == "2.345 ± 0.022"
-    assert with_uncertainty(1234.5, 120.0) == "1234 ± 120"
+    assert number_text(20.0576, 0.2328) == "20.06 ± 0.23"
+    assert number_text(2.34468, 0.0225) == "2.345 ± 0.022"
+    assert number_text(1234.5, 120.0) == "1234 ± 120"
     for unknown in (None, 0.0, math.nan):
-        assert with_uncertainty(20.0576, unknown) == "20.06"
+        assert number_text(20.0576, unknown) == "20.06"

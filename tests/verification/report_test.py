@@ -19,11 +19,11 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-FOLDER = Path(__file__).resolve().parents[2] / "verification" / "report"
-sys.path.insert(0, str(FOLDER))
+FOLDER = Path(__file__).resolve().parents[2] / "python" / "latcon" / "report"
+sys.path.insert(0, str(FOLDER.parents[1]))
 
-import live
-import report
+from latcon.report import pages
+from latcon.report.__main__ import main
 
 # The crack of the made-up run [m].
 WAVELENGTH, AMPLITUDE, PHASE, OFFSET, SLOPE = 0.02, 0.0012, 0.7, 0.0003, 0.004
@@ -173,7 +173,7 @@ def drawn(folder, *options, expect):
     """Runs the script in this process. @return (stdout, stderr)"""
     streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(2)]
     with contextlib.redirect_stdout(streams[0]), contextlib.redirect_stderr(streams[1]):
-        exit_code = report.main([str(folder), *options])
+        exit_code = main(["report", str(folder), *options])
     texts = []
     for stream in streams:
         stream.seek(0)
@@ -194,7 +194,7 @@ def read_page(folder):
 def whole(module_path):
     whole = module_path / "runs"
     write_fracture(whole, [HOLDS, PUBLISHED])
-    assert report.main([str(whole), "--quiet"]) == 0
+    assert main(["report", str(whole), "--quiet"]) == 0
     return whole
 
 
@@ -316,7 +316,7 @@ def test_a_side_that_is_no_number_fails(runs):
 
 def test_without_the_library_of_the_plots_pictures_take_their_place(runs):
     write_fracture(runs, [HOLDS])
-    with mock.patch.object(live, "DYGRAPHS", runs):
+    with mock.patch.object(pages, "DYGRAPHS", runs):
         drawn(runs, "--quiet", expect=0)
     html, _ = read_page(runs)
     assert "new Dygraph" not in html
@@ -328,7 +328,7 @@ def test_without_the_library_of_the_plots_pictures_take_their_place(runs):
 
 def test_runs_as_a_script(runs):
     write_verification(runs, [FAILS])
-    command = ["/usr/bin/python3", str(FOLDER / "report.py"), str(runs)]
+    command = ["/usr/bin/python3", str(FOLDER / "__main__.py"), "report", str(runs)]
     loud = subprocess.run(command, capture_output=True, text=True, check=False)
     quiet = subprocess.run(command + ["--quiet"], capture_output=True, text=True, check=False)
     assert (loud.returncode, quiet.returncode) == (3, 3)

@@ -19,12 +19,11 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from browser import Browser
 from made_up_sheet import FRAMES, SPACING, write_torn_sheet
-from report_test import FAILS, HOLDS, REPORTED, report, write_verification
+from report_test import FAILS, FOLDER, HOLDS, REPORTED, main, write_verification
 
-import comparison
-import sheet_data
-from motion import read_motion
-from runs import read_run
+from latcon.report import sheet_data
+from latcon.report.motion import read_motion
+from latcon.report.runs import read_run
 
 SCREEN = 800  # height of a window [pixels]
 # Half of the last digit shown, and half of the step stored (sheet_data.py).
@@ -72,7 +71,7 @@ class ViewerTest(unittest.TestCase):
         write_verification(cls.runs / "verify", [HOLDS, REPORTED])
         write_torn_sheet(cls.runs / "torn")
         cls.page = cls.runs / "report.html"
-        assert report.main([str(cls.runs), "--quiet"]) == 0
+        assert main(["report", str(cls.runs), "--quiet"]) == 0
         cls.browser = cls.enterClassContext(Browser(1280, SCREEN))
 
     def setUp(self):
@@ -342,7 +341,7 @@ class ComparisonTest(unittest.TestCase):
                         "entries": [{"key": "Loading/strain y", "unit": "1", "first": "1.8", "second": "1.9"}], "paths": None}
             (folder / "compare").mkdir()
             (folder / "compare" / "compare.json").write_text(json.dumps(document))
-            self.assertEqual(comparison.main([str(folder / "compare"), "--quiet"]), 0)
+            self.assertEqual(main(["compare", str(folder / "compare"), "--quiet"]), 0)
             with Browser(1280, SCREEN) as browser:
                 browser.open(folder / "compare" / "compare.html")
                 browser.wait("document.querySelectorAll('.viewer.ready').length === 2")
@@ -374,9 +373,9 @@ class ComparisonTest(unittest.TestCase):
 
     def test_a_damaged_comparison_is_bad_input(self):
         with tempfile.TemporaryDirectory() as name:
-            self.assertEqual(comparison.main([name]), 2)
+            self.assertEqual(main(["compare", name]), 2)
             (Path(name) / "compare.json").write_text('{"first": "one"}')
-            self.assertEqual(comparison.main([name]), 2)
+            self.assertEqual(main(["compare", name]), 2)
             self.assertFalse((Path(name) / "compare.html").exists())
 
 
@@ -407,8 +406,8 @@ class SizeTest(unittest.TestCase):
 
     def test_fig_1_is_below_8_megabytes(self):
         """Checks the limits of a page. For Fig. 1 see published_test.py, which checks that its pictures are below 3 MB."""
-        scripts = sum(path.stat().st_size for path in [*(report.Path(report.__file__).parent).glob("*.js"),
-                                                       report.Path("/usr/share/javascript/dygraphs/dygraph.min.js")])
+        scripts = sum(path.stat().st_size for path in [*FOLDER.glob("templates/*.js"),
+                                                       Path("/usr/share/javascript/dygraphs/dygraph.min.js")])
         self.assertLess(sheet_data.LARGEST_SHEETS + scripts + 3_000_000, 8_000_000)
 
     def test_stored_numbers_are_read_back(self):
@@ -424,7 +423,7 @@ class FoldedTest(unittest.TestCase):
     def test_claims_that_fail_are_open(self):
         with tempfile.TemporaryDirectory() as name:
             write_verification(Path(name) / "verify", [HOLDS, FAILS])
-            self.assertEqual(report.main([name, "--quiet"]), 3)
+            self.assertEqual(main(["report", name, "--quiet"]), 3)
             html = (Path(name) / "report.html").read_text(encoding="utf-8")
         for claim, opened in (("energy", ""), ("prestretch", " open")):
             self.assertIn(f'<section id="claim-{claim}"><details class="claim"{opened}><summary>', html)

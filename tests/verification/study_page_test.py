@@ -17,18 +17,19 @@ from matplotlib.colors import to_rgb
 from PIL import Image
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification" / "report"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "pictures"))
 
 import gallery
-import phase_map
-import study
-import study_plots
 from near_tip_plots_test import write_field
-from pictures import shrink
-from report_test import MOTION_FRAMES, Page, write_fracture
-from study_plots import draw_sweep
-from study_quantities import MEASURED, NEAR_TIP, PATH, asked_quantities
-from study_runs import read_study
+from report_test import MOTION_FRAMES, Page, main, write_fracture
+
+from latcon.report import phase_map, study, study_plots
+from latcon.report.pictures import shrink
+from latcon.report.study_plots import draw_sweep
+from latcon.report.study_quantities import MEASURED, NEAR_TIP, PATH, asked_quantities
+from latcon.report.study_runs import read_study
 
 QUANTITIES = {quantity: None for quantity, *_ in MEASURED + NEAR_TIP} | {"speed_laboratory": 40.0, "end_time": 3e-3}
 WITHOUT = {"Next-nearest neighbours/present": "false"}
@@ -88,7 +89,7 @@ class MadeUpStudy(unittest.TestCase):
         """The parsed page with the pictures of some runs, and its HTML."""
         self.document["pictures"] = list(pictures)
         self.read()
-        self.assertEqual(study.main([str(self.folder), "--quiet"]), 0)
+        self.assertEqual(main(["study", str(self.folder), "--quiet"]), 0)
         html = (self.folder / "study.html").read_text(encoding="utf-8")
         page = Page(html)
         self.assertEqual(page.open, [])
@@ -422,7 +423,7 @@ class Gallery(MadeUpStudy):
     def test_without_a_study_it_says_what_makes_one(self):
         text, error = self.gallery(expect=2)
         self.assertEqual(text, "")
-        self.assertIn("no study was run here; `latcon study paper` makes one", error)
+        self.assertIn("study.json: No such file or directory; `latcon study paper` makes one", error)
         self.assertFalse((self.folder / "docs").exists())
 
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "support/errors.h"
 #include "support/folder_lock.h"
 #include "verification/bridge/laws.h"
@@ -76,18 +78,23 @@ struct ReportOptions
 };
 
 // The commands. Each runs on every MPI rank and returns the exit code of the program, or throws.
-support::ExitCode verify(const input::Options &options);                 ///< `latcon verify`
-support::ExitCode run_lattice(const input::Options &options);            ///< `latcon lattice`
-support::ExitCode run_fracture(const input::Options &options);           ///< `latcon fracture`
+support::ExitCode verify(const input::Options &options);                                       ///< `latcon verify`
+support::ExitCode run_lattice(const input::Options &options);                                  ///< `latcon lattice`
+support::ExitCode run_fracture(const input::Options &options);                                 ///< `latcon fracture`
 support::ExitCode compare_frames(const input::Options &options, const CompareOptions &chosen); ///< `latcon compare`
-support::ExitCode report(const input::Options &options, const ReportOptions &chosen);          ///< `latcon report`
-support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen);        ///< `latcon study`
-support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen);      ///< `latcon batch`
-support::ExitCode print_schema(const input::Options &options);                                 ///< `latcon schema`
+/// `latcon compare` of the cracks in two output directories.
+support::ExitCode compare_cracks(const input::Options &options, const std::string &first, const std::string &second);
+support::ExitCode report(const input::Options &options, const ReportOptions &chosen);     ///< `latcon report`
+support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen);   ///< `latcon study`
+support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen); ///< `latcon batch`
+support::ExitCode print_schema(const input::Options &options);                            ///< `latcon schema`
 
-/// `latcon resolve`: a line of JSON with facts on the program, then one for each line on standard input, which asks for
-/// the base case to be read ("base"), for the nearest of some words, numbers in SI units, the memory of runs, or a case
-/// with some changes: its cost, values and hashes, or its text. Problems are answers.
+/// Declared entries, shipped cases and claims as JSON; with a case its values.
+[[nodiscard]] nlohmann::ordered_json schema_document(const input::Options &options);
+/// `latcon resolve`: a line of JSON with the schema, cores and record of the program, then one for each line on
+/// standard input, which asks for the base case to be read ("base"), for the nearest of some words, numbers in SI
+/// units, the memory of runs, or a case with some changes: its cost, values and hashes, or its text. Problems are
+/// answers.
 support::ExitCode resolve_cases(const input::Options &options);
 /// `latcon gate`: checks the claims that a crack waits for, see require_verified(). @throws ClaimFailed
 support::ExitCode verify_before_cracks(const input::Options &options);
@@ -110,19 +117,6 @@ support::ExitCode init(const input::Options &options, const std::string &directo
 /// @param shows_progress whether a progress line is shown meanwhile
 /// @return the exit code of the script @throws OutputError
 support::ExitCode draw_report(const std::string &directory, bool quiet, bool shows_progress = false);
-
-/// A page that a script of the folder report/ draws from the files in an output directory.
-struct Page
-{
-  const char *script, *file; ///< names of the script and of the page
-  const char *repeat;        ///< how a command is repeated that found no Python to draw it: its options
-};
-/// The page of two cracks, of `latcon compare`.
-inline constexpr Page comparison_page{"comparison.py", "compare.html", ""};
-
-/// Draws a page. Without Python, or without packages that the page needs, what is missing is printed on standard error.
-/// @return whether the page was drawn @throws OutputError
-bool draw_page(const Page &page, const std::string &directory);
 
 /// Reads and checks the case that the options name; parameters.finish() throws its problems. Collective.
 void read_case(const input::Options &options, input::Case &input, input::Parameters &parameters);

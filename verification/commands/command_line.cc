@@ -181,9 +181,7 @@ std::string case_choices()
 
 support::ExitCode print_help(const CLI::App &app, const std::string &topic)
 {
-  std::vector<std::string> names;
-  for (const CLI::App *command : app.get_subcommands([](const CLI::App *) { return true; }))
-    names.push_back(command->get_name());
+  const std::vector<std::string> names = command_names(app);
   const bool is_command = std::find(names.begin(), names.end(), topic) != names.end();
   if (!topic.empty() && !is_command)
     return print_topic(topic, names);
@@ -292,19 +290,16 @@ support::ExitCode run_program(int argc, char **argv)
   add_case_command("continuum", "equilibrium or motion of the finite element sheet", "latcon continuum hole",
                    "-continuum",
                    [](const input::Options &chosen) { return elements::elements().run_continuum(chosen); });
-  CLI::App *fracture_command =
-    add_case_command("fracture", "verify the case's material and pre-stretch, then run its crack",
-                     "latcon fracture quick --set \"Loading/strain y=1.7\"", "",
-                     [](const input::Options &chosen)
-                     {
-                       return chosen.on_continuum ? elements::elements().run_continuum_fracture(chosen)
-                                                   : run_fracture(chosen);
-                     });
+  CLI::App *fracture_command = add_case_command(
+    "fracture", "verify the case's material and pre-stretch, then run its crack",
+    "latcon fracture quick --set \"Loading/strain y=1.7\"", "",
+    [](const input::Options &chosen)
+    { return chosen.on_continuum ? elements::elements().run_continuum_fracture(chosen) : run_fracture(chosen); });
   fracture_command->add_flag("--skip-verification", options.skip_verification,
                              "run the crack unverified; noted in every output");
   fracture_command->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
-  CLI::App *gate_command = add_case_command("gate", "check the claims that wait before a crack, run none", "latcon gate quick",
-                                            "-gate", verify_before_cracks);
+  CLI::App *gate_command = add_case_command("gate", "check the claims that wait before a crack, run none",
+                                            "latcon gate quick", "-gate", verify_before_cracks);
   for (CLI::App *of_crack : {fracture_command, gate_command})
     of_crack
       ->add_option_function<std::string>(

@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "verification/commands/command.h"
-#include "verification/commands/run_comparison.h"
 #include "verification/compare/difference_writer.h"
 #include "verification/input/units.h"
 #include "verification/output/output_file.h"
@@ -94,8 +93,8 @@ void require_own_directory(const std::string &directory, const compare::Frame &f
                               " is from, whose run.json and results.json would be lost: give another");
 }
 
-// Two output directories of cracks.
-support::ExitCode compare_cracks(const input::Options &options, const CompareOptions &chosen)
+// Refuses options for frames, and an output directory whose run.json would be lost. @throws InputError
+void require_options_for_cracks(const input::Options &options, const CompareOptions &chosen)
 {
   if (!(chosen.time.empty() && chosen.lattice_time.empty() && chosen.continuum_time.empty() &&
         chosen.tolerances.empty() && chosen.excluded.empty()) ||
@@ -107,24 +106,12 @@ support::ExitCode compare_cracks(const input::Options &options, const CompareOpt
     if (std::error_code none; std::filesystem::equivalent(options.output_dir, run, none))
       throw support::InputError("--output-dir " + options.output_dir +
                                 " is one of the runs, whose run.json would be lost: give another");
-  const RunComparison comparison = compare_runs(chosen.lattice, chosen.continuum);
-  print_dry_run(options, comparison.text());
-  if (options.dry_run)
-    return support::ExitCode::done;
-  Run run(options);
-  run.info().add("first_run", chosen.lattice);
-  run.info().add("second_run", chosen.continuum);
-  if (run.is_root())
-  {
-    output::write_file(run.directory() + "/compare.json", comparison.json(run.directory()));
-    output::write_file(run.directory() + "/compare.csv", comparison.csv());
-  }
-  run.end({}, support::ExitCode::done);
-  const bool drawn = run.is_root() && !options.no_report && draw_page(comparison_page, run.directory());
-  if (run.is_verbose())
-    std::cout << "\n"
-              << run.directory() << "/compare.json, compare.csv" << (drawn ? ", compare.html" : "") << std::endl;
-  return support::ExitCode::done;
+}
+
+bool holds_crack(const std::string &directory)
+{
+  std::error_code none;
+  return std::filesystem::is_regular_file(std::filesystem::path(directory) / "crack.json", none);
 }
 
 // Refuses one crack and something else, and explains what can be compared. @throws InputError
@@ -155,7 +142,10 @@ support::ExitCode compare_frames(const input::Options &options, const CompareOpt
     throw support::InputError("latcon compare has no case that --set could change");
   const bool first = holds_crack(chosen.lattice), second = holds_crack(chosen.continuum);
   if (first && second)
-    return compare_cracks(options, chosen);
+  {
+    require_options_for_cracks(options, chosen);
+    return compare_cracks(options, chosen.lattice, chosen.continuum);
+  }
   if ((first && is_folder_without(chosen.continuum, "continuum.pvd")) || second)
     refuse_mixture(chosen);
   if (!chosen.time.empty() && !(chosen.lattice_time.empty() && chosen.continuum_time.empty()))

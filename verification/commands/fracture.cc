@@ -8,6 +8,7 @@
 #include "verification/commands/crack_run.h"
 #include "verification/commands/dry_run.h"
 #include "verification/commands/lattice_motion.h"
+#include "verification/input/cracked_sheet.h"
 #include "verification/output/crack_film.h"
 #include "verification/output/near_tip_record.h"
 
@@ -15,19 +16,6 @@ namespace latcon::commands
 {
 namespace
 {
-
-lattice::EndLoads::End end_load(input::Case::End end)
-{
-  switch (end)
-  {
-  case input::Case::End::free:
-    return lattice::EndLoads::End::free;
-  case input::Case::End::absorbing:
-    return lattice::EndLoads::End::absorbing;
-  default:
-    return lattice::EndLoads::End::held;
-  }
-}
 
 std::string progress_text(const lattice::Simulation &simulation, const output::CrackRecord &record)
 {
@@ -46,28 +34,17 @@ struct Crack
 
 // Moves the sheet until the crack reaches the stop position or the time ends. Collective, with the same results on
 // every rank.
-Crack run_crack(const input::Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
-                bool skip_verification, output::Checkpoints &checkpoints, Run &run)
+Crack run_crack(const input::Case &input, const lattice::TriangularLattice &sheet, bool skip_verification,
+                output::Checkpoints &checkpoints, Run &run)
 {
-  const lattice::Edges edges{input.left_end == input::Case::End::held, input.right_end == input::Case::End::held, true,
-                             true};
   const lattice::RowPartition band(sheet, MPI_COMM_WORLD);
-  lattice::State state = lattice::homogeneous_state(band, material, input.deformation(), edges);
-  lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
-  lattice::Simulation simulation(
-    band, material, std::move(state), input.fracture_time_stepping(),
-    lattice::Fracture(band, material, *input.breaking_stretch, input.toughening_rule(), input.deformation()));
-  if (!edges.left || !edges.right)
-    simulation.load_ends(input.deformation(), end_load(input.left_end), end_load(input.right_end));
-  if (input.has_contact)
-    simulation.enable_contact(input.contact_law());
-  const std::vector<std::size_t> seed = input.seed(sheet);
-  simulation.cut(seed);
+  const std::unique_ptr<lattice::Simulation> cracked = input::cracked_sheet(input, band);
+  lattice::Simulation &simulation = *cracked;
 
   LatticeMotion motion(input, simulation, checkpoints, run);
   output::CrackRecord &record = motion.record();
   const double stop = input.stop_position * sheet.length();
-  const double seed_tip = sheet.reference(seed.back()).x();
+  const double seed_tip = sheet.reference(input.seed(sheet).back()).x();
   output::NearTipRecord near_tip(input, simulation, seed_tip);
   output::CrackFilm film(input, simulation, record, seed_tip, run.directory(), motion.writing());
   motion.go({"fracture", [&] { return simulation.state().time < input.end_time && record.tip_X() < stop; },
@@ -139,7 +116,7 @@ support::ExitCode run_fracture(const input::Options &options)
   output::Results results;
   if (claims)
     results = passed_or_reported(input, claims_before_fracture(material), bridge::laws_of_lattice(), options, run);
-  const Crack crack = run_crack(input, sheet, material, options.skip_verification, checkpoints, run);
+  const Crack crack = run_crack(input, sheet, options.skip_verification, checkpoints, run);
   results.add(crack.results);
   return end_crack(input, options, run, results, crack.measurement);
 }

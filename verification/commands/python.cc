@@ -26,31 +26,6 @@ namespace
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// The folder that contains the Python package: in the data folder, or beside it in the source tree.
-fs::path package_folder()
-{
-  const fs::path data = input::data_folder();
-  for (const fs::path &folder : {data / "python", data.parent_path() / "python"})
-    if (fs::exists(folder / "latcon" / "study"))
-      return folder;
-  throw support::Error(support::ExitCode::output_failed,
-                       (data / "python").string() + " is missing: a copy of the program needs share/latcon beside its "
-                                                    "bin, a symbolic link to the program does not");
-}
-
-// The environment of the user without variables that would change the interpreter.
-std::vector<std::string> environment_of_python(const fs::path &package)
-{
-  std::vector<std::string> kept{"PYTHONPATH=" + package.string()};
-  for (char **variable = environ; *variable != nullptr; ++variable)
-  {
-    const std::string text = *variable;
-    if (text.rfind("PYTHON", 0) != 0 && text.rfind("MPLBACKEND=", 0) != 0)
-      kept.push_back(text);
-  }
-  return kept;
-}
-
 Json json_of(const input::Options &options, const SweepOptions &sweep)
 {
   return {{"arguments", options.arguments},
@@ -69,25 +44,27 @@ Json json_of(const input::Options &options, const SweepOptions &sweep)
 }
 
 // Paths are words of their own: they need not be UTF-8.
-support::ExitCode continue_in_python(const std::string &command, const std::string &study,
-                                     const std::string &output_dir, const Json &options)
+support::ExitCode continue_in_python(const std::string &command, const input::Options &chosen,
+                                     const std::vector<std::string> &names, const Json &options)
 {
+  if (support::n_ranks() > 1)
+    throw support::InputError("`latcon " + command + "` is one process; run it without mpirun");
   const std::string python = python_interpreter();
   if (access(python.c_str(), X_OK) != 0)
     throw support::Error(support::ExitCode::output_failed,
                          "cannot start " + python + "; install python3, or set LATCON_PYTHON to its path");
-  const fs::path package = package_folder();
+  const std::string package = package_folder();
   std::vector<std::string> words{python,
                                  "-sP",
                                  "-m",
                                  "latcon",
                                  "--parsed",
                                  command,
-                                 study,
-                                 output_dir,
+                                 chosen.output_dir,
                                  fs::read_symlink("/proc/self/exe"),
-                                 input::data_folder(),
-                                 options.dump(-1, ' ', false, Json::error_handler_t::replace)};
+                                 input::data_folder()};
+  words.insert(words.end(), names.begin(), names.end());
+  words.push_back(options.dump(-1, ' ', false, Json::error_handler_t::replace));
   std::vector<std::string> environment = environment_of_python(package);
   const std::vector<char *> arguments = support::pointers(words), variables = support::pointers(environment);
   std::cout << std::flush;
@@ -102,6 +79,29 @@ support::ExitCode continue_in_python(const std::string &command, const std::stri
 }
 
 } // namespace
+
+std::string package_folder()
+{
+  const fs::path data = input::data_folder();
+  for (const fs::path &folder : {data / "python", data.parent_path() / "python"})
+    if (fs::exists(folder / "latcon" / "study"))
+      return folder;
+  throw support::Error(support::ExitCode::output_failed,
+                       (data / "python").string() + " is missing: a copy of the program needs share/latcon beside its "
+                                                    "bin, a symbolic link to the program does not");
+}
+
+std::vector<std::string> environment_of_python(const std::string &package)
+{
+  std::vector<std::string> kept{"PYTHONPATH=" + package};
+  for (char **variable = environ; *variable != nullptr; ++variable)
+  {
+    const std::string text = *variable;
+    if (text.rfind("PYTHON", 0) != 0 && text.rfind("MPLBACKEND=", 0) != 0)
+      kept.push_back(text);
+  }
+  return kept;
+}
 
 std::string python_interpreter()
 {
@@ -123,25 +123,26 @@ std::vector<std::string> shipped_studies()
 
 support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen)
 {
-  if (support::n_ranks() > 1)
-    throw support::InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
   Json all = json_of(options, chosen.sweep);
   all["shard"] = chosen.shard;
   all["collect"] = chosen.collect;
-  return continue_in_python("study", chosen.study, options.output_dir, all);
+  return continue_in_python("study", options, {chosen.study}, all);
 }
 
 support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen)
 {
-  if (support::n_ranks() > 1)
-    throw support::InputError("`latcon batch` writes scripts for one cluster; run it without mpirun");
   Json all = json_of(options, chosen.sweep);
   all["submit"] = chosen.submit;
   all["tasks"] = chosen.tasks;
   all["cpus_per_task"] = chosen.cpus_per_task;
   all["time"] = chosen.time;
   all["partition"] = chosen.partition;
-  return continue_in_python("batch", chosen.study, options.output_dir, all);
+  return continue_in_python("batch", options, {chosen.study}, all);
+}
+
+support::ExitCode compare_cracks(const input::Options &options, const std::string &first, const std::string &second)
+{
+  return continue_in_python("compare", options, {first, second}, json_of(options, {}));
 }
 
 } // namespace latcon::commands

@@ -19,7 +19,6 @@
 #include "verification/input/sha256.h"
 #include "verification/input/spelling.h"
 #include "verification/input/units.h"
-#include "verification/output/crack_quantities.h"
 
 namespace latcon::commands
 {
@@ -37,32 +36,6 @@ Json zeta(const input::Case &input)
   if (bond.law != input::ShellCase::Law::mooney_rivlin || !(bond.a > 0.))
     return nullptr;
   return bond.viscosity / bond.a * std::sqrt(bond.a / input.density) / input.spacing;
-}
-
-Json facts(const input::Options &options)
-{
-  input::Case input;
-  input::Parameters parameters;
-  input.declare(parameters);
-  Json entries = Json::array(), quantities = Json::array();
-  for (const input::Declaration &entry : parameters.declarations())
-  {
-    const std::string key = entry.section + "/" + entry.name;
-    entries.push_back({{"key", key},
-                       {"unit", parameters.unit(key)},
-                       {"number_unit", entry.unit.empty() ? "1" : entry.unit},
-                       {"is_number", entry.type == input::ValueType::number},
-                       {"is_whole", entry.type == input::ValueType::whole_number},
-                       {"is_list", entry.type == input::ValueType::numbers}});
-  }
-  constexpr const char *sources[] = {"crack", "near_tip", "derived"};
-  for (const output::CrackQuantity &quantity : output::crack_quantities())
-    quantities.push_back(
-      {{"name", quantity.name}, {"unit", quantity.unit}, {"source", sources[static_cast<int>(quantity.source)]}});
-  return {{"entries", entries},
-          {"quantities", quantities},
-          {"cores", support::available_cores()},
-          {"record", Json::parse(output::RunInfo(options.arguments).json({}))}};
 }
 
 // Answers requests; keeps the base case alone, so that an edit of its file changes no run.
@@ -196,7 +169,10 @@ support::ExitCode resolve_cases(const input::Options &options)
     std::puts(line.dump(-1, ' ', false, Json::error_handler_t::replace).c_str());
     std::fflush(stdout);
   };
-  print(facts(options));
+  Json facts = schema_document(options);
+  facts["cores"] = support::available_cores();
+  facts["record"] = Json::parse(output::RunInfo(options.arguments).json({}));
+  print(facts);
   Resolver resolver(options);
   for (std::string line; std::getline(std::cin, line);)
     print(resolver.answer(Json::parse(line)));

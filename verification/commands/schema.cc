@@ -9,7 +9,6 @@
 #include "verification/commands/command.h"
 #include "verification/input/case_text.h"
 #include "verification/input/shipped_cases.h"
-#include "verification/output/crack_quantities.h"
 
 namespace latcon::commands
 {
@@ -133,7 +132,7 @@ Json shipped_case_files()
 
 } // namespace
 
-support::ExitCode print_schema(const input::Options &options)
+nlohmann::ordered_json schema_document(const input::Options &options)
 {
   input::Case input;
   input::Parameters parameters;
@@ -152,8 +151,6 @@ support::ExitCode print_schema(const input::Options &options)
   document["version"] = output::program_version();
   document["git_commit"] = output::git_commit();
   document["cases"] = shipped_case_files();
-  for (const output::CrackQuantity &quantity : output::crack_quantities())
-    document["quantities"][quantity.name] = quantity.unit;
   const lattice::Material material = input.material();
   for (const claims::Claim &claim : claim_registry())
     document["claims"].push_back({{"name", claim.name},
@@ -170,6 +167,12 @@ support::ExitCode print_schema(const input::Options &options)
     document["case"] = {
       {"file", options.case_file}, {"values", std::move(values)}, {"resolved", parameters.resolved_text()}};
   }
+  return document;
+}
+
+support::ExitCode print_schema(const input::Options &options)
+{
+  const Json document = schema_document(options);
   if (support::is_root_rank())
     std::cout << document.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
   return support::ExitCode::done;

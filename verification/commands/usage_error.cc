@@ -30,14 +30,6 @@ std::string nearest_text(const std::string &given, const std::vector<std::string
   return nearest.empty() ? "" : "; nearest: " + nearest;
 }
 
-std::vector<std::string> command_names(const CLI::App &app)
-{
-  std::vector<std::string> names;
-  for (const CLI::App *command : app.get_subcommands([](const CLI::App *) { return true; }))
-    names.push_back(command->get_name());
-  return names;
-}
-
 void append_options(std::vector<std::string> &names, const CLI::App &app)
 {
   for (const CLI::Option *option : app.get_options())
@@ -73,6 +65,14 @@ std::string problem(const CLI::App &app, const CLI::App *command, const CLI::Par
 }
 
 } // namespace
+
+std::vector<std::string> command_names(const CLI::App &app)
+{
+  std::vector<std::string> names;
+  for (const CLI::App *command : app.get_subcommands([](const CLI::App *one) { return !one->get_group().empty(); }))
+    names.push_back(command->get_name());
+  return names;
+}
 
 std::string usage_error(const CLI::App &app, const CLI::ParseError &error)
 {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace CLI
 {
@@ -10,6 +11,9 @@ class ParseError;
 
 namespace latcon::commands
 {
+
+/// Names of the listed commands; those that only the Python package starts are not.
+[[nodiscard]] std::vector<std::string> command_names(const CLI::App &app);
 
 /// Message for a command line that could not be parsed: the unknown command, option or argument with the nearest known
 /// one, otherwise the words of the parser; and which help to read.

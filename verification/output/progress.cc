@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 namespace latcon::output
@@ -19,11 +20,19 @@ bool is_dumb_terminal()
   return kind != nullptr && std::strcmp(kind, "dumb") == 0;
 }
 
+// Descriptor of a program that shows the progress itself, the Python package, as a line of JSON per update; -1: none.
+int descriptor_of_viewer()
+{
+  const char *const text = std::getenv("LATCON_PROGRESS");
+  return text != nullptr && *text != '\0' ? std::atoi(text) : -1;
+}
+
 } // namespace
 
 Progress::Progress(bool wanted, std::chrono::milliseconds log_interval)
-  : shown_(wanted), on_terminal_(isatty(STDERR_FILENO) != 0 && !is_dumb_terminal()),
-    interval_(on_terminal_ ? std::chrono::milliseconds(200) : log_interval), start_(Clock::now()), last_(start_)
+  : shown_(wanted), on_terminal_(descriptor_of_viewer() < 0 && isatty(STDERR_FILENO) != 0 && !is_dumb_terminal()),
+    interval_(on_terminal_ || descriptor_of_viewer() >= 0 ? std::chrono::milliseconds(200) : log_interval),
+    start_(Clock::now()), last_(start_)
 {
 }
 
@@ -44,9 +53,16 @@ void Progress::show(const std::string &text, double fraction_done)
     return;
   last_ = Clock::now();
   const double elapsed = std::chrono::duration<double>(last_ - start_).count();
-  std::string line = text;
-  if (fraction_done > 0.01)
-    line += ", " + std::to_string(std::lround(elapsed * (1. / fraction_done - 1.))) + " s left";
+  const long left = fraction_done > 0.01 ? std::lround(elapsed * (1. / fraction_done - 1.)) : -1;
+  std::string line = text + (left >= 0 ? ", " + std::to_string(left) + " s left" : "");
+  if (const int viewer = descriptor_of_viewer(); viewer >= 0)
+  {
+    const nlohmann::json update{{"text", line}, {"seconds_left", left >= 0 ? nlohmann::json(left) : nullptr}};
+    line = update.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    if (write(viewer, line.data(), line.size()) < 0)
+      shown_ = false; // nobody reads
+    return;
+  }
   line = on_terminal_ ? "\r\033[K" + line : line + "\n";
   std::fputs(line.c_str(), stderr);
   std::fflush(stderr);

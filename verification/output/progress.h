@@ -7,7 +7,7 @@ namespace latcon::output
 {
 
 /// Progress indicator on standard error: on a terminal, a line that is updated several times per second; otherwise, for
-/// example in the log of a batch job, a new line at regular intervals.
+/// example in a log, a new line at intervals; or lines of JSON to the descriptor in LATCON_PROGRESS (reference.md).
 class Progress
 {
 public:

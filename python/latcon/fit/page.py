@@ -1,28 +1,22 @@
 """Page of a fit: tables and pictures in one file."""
 from __future__ import annotations
 
-import base64
-import html
 import io
 import math
 import pathlib
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
 from ..errors import LatconError
-from .record import replace
 
 if TYPE_CHECKING:
     import matplotlib.axes
     import matplotlib.figure
+    import pandas as pd
 
     from .result import Fit
 
-_STYLE = ("body{font:15px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}table{border-collapse:collapse}"
-          "td,th{padding:.2em .7em;text-align:right;border-bottom:1px solid #ccc}td:first-child,th:first-child{text-align:left}"
-          "img{max-width:100%}")
 # Near-equal sets and failed points that the page lists.
 _LISTED = 20
 # Parameters that the picture of pairs shows.
@@ -35,47 +29,44 @@ def write_page(fit: Fit, path: pathlib.Path) -> pathlib.Path:
     Raises
     ------
     LatconError
-        If matplotlib is missing.
+        If matplotlib or jinja2 is missing.
     """
+    try:
+        from ..report import pages
+        progress, pairs = _png(_draw_progress(fit)), _png(_draw_pairs(fit))
+    except ImportError as error:
+        raise LatconError("the page of a fit needs the Python packages matplotlib and jinja2 (Debian: python3-matplotlib, "
+                          "python3-jinja2)") from error
     points = fit.points
     lost = points[points["ended"] != "done"]
-    parts = ["<h1>Fit of a case to observations</h1>", f"<pre>{html.escape(str(fit))}</pre>",
-             "<h2>Observations</h2>", _html(fit.observations),
-             "<p>The difference is in units of the uncertainty of the observation and of the mean over seeds.</p>",
-             _picture(_draw_progress(fit), "Misfit of each point, and the least so far"),
-             "<h2>Parameters</h2>", _html(fit.parameters),
-             "<p><i>fixed_others</i>: uncertainty if all other parameters were known. If it is much smaller than the "
-             "uncertainty, the parameter trades off with others.</p>",
-             _picture(_draw_pairs(fit), "Points by misfit, the estimate, and its regions of 68 % and 95 % confidence"),
-             "<h2>Determined and undetermined combinations</h2>", _html(fit.directions),
-             "<p>Eigenvectors of half the Hessian of the misfit. A step of the uncertainty, in fractions of the range between the "
-             "bounds, raises the misfit by 1.</p>",
-             f"<h2>Sets near the best</h2><p>{len(fit.near_equal)} points are not distinguished from the best with 95 % "
-             "confidence.</p>", _html(fit.near_equal.drop(columns=["message", "ended"]).head(_LISTED))]
-    if len(lost):
-        parts += [f"<h2>Points without result</h2><p>{len(lost)} points were refused or failed.</p>",
-                  _html(lost.drop(columns=["misfit", "stage", *fit.observations.index]).head(_LISTED))]
-    replace(path, f"<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>Fit</title><style>{_STYLE}</style>"
-                  f"</head><body>{''.join(parts)}</body></html>\n")
+    pages.write_page(
+        path, "fit.html", title="Fit of a case to observations", with_viewer=False, with_plots=False, summary=str(fit),
+        observations=_table(fit.observations), parameters=_table(fit.parameters), directions=_table(fit.directions),
+        progress=progress, pairs=pairs, n_near=len(fit.near_equal), n_lost=len(lost),
+        near=_table(fit.near_equal.drop(columns=["message", "ended"]).head(_LISTED)),
+        lost=_table(lost.drop(columns=["misfit", "stage", *fit.observations.index]).head(_LISTED)))
     return path
 
 
-def _html(table: pd.DataFrame) -> str:
-    return str(table.to_html(float_format=lambda number: f"{number:.5g}", border=0, na_rep="not determined"))
+def _table(table: pd.DataFrame) -> tuple[list[str], list[tuple[str, list[tuple[str, str]]]]]:
+    """Head and rows for the template."""
+    def text(value: object) -> str:
+        if not isinstance(value, float):
+            return str(value)
+        return "not determined" if math.isnan(value) else f"{value:.5g}"
+    return (["", *(f"#{name}" for name in table.columns)],
+            [("", [("short", str(index)), *(("number", text(value)) for value in row)])
+             for index, row in zip(table.index, table.itertuples(index=False, name=None))])
 
 
-def _picture(figure: matplotlib.figure.Figure, caption: str) -> str:
+def _png(figure: matplotlib.figure.Figure) -> bytes:
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=100)
-    data = base64.b64encode(buffer.getvalue()).decode()
-    return f"<p><img alt=\"{caption}\" src=\"data:image/png;base64,{data}\"><br><i>{caption}.</i></p>"
+    return buffer.getvalue()
 
 
 def _figure(width: float, height: float) -> matplotlib.figure.Figure:
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise LatconError("the page of a fit needs the Python package matplotlib (Debian: python3-matplotlib)") from error
+    from matplotlib.figure import Figure
     return Figure(figsize=(width, height), layout="constrained")
 
 

@@ -7,13 +7,13 @@ import json
 import math
 import os
 import pathlib
-import secrets
 from collections.abc import Mapping
 from types import TracebackType
 from typing import Any
 
 from ..errors import LatconError, UnreadableFile
 from ..files import read_json, read_text
+from ..folder import write_atomically
 from .problem import Measurement, Problem
 
 FORMAT_VERSION = 1
@@ -116,8 +116,8 @@ class Record:
         path = self.directory / "fit.json"
         wanted = {"format": "latcon-fit", "format_version": FORMAT_VERSION, **self.problem.identity()}
         if not path.exists():
-            replace(self.case, self.problem.case)
-            replace(path, json.dumps(wanted, indent=1) + "\n")  # last: a fit without it has no evaluations
+            write_atomically(os.fspath(self.case), self.problem.case)
+            write_atomically(os.fspath(path), json.dumps(wanted, indent=1) + "\n")  # last: a fit without it has no evaluations
             return
         held = read_json(path)
         different = [name for name in wanted if held.get(name) != wanted[name]]
@@ -125,16 +125,6 @@ class Record:
             different.append("case")
         if different:
             raise LatconError(f"{self.directory}: holds another fit; different: {', '.join(different)}; choose another directory")
-
-
-def replace(path: pathlib.Path, text: str) -> None:
-    """Writes a file as a whole."""
-    part = path.with_name(f"{path.name}.{secrets.token_hex(8)}.part")
-    try:
-        part.write_text(text, encoding="utf-8")
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def read_evaluations(directory: pathlib.Path, remove_incomplete: bool = False) -> dict[int, Evaluation]:

@@ -1,31 +1,24 @@
-"""Runs of a fit on a local pool of processes."""
+"""Runs of a fit on the pool of processes that studies have."""
 from __future__ import annotations
 
-import concurrent.futures
-import fcntl
 import os
 import pathlib
 import shutil
-import threading
 from collections.abc import Callable, Iterable, Mapping
 
-from .. import commands
 from ..case import Case
-from ..errors import BadInput, ClaimFailed, OutputFailed, ProgramError
-from ..program import Progress
+from ..commands import run_words
+from ..errors import BadInput, ClaimFailed, Interrupted, OutputFailed, error_of
+from ..folder import prepare_run
+from ..program import find_program
 from ..results import Run, open_run
+from ..study.outcome import content, last_words, unfit_rows
+from ..study.pool import run_processes
 from .problem import SEED, Measurement, Problem
 from .record import Evaluation, Outcome, Record
 
 Point = tuple[int, str, Mapping[str, float]]
 """Number, stage and values of a point to evaluate."""
-
-# Seconds between attempts to lock a folder in which a run of a killed fit continues.
-_LOCK_INTERVAL = 0.2
-
-
-class _Stopped(Exception):
-    """The fit stops; raised in the threads of the pool."""
 
 
 def evaluate(record: Record, points: Iterable[Point], workers: int, keep_runs: bool, added: Callable[[], None]
@@ -43,29 +36,33 @@ def evaluate(record: Record, points: Iterable[Point], workers: int, keep_runs: b
     ValueError
         If a run does not have an observed quantity.
     """
-    stop = threading.Event()
-    with concurrent.futures.ThreadPoolExecutor(workers) as pool:
-        waiting: dict[concurrent.futures.Future[Outcome], int] = {}
-        outcomes: dict[int, dict[int, Outcome]] = {}
-        wanted = {number: (stage, values) for number, stage, values in points}
-        try:
-            for number, (_, values) in wanted.items():
-                outcomes[number] = {}
-                for seed in record.problem.seeds:
-                    waiting[pool.submit(_run_one, record, number, values, seed, keep_runs, stop)] = number
-            for ended in concurrent.futures.as_completed(waiting):
-                number, outcome = waiting[ended], ended.result()
-                outcomes[number][outcome.seed] = outcome
-                if len(outcomes[number]) == len(record.problem.seeds):
-                    stage, values = wanted[number]
-                    in_order = tuple(outcomes[number][seed] for seed in record.problem.seeds)
-                    record.add(Evaluation(number, stage, dict(values), in_order))
-                    added()
-        except BaseException:
-            stop.set()
-            for future in waiting:
-                future.cancel()
-            raise
+    problem = record.problem
+    wanted = {number: (stage, values) for number, stage, values in points}
+    outcomes: dict[int, dict[int, Outcome]] = {number: {} for number in wanted}
+    jobs = [(number, seed) for number in wanted for seed in problem.seeds]
+
+    def folder(job: int) -> pathlib.Path:
+        return record.directory / "runs" / "{:05}-{}".format(*jobs[job])
+
+    def start(job: int) -> tuple[list[str], str]:
+        number, seed = jobs[job]
+        case, place = case_of(problem, record.case, wanted[number][1], seed), folder(job)
+        continues = prepare_run(os.fspath(place), lambda: content(f"{place}/case.prm") == case.text())
+        options = [] if problem.command != "fracture" else ["--no-report", *["--skip-verification"] * problem.skip_verification]
+        words = run_words(problem.command, case, place, 1, continues, False, options)
+        return [os.fspath(find_program()), *words], f"{place}/log.txt"
+
+    def ended(job: int, status: int) -> None:
+        number, seed = jobs[job]
+        outcomes[number][seed] = _outcome(problem, seed, folder(job), status)
+        if not keep_runs:
+            shutil.rmtree(folder(job), ignore_errors=True)
+        if len(outcomes[number]) == len(problem.seeds):
+            stage, values = wanted[number]
+            record.add(Evaluation(number, stage, dict(values), tuple(outcomes[number][seed] for seed in problem.seeds)))
+            added()
+
+    run_processes(len(jobs), workers, start, ended, lambda _running: None, lambda: False)
 
 
 def case_of(problem: Problem, file: pathlib.Path, values: Mapping[str, float], seed: int) -> Case:
@@ -73,84 +70,20 @@ def case_of(problem: Problem, file: pathlib.Path, values: Mapping[str, float], s
     return problem.of(Case(file), values).set(SEED, seed)
 
 
-def _run_one(record: Record, number: int, values: Mapping[str, float], seed: int, keep_runs: bool, stop: threading.Event
-             ) -> Outcome:
-    problem = record.problem
-    case = case_of(problem, record.case, values, seed)
-    folder = record.directory / "runs" / f"{number:05}-{seed}"
-
-    def check(_line: str) -> None:
-        if stop.is_set():
-            raise _Stopped
-    try:
-        check("")
-        is_begun = folder.exists()
-        if is_begun:
-            _wait_for(folder, stop)
-            is_begun = _holds(folder, case)
-        outcome = Outcome(seed, "done", "", measure(problem, _run(problem, case, folder, is_begun, check)))
-    except ProgramError as error:
-        if isinstance(error, OutputFailed):
-            raise
-        ended = "refused" if isinstance(error, (BadInput, ClaimFailed)) else "failed"
-        outcome = Outcome(seed, ended, error.message, {})
-    if not keep_runs:
-        shutil.rmtree(folder, ignore_errors=True)
-    return outcome
-
-
 def measure(problem: Problem, run: Run) -> dict[str, Measurement]:
     """Observed quantities of a run by name."""
     return {observation.quantity: observation.of(run) for observation in problem.observations}
 
 
-def _run(problem: Problem, case: Case, folder: pathlib.Path, resume: bool, progress: Progress) -> Run:
-    try:
-        return _start(problem, case, folder, resume, progress)
-    except ClaimFailed:
-        if not (problem.command == "fracture" and (folder / "crack.json").is_file()):
-            raise
-    # A crack that differs from the case's own reference values was measured; one whose energies do not balance was not.
-    run = open_run(folder)
-    failed = run.info.get("failed_rows") or {"run.json does not say which rows failed": "unknown"}
-    if unfit := [f"{row} ({kind})" for row, kind in failed.items() if kind != "reference"]:
-        raise ClaimFailed("failed its checks: " + "; ".join(unfit), 3, folder)
-    return run
-
-
-def _start(problem: Problem, case: Case, folder: pathlib.Path, resume: bool, progress: Progress) -> Run:
-    if problem.command == "fracture":
-        return commands.fracture(case, folder, threads=1, resume=resume, skip_verification=problem.skip_verification,
-                                 report=False, progress=progress)
-    command = commands.lattice if problem.command == "lattice" else commands.continuum
-    return command(case, folder, threads=1, resume=resume, progress=progress)
-
-
-def _wait_for(folder: pathlib.Path, stop: threading.Event) -> None:
-    """Waits for a run that outlived a killed fit."""
-    with open(folder / ".latcon.lock", "ab") as file:
-        while True:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                return
-            except BlockingIOError:
-                if stop.wait(_LOCK_INTERVAL):
-                    raise _Stopped from None
-            except OSError:  # a file system without locks
-                return
-
-
-def _holds(folder: pathlib.Path, case: Case) -> bool:
-    """Whether a folder holds a run of the case; removes any other."""
-    try:
-        if (folder / "case.prm").read_text(encoding="utf-8") == case.text():
-            return True
-    except OSError:
-        pass
-    shutil.rmtree(folder)
-    return False
-
-
-def available_cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0))
+def _outcome(problem: Problem, seed: int, folder: pathlib.Path, status: int) -> Outcome:
+    message = last_words(content(f"{folder}/log.txt")).removeprefix("latcon: ")
+    error = error_of(status, message, folder) if status else None
+    if isinstance(error, (OutputFailed, Interrupted)):
+        raise error
+    if isinstance(error, ClaimFailed) and problem.command == "fracture" and (folder / "crack.json").is_file():
+        # A crack that differs from the case's own reference values was measured; one whose energies do not balance was not.
+        if unfit := unfit_rows(open_run(folder).info):
+            return Outcome(seed, "refused", f"failed its checks: {unfit}", {})
+    elif error:
+        return Outcome(seed, "refused" if isinstance(error, (BadInput, ClaimFailed)) else "failed", message, {})
+    return Outcome(seed, "done", "", measure(problem, open_run(folder)))

@@ -13,7 +13,7 @@ from .misfit import tabulate
 from .problem import Entries, Observation, Parameter, Problem, resolve_problem
 from .record import Record
 from .result import Fit
-from .runs import available_cores, evaluate
+from .runs import evaluate
 from .search import propose
 
 
@@ -84,7 +84,7 @@ def fit_case(case: CaseLike, parameters: Sequence[Parameter], observations: Sequ
             raise ValueError(f"{name} = {number}: must be positive")
     problem = resolve_problem(case, parameters, observations, command, seeds, skip_verification, entries)
     with Record(pathlib.Path(directory), problem) as record:
-        _Search(problem, record, evaluations, batch, workers or available_cores(), keep_runs, search_seed).run(progress)
+        _Search(problem, record, evaluations, batch, workers or len(os.sched_getaffinity(0)), keep_runs, search_seed).run(progress)
         return Fit(record.directory, problem, tuple(record.evaluations.values()))
 
 
@@ -109,8 +109,8 @@ class _Search:
             done = len(self._record.evaluations)
             rate = (time.monotonic() - begin) / max(1, done - held)
             misfits = tabulate(self._problem, list(self._record.evaluations.values())).misfits
-            indicator.line(f"{done} of {self._evaluations} points, least misfit {misfits.min():.4g}, "
-                           f"{max(0, self._evaluations - done) * rate:.0f} s left")
+            left = max(0, self._evaluations - done) * rate
+            indicator.line(f"{done} of {self._evaluations} points, least misfit {misfits.min():.4g}, {left:.0f} s left", left)
         try:
             for first in range(0, self._evaluations, self._batch):
                 numbers = range(first, min(first + self._batch, self._evaluations))

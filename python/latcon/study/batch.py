@@ -9,7 +9,7 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .folder import FolderLock, write_file
+from ..folder import FolderLock, write_file
 from .output import plan_table
 from .plan import plan_runs
 from .record import Printed

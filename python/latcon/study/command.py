@@ -1,33 +1,28 @@
-"""``latcon study`` and ``latcon batch``, with the options that the program has parsed."""
+"""``latcon study``, ``latcon batch`` and ``latcon compare`` of two cracks, with the options that the program has parsed."""
 from __future__ import annotations
 
 import os
-import shutil
 import signal
-import subprocess
-import sys
 import time
 import traceback
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..compare import compare_cracks
+from ..folder import FolderLock, prepare_run, remove, require_in_place, write_file
 from .batch import write_batch
-from .folder import FolderLock, require_in_place, write_file
 from .outcome import RunOutcome, RunState, is_begun, is_finished, read_outcome
 from .output import StudyResults, plan_table, result_table, study_csv, study_json
 from .plan import PlannedRun, Verification, base_text, plan_runs
 from .pool import run_processes
 from .program import (BAD_INPUT, CLAIM_FAILED, DONE, INTERNAL_ERROR, INTERRUPTED, OUTPUT_FAILED, SOLVER_FAILED, Ended, InputError,
                       Interrupted, Program, Signals)
-from .record import Printed, Progress, Record, output_is_lost, say_error
+from .record import Printed, Progress, Record, draw_page, output_is_lost, say_error
 from .refinement import refined_runs
 from .requested import read_requested_study, require_folder_of, require_no_refinement, verification_of
 from .shard import PLAN_FILE, parse_shard, plan_difference, plan_text, runs_of_shard
 from .table import judge_study
 
-# The runs of a killed study get SIGTERM, and write a checkpoint before they end [s].
-_PATIENCE_WITH_ORPHANS = 10.0
-_PACKAGES_MISSING = 69  # exit status of a script that has named them, see own_settings.py
 # Each shard holds the lock of the study for the time that writing its plan takes [s].
 _PATIENCE_WITH_SHARDS = 60.0
 
@@ -41,9 +36,10 @@ def run(command: str, options: Mapping[str, Any]) -> int:
         program = Program(options)
         if command == "study":
             study = _StudyCommand(program, printed, signals, options)
-            code, message = study.run(), ""
+            code = study.run()
         else:
-            code, message = write_batch(program, printed, options), ""
+            code = (write_batch if command == "batch" else compare_cracks)(program, printed, options)
+        message = ""
         if code == DONE and output_is_lost(printed):
             code, message = OUTPUT_FAILED, "cannot write standard output: it is closed or full"
         signals.deferred = True
@@ -185,12 +181,7 @@ class _StudyCommand:
             # A run that failed, as on a full disk, may have checkpoints.
             if self.resume and not os.path.exists(part) and is_begun(program, planned, whole, self.case(planned), skip):
                 os.rename(whole, part)
-            if os.path.exists(part):  # released at once: the run locks it for itself
-                FolderLock(part, _PATIENCE_WITH_ORPHANS).release()
-            continues = self.resume and is_begun(program, planned, part, self.case(planned), skip)
-            if not continues:
-                _remove(part)
-            os.makedirs(part, exist_ok=True)
+            continues = prepare_run(part, lambda: self.resume and is_begun(program, planned, part, self.case(planned), skip))
             command = [program.executable, "fracture", self.case(planned), "--side", planned.side, "--output-dir", part,
                        "--threads", "1", "--no-report"]
             command += ["--skip-verification"] * skip + ["--resume"] * continues + ["--yes"] * self.options["yes"]
@@ -201,7 +192,7 @@ class _StudyCommand:
             planned = plan[jobs[job]]
             whole = self.folder(planned)
             require_in_place(whole)
-            _remove(whole)
+            remove(whole)
             os.rename(whole + ".part", whole)
             outcome = outcomes[jobs[job]] = read_outcome(program, planned, whole, status)
             n_ended += 1
@@ -252,21 +243,10 @@ class _StudyCommand:
             self.printed.print(result_table(program, results))
         code = record.end([row for row in rows if row is not None], self.exit_code() if complete else INTERRUPTED)
         # A page of an earlier run may remain.
-        if complete and not self.options["no_report"] and self.draw_page():
+        if complete and not self.options["no_report"] and draw_page(
+                "study", self.directory, "study.html", "repeat the command with --resume, or with --collect after shards,"):
             self.say(f"{self.directory}/study.html")
         return code
-
-    def draw_page(self) -> bool:
-        """Draws the page. Nodes of a cluster may have no packages for it; then says so, since all results are written."""
-        script = f"{self.program.data}/report/study.py"
-        status = subprocess.run([sys.executable, "-s", script, self.directory, "--quiet"], check=False).returncode
-        if status == _PACKAGES_MISSING:
-            say_error(f"latcon: cannot draw {self.directory}/study.html without these packages; every other file is complete. To draw "
-                      "the page, repeat the command with --resume, or with --collect after shards, on a machine with Python and the "
-                      "packages of the report\n")
-        elif status:
-            raise OSError(0, "the report script failed", f"{self.directory}/study.html")
-        return status == 0
 
     def share_plan(self, text: str) -> None:
         """Records the plan of a study that runs in shards, and its sweep, unless they are recorded."""
@@ -307,10 +287,3 @@ class _StudyCommand:
             named = ", ".join(missing[:8]) + (", ..." if len(missing) > 8 else "")
             raise InputError(f"--collect: {len(missing)} of {len(self.results.plan)} runs have not been run to their end by this "
                              f"program: {named}; run their shards again")
-
-
-def _remove(folder: str) -> None:
-    if os.path.islink(folder) or os.path.isfile(folder):
-        os.remove(folder)
-    elif os.path.exists(folder):
-        shutil.rmtree(folder)

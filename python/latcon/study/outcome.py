@@ -55,10 +55,10 @@ def read_outcome(program: Program, run: PlannedRun, folder: str, exit_code: int 
     pattern = crack.get("pattern")
     if outcome.exit_code not in (DONE, CLAIM_FAILED) or not isinstance(pattern, str) or not pattern:
         outcome.state = RunState.REFUSED if outcome.exit_code == CLAIM_FAILED else RunState.FAILED
-        outcome.problem = printable(_last_words(_content(f"{folder}/log.txt")), 300)
+        outcome.problem = printable(last_words(content(f"{folder}/log.txt")), 300)
         return outcome
     if outcome.exit_code == CLAIM_FAILED:
-        outcome.problem = _unfit_rows(info)
+        outcome.problem = unfit_rows(info)
     if outcome.problem:
         outcome.state = RunState.REJECTED
         return outcome
@@ -66,16 +66,20 @@ def read_outcome(program: Program, run: PlannedRun, folder: str, exit_code: int 
     outcome.pattern = pattern
     reason = crack.get("reason")
     outcome.reason = reason if isinstance(reason, str) else ""
-    files = {"crack": crack, "near_tip": _object_in(f"{folder}/near_tip.json")}
-    for quantity in program.quantities:
-        value = files.get(quantity.source, {}).get(quantity.name)
-        if isinstance(value, (int, float)) and not isinstance(value, bool):
-            outcome.values[quantity.name] = float(value)
+    outcome.values |= measured_values(program, folder, run.spacing)
+    return outcome
+
+
+def measured_values(program: Program, folder: str, spacing: float) -> dict[str, float]:
+    """Returns the quantities of a measured crack by name."""
+    found = _object_in(f"{folder}/near_tip.json") | _object_in(f"{folder}/crack.json")
+    numbers = {name: _number(found, name, None) for name in program.units}
+    values = {name: float(value) for name, value in numbers.items() if value is not None}
     for name in ("wavelength", "amplitude", "crest_amplitude"):
         for suffix in ("", "_uncertainty"):
-            if name + suffix in outcome.values:
-                outcome.values[f"{name}_over_d{suffix}"] = outcome.values[name + suffix] / run.spacing
-    return outcome
+            if name + suffix in values:
+                values[f"{name}_over_d{suffix}"] = values[name + suffix] / spacing
+    return values
 
 
 def is_begun(program: Program, run: PlannedRun, folder: str, case: str, skip_verification: bool) -> bool:
@@ -95,7 +99,7 @@ def is_begun(program: Program, run: PlannedRun, folder: str, case: str, skip_ver
     skipped = info.get("skip_verification")
     # A killed run has not recorded whether it was verified.
     return ((not isinstance(skipped, bool) or skipped == skip_verification)
-            and _content(f"{folder}/case.prm") == _content(case) != "")
+            and content(f"{folder}/case.prm") == content(case) != "")
 
 
 def is_finished(program: Program, run: PlannedRun, folder: str, case: str, skip_verification: bool) -> bool:
@@ -104,7 +108,8 @@ def is_finished(program: Program, run: PlannedRun, folder: str, case: str, skip_
             and read_outcome(program, run, folder).state in (RunState.MEASURED, RunState.REJECTED))
 
 
-def _content(path: str) -> str:
+def content(path: str) -> str:
+    """Returns the text of a file; empty if it cannot be read."""
     try:
         return pathlib.Path(path).read_bytes().decode("utf-8", "replace")
     except OSError:
@@ -113,7 +118,7 @@ def _content(path: str) -> str:
 
 def _object_in(path: str) -> dict[str, Any]:
     try:
-        document = json.loads(_content(path))
+        document = json.loads(content(path))
     except ValueError:
         return {}
     return document if isinstance(document, dict) else {}
@@ -124,7 +129,7 @@ def _number(document: dict[str, Any], key: str, otherwise: Any) -> Any:
     return value if isinstance(value, (int, float)) and not isinstance(value, bool) else otherwise
 
 
-def _last_words(text: str) -> str:
+def last_words(text: str) -> str:
     """Returns the last message: everything from the last line that begins with the name of the program, or the last line."""
     text = "\n" + text.strip()
     begin = text.rfind("\nlatcon: ")
@@ -133,7 +138,7 @@ def _last_words(text: str) -> str:
     return text[begin + 1:].replace("\n", "; ")
 
 
-def _unfit_rows(info: dict[str, Any]) -> str:
+def unfit_rows(info: dict[str, Any]) -> str:
     """Returns the rows that failed and compare nothing with published values, each with its kind."""
     failed = info.get("failed_rows")
     if not isinstance(failed, dict) or not failed:

@@ -90,7 +90,7 @@ def _varied(program: Program, results: StudyResults) -> list[dict[str, Any]]:
         if not runs or runs[-1].run != run.run:
             runs.append(run)
     keys = dict.fromkeys(key for run in results.study.runs for key in run.own)
-    entries = [{"entry": key, "unit": program.entries[key].unit, "values": [run.values.get(key, "") for run in runs]} for key in keys]
+    entries = [{"entry": key, "unit": program.entries[key].unit or "", "values": [run.values.get(key, "") for run in runs]} for key in keys]
     return [entry for entry in entries if any(value != entry["values"][0] for value in entry["values"])]
 
 

@@ -1,7 +1,6 @@
 """The program, which resolves the cases of a study; exit codes, messages and signals as its own."""
 from __future__ import annotations
 
-import dataclasses
 import json
 import os
 import re
@@ -11,6 +10,9 @@ from collections.abc import Mapping, Sequence
 from types import FrameType
 from typing import Any
 
+from ..errors import LatconError
+from ..quantities import RECORDED
+from ..schema import Schema
 from .pool import end_with_parent, environment_of_children
 
 DONE, INTERNAL_ERROR, BAD_INPUT, CLAIM_FAILED, SOLVER_FAILED, OUTPUT_FAILED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 130
@@ -18,7 +20,7 @@ DONE, INTERNAL_ERROR, BAD_INPUT, CLAIM_FAILED, SOLVER_FAILED, OUTPUT_FAILED, INT
 _ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2, signal.SIGALRM, signal.SIGXCPU)
 
 
-class InputError(Exception):
+class InputError(LatconError):
     """Invalid input, with all problems that were found."""
 
     def __init__(self, *problems: str) -> None:
@@ -67,27 +69,6 @@ class Signals:
             raise Interrupted(number)
 
 
-@dataclasses.dataclass(frozen=True)
-class Entry:
-    """Entry of a case; `unit` is empty for entries that are not quantities, `number_unit` then "1"."""
-
-    key: str
-    unit: str
-    number_unit: str
-    is_number: bool
-    is_whole: bool
-    is_list: bool
-
-
-@dataclasses.dataclass(frozen=True)
-class Quantity:
-    """Quantity that a study records of each run; `source` is the file without its ending, or ``derived``."""
-
-    name: str
-    unit: str
-    source: str
-
-
 def printable(text: str, longest: int = 80) -> str:
     """Returns a text for a message: on one line, what does not show as ``\\xNN``, the middle omitted if it is longer."""
     if len(text.encode("utf-8", "surrogateescape")) > longest:
@@ -131,10 +112,9 @@ class Program:
                                           env=environment_of_children(), process_group=0,
                                           preexec_fn=end_with_parent(signal.SIGKILL))
         facts = self._answer()
-        self.entries = {entry["key"]: Entry(**entry) for entry in facts["entries"]}
+        self.entries = Schema(facts)
         self.sorted_entries = sorted(self.entries)
-        self.quantities = [Quantity(**quantity) for quantity in facts["quantities"]]
-        self.units = {quantity.name: quantity.unit for quantity in self.quantities}
+        self.units = RECORDED
         self.cores: int = facts["cores"]
         self.facts: dict[str, Any] = facts["record"] | {"command_line": options["arguments"]}
 

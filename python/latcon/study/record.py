@@ -7,19 +7,23 @@ import io
 import json
 import math
 import os
+import pathlib
 import resource
 import select
 import shutil
 import signal
 import subprocess
+import sys
 import time
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .folder import FolderLock, add_to_list, archive, is_listed, write_atomically, write_file
+from ..folder import FolderLock, add_to_list, archive, is_listed, write_atomically, write_file
 from .program import CLAIM_FAILED, DONE, INTERRUPTED, Ended, Program
 from .pool import end_with_parent, environment_of_children
 from .output import shortest
+
+PACKAGES_MISSING = 69  # exit status of a script that has named them, see report/__main__.py
 
 
 class Printed:
@@ -187,6 +191,19 @@ def say_error(text: str) -> None:
     """Prints to standard error, at once."""
     with contextlib.suppress(OSError):
         os.write(2, text.encode("utf-8", "surrogateescape"))
+
+
+def draw_page(kind: str, directory: str, page: str, repeat: str) -> bool:
+    """Draws a page by :mod:`latcon.report`. Nodes of a cluster may have no packages for it; then says so, since all results are
+    written, and how to draw it."""
+    script = pathlib.Path(__file__).parents[1] / "report" / "__main__.py"
+    status = subprocess.run([sys.executable, "-sP", script, kind, directory, "--quiet"], check=False).returncode
+    if status == PACKAGES_MISSING:
+        say_error(f"latcon: cannot draw {directory}/{page} without these packages; every other file is complete. To draw the page, "
+                  f"{repeat} on a machine with Python and the packages of the report\n")
+    elif status:
+        raise OSError(0, "the report script failed", f"{directory}/{page}")
+    return status == 0
 
 
 def output_is_lost(printed: Printed) -> bool:

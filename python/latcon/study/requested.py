@@ -8,7 +8,7 @@ import pathlib
 from collections.abc import Mapping
 from typing import Any
 
-from .folder import write_atomically
+from ..folder import write_atomically
 from .plan import Verification, parse_settings
 from .program import InputError, Program, printable, read_input
 from .shard import PLAN_FILE

@@ -7,11 +7,10 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
+from ..quantities import quantity_text
 from .outcome import RunOutcome, RunState
 from .statistical_tests import SampleMean
 from .study_file import UNDECIDED
-
-_DISPLAY = {"m": (1e2, " cm"), "m^2": (1e6, " mm²"), "s": (1e3, " ms"), "degrees": (1.0, "°"), "1": (1.0, "")}
 
 
 @dataclasses.dataclass
@@ -121,22 +120,3 @@ def _sum(values: Sequence[float]) -> float:
     for value in values:
         total += value
     return total
-
-
-def quantity_text(value: float, deviation: float | None, unit: str) -> str:
-    """Formats a number with a readable unit: lengths in cm, areas in mm^2, times in ms.
-
-    Parameters
-    ----------
-    deviation
-        Standard deviation in the same unit, or None.
-    """
-    scale, shown = _DISPLAY.get(unit, (1.0, " " + unit))
-    if deviation is None or not deviation > 1e-12 * abs(value):  # equal values have a deviation of round-off
-        return f"{scale * value:.4g}{shown}"
-    # Two digits of the deviation, and the value to the same decimal place.
-    spread = scale * deviation
-    digits = min(max(1 - math.floor(math.log10(spread)), 0), 12)
-    if digits > 6 and abs(scale * value) < 1e-3:
-        return f"{scale * value:.1e} ± {spread:.1e}{shown}"
-    return f"{scale * value:.{digits}f} ± {spread:.{digits}f}{shown}"

@@ -288,7 +288,7 @@ class _Reader:
             if row.against not in known:
                 against.problem("must be zeta or an entry of a case" + self.program.hint(row.against, known))
             else:
-                row.against_unit = "1" if row.against == "zeta" else self.program.entries[row.against].unit
+                row.against_unit = "1" if row.against == "zeta" else self.program.entries[row.against].unit or ""
         self.rule(place, row)
         if place.has("quick") and not place.at("quick").boolean() and self.quick:
             row.rule = Rule.REPORTED

@@ -10,7 +10,8 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NoReturn
 
-from .program import Entry, InputError, Program, printable
+from ..schema import Entry
+from .program import InputError, Program, printable
 
 SEED_ENTRY = "Lattice/noise seed"
 """Entry that the seeds of a run set."""
@@ -58,12 +59,12 @@ def parse_sweep(program: Program, text: str) -> Sweep:
                + (program.hint(name, list(program.entries)) or "; latcon entries lists them"))
     if name == SEED_ENTRY:
         refuse("seeds are set by --seeds")
-    if entry.is_list:
+    if entry.type == "numbers":
         refuse(f"{name} is a list; to vary lists, write a study file")
     if ":" in values:
-        if not entry.is_number and not entry.is_whole:
+        if entry.type not in ("number", "integer"):
             refuse(f"{name} is not a number; give its values separated by commas")
-        found = _grid(program, refuse, values, entry.number_unit)
+        found = _grid(program, refuse, values, entry.unit or "1")
     else:
         found = [value.strip(_BLANKS) for value in values.split(",")]
     if len(found) < 2:
@@ -77,14 +78,14 @@ def parse_sweep(program: Program, text: str) -> Sweep:
             also = "" if earlier[same] == value else ", also as " + printable(earlier[same])
             refuse(f"the value {printable(value)} is given twice{also}")
         earlier[same] = value
-    return Sweep(name, found, entry.is_number and all(isinstance(value, float) for value in canonical))
+    return Sweep(name, found, entry.type == "number" and all(isinstance(value, float) for value in canonical))
 
 
 def _canonical(program: Program, values: Sequence[str], entry: Entry) -> list[float | str]:
     """Returns numbers as SI values, and all other values as they are."""
-    if not entry.is_number and not entry.is_whole:
+    if entry.type not in ("number", "integer"):
         return list(values)
-    numbers = program.ask(numbers=list(values), unit=entry.number_unit)
+    numbers = program.ask(numbers=list(values), unit=entry.unit or "1")
     return [value if number["wrong"] else float(number["value"]) for value, number in zip(values, numbers)]
 
 

@@ -7,10 +7,11 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..quantities import quantity_text
 from .onset import Interval, OnsetFit, fit_onset
 from .outcome import RunOutcome
 from .plan import PlannedRun
-from .seeds import SeedStatistics, group_by_run, quantity_text, statistics
+from .seeds import SeedStatistics, group_by_run, statistics
 from .statistical_tests import SIGNIFICANCE, adjust_by_holm, isotonic_test, welch_p_value
 from .study_file import Rule, Study, StudyClaim, StudyRow
 

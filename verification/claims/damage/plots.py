@@ -1,8 +1,8 @@
 """Table and plot of the claim on damage."""
 import numpy as np
 
-from claim_tables import Plot, groups, largest_text, sorted_by
-from panels import Grid, colours_of, entry
+from latcon.report.claim_tables import Plot, groups, largest_text, sorted_by
+from latcon.report.panels import Grid, colours_of, entry
 
 LAWS = {"local": "local law", "gradient": "with gradient energy"}
 

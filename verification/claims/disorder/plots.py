@@ -1,7 +1,7 @@
 """Tables and plots of the claim on disorder."""
-from claim_tables import Plot, groups, largest_text, sorted_by
-from panels import Grid, entry
-from pictures import BLUE, GREEN, RED
+from latcon.report.claim_tables import Plot, groups, largest_text, sorted_by
+from latcon.report.panels import Grid, entry
+from latcon.report.pictures import BLUE, GREEN, RED
 
 MODULI = ("bulk modulus", "shear modulus")
 TABLES = {

@@ -1,9 +1,9 @@
 """Tables and plots of the claim on energy."""
 import numpy as np
 
-from claim_tables import WAVE, Plot, fitted_order, groups, largest_text, off, range_text, sorted_by, states
-from panels import LAW_COLOURS, MARKERS, Grid, colours_of, entry, headroom, logarithmic, note
-from pictures import BLACK, GREY
+from latcon.report.claim_tables import WAVE, Plot, fitted_order, groups, largest_text, off, range_text, sorted_by, states
+from latcon.report.panels import LAW_COLOURS, MARKERS, Grid, colours_of, entry, headroom, logarithmic, note
+from latcon.report.pictures import BLACK, GREY
 
 TABLES = {
     "sinusoidal_energy": ({"shells": None, "wave": ("L", "S")},

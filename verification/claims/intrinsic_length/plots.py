@@ -1,9 +1,9 @@
 """Tables and plots of the claim on the intrinsic length."""
 import numpy as np
 
-from claim_tables import Plot, groups, largest, largest_text, range_text, sorted_by
-from panels import Grid, entry, headroom, logarithmic, note
-from pictures import BLACK, BLUE, GREEN, GREY, RED, SKY
+from latcon.report.claim_tables import Plot, groups, largest, largest_text, range_text, sorted_by
+from latcon.report.panels import Grid, entry, headroom, logarithmic, note
+from latcon.report.pictures import BLACK, BLUE, GREEN, GREY, RED, SKY
 
 OTHER_COLOURS = ("#cc79a7", SKY, BLACK, GREY)
 

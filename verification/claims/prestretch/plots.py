@@ -3,9 +3,9 @@ from functools import partial
 
 import numpy as np
 
-from claim_tables import STATE, Plot, fitted_order, groups, sorted_by, states
-from panels import LAW_COLOURS, Grid, entry, logarithmic, note
-from pictures import BLACK, GREY, SKY
+from latcon.report.claim_tables import STATE, Plot, fitted_order, groups, sorted_by, states
+from latcon.report.panels import LAW_COLOURS, Grid, entry, logarithmic, note
+from latcon.report.pictures import BLACK, GREY, SKY
 
 PARTS = ("displacement", "stress", "energy", "reaction", "shape")
 OTHER_COLOURS = ("#cc79a7", SKY, BLACK, GREY)

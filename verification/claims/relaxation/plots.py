@@ -1,9 +1,9 @@
 """Tables and plots of the claim on relaxation."""
 import numpy as np
 
-from claim_tables import Plot, groups, largest_text, sorted_by
-from panels import Grid, entry
-from pictures import BLUE, GREEN, RED
+from latcon.report.claim_tables import Plot, groups, largest_text, sorted_by
+from latcon.report.panels import Grid, entry
+from latcon.report.pictures import BLUE, GREEN, RED
 
 TABLES = {
     "relaxation": ({"shells": None, "integrator": ("velocity Verlet", "Runge-Kutta-Chebyshev")},

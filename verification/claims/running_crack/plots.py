@@ -2,9 +2,9 @@
 import numpy as np
 from matplotlib.colors import TwoSlopeNorm
 
-from claim_tables import Plot, groups
-from panels import Grid, entry
-from pictures import BLACK
+from latcon.report.claim_tables import Plot, groups
+from latcon.report.panels import Grid, entry
+from latcon.report.pictures import BLACK
 
 SIDES = {"lattice": "lattice", "local": "local continuum", "gradient": "gradient continuum"}
 

@@ -1,8 +1,8 @@
 """Tables and plot of the claim on steady cracks."""
 import numpy as np
 
-from claim_tables import Plot, groups, largest_text
-from panels import Grid, colours_of, entry
+from latcon.report.claim_tables import Plot, groups, largest_text
+from latcon.report.panels import Grid, colours_of, entry
 
 TABLES = {
     "steady_crack": ({}, ("beta", "driving", "breaking elongation", "lattice speed", "exact speed")),

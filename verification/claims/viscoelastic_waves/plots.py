@@ -1,9 +1,9 @@
 """Tables and plots of the claim on waves in lattices with Maxwell branches."""
 from functools import partial
 
-from claim_tables import Plot, groups, largest_text, sorted_by, states
-from panels import WAVES, Grid, entry, logarithmic_along_x
-from pictures import BLUE, GREY
+from latcon.report.claim_tables import Plot, groups, largest_text, sorted_by, states
+from latcon.report.panels import WAVES, Grid, entry, logarithmic_along_x
+from latcon.report.pictures import BLUE, GREY
 
 
 def columns(theory, run):

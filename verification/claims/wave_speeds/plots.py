@@ -1,9 +1,9 @@
 """Tables and plots of the claim on wave speeds."""
 import numpy as np
 
-from claim_tables import WAVE, Plot, fitted_order, groups, largest, off, range_text, sorted_by, states
-from panels import LAW_COLOURS, MARKERS, WAVES, Grid, colours_of, entry, headroom, logarithmic, logarithmic_along_x, note
-from pictures import BLUE
+from latcon.report.claim_tables import WAVE, Plot, fitted_order, groups, largest, off, range_text, sorted_by, states
+from latcon.report.panels import LAW_COLOURS, MARKERS, WAVES, Grid, colours_of, entry, headroom, logarithmic, logarithmic_along_x, note
+from latcon.report.pictures import BLUE
 
 TABLES = {
     "wave_speeds": ({"shells": None, "wave": ("L", "S")},

@@ -35,6 +35,7 @@ class Latcon(CMakePackage):
     depends_on("py-numpy", type="run")
     depends_on("py-scipy", type="run")
     depends_on("py-pandas", type="run")
+    depends_on("py-jinja2", type="run")
     depends_on("py-matplotlib", type="run")
 
     generator("ninja")

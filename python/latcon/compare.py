@@ -1,0 +1,184 @@
+"""``latcon compare`` of two cracks: quantities, entries of their cases, distance of their paths."""
+from __future__ import annotations
+
+import csv
+import dataclasses
+import io
+import math
+import os
+import pathlib
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from .errors import UnreadableFile
+from .files import read_columns, read_json
+from .folder import write_file
+from .frames import Floats
+from .quantities import quantity_text
+from .study.outcome import measured_values, unfit_rows
+from .study.output import shortest
+from .study.program import CLAIM_FAILED, DONE, InputError, Program
+from .study.record import Printed, Record, draw_page, json_text
+
+SIDES = ("first", "second")
+_PARTS = ("first", "first_uncertainty", "second", "second_uncertainty", "difference", "difference_over_uncertainty")
+
+
+@dataclasses.dataclass
+class _Crack:
+    """Measured crack of a run."""
+
+    name: str  # of the directory, as given
+    pattern: str
+    side: str
+    problem: str  # rows that make it unfit as a measurement; empty if there are none
+    entries: dict[str, str]
+    spacing: float  # [m]
+    values: dict[str, float]
+    X: Floats
+    Y: Floats
+
+
+def compare_cracks(program: Program, printed: Printed, options: Mapping[str, Any]) -> int:
+    """Compares the cracks in two output directories. Returns the exit code.
+
+    Raises
+    ------
+    InputError
+        If a file is missing or damaged.
+    """
+    directory = options["output_dir"]
+    try:
+        cracks = [_read_crack(program, options[side]) for side in SIDES]
+    except UnreadableFile as error:
+        raise InputError(str(error)) from None
+    quantities, paths = _quantities(program, cracks), path_distance(*((crack.X, crack.Y) for crack in cracks))
+    entries = [{"key": key, "unit": (program.entries[key].unit or "") if key in program.entries else "", "first": value,
+                "second": cracks[1].entries.get(key, "")}
+               for key, value in sorted(cracks[0].entries.items()) if cracks[1].entries.get(key) != value]
+    if not options["quiet"]:
+        printed.print(_text(cracks, quantities, entries, paths))
+    if options["dry_run"]:
+        return DONE
+    record = Record(program, printed, directory, options, False)
+    record.add(first_run=cracks[0].name, second_run=cracks[1].name)
+    both = {name: {side: getattr(crack, name) for side, crack in zip(SIDES, cracks)} for name in ("side", "problem", "pattern")}
+    document = {**{side: crack.name for side, crack in zip(SIDES, cracks)},
+                **{f"{side}_folder": os.path.relpath(os.path.realpath(crack.name), os.path.realpath(directory))
+                   for side, crack in zip(SIDES, cracks)},
+                "side": both["side"], "failed_checks": both["problem"], "pattern": both["pattern"], "quantities": quantities,
+                "entries": entries, "paths": paths and paths | {
+                    f"{name}_over_d": paths[name] / cracks[0].spacing for name in ("rms_distance", "largest_distance")}}
+    write_file(f"{directory}/compare.json", json_text(document))
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\n")
+    writer.writerow(["quantity", "unit", *_PARTS])
+    writer.writerows([row["name"], row["unit"], *(shortest(row[part]) for part in _PARTS)] for row in quantities)
+    write_file(f"{directory}/compare.csv", table.getvalue())
+    code = record.end([], DONE)
+    is_drawn = not options["no_report"] and draw_page("compare", directory, "compare.html", "repeat the command")
+    if not options["quiet"]:
+        printed.print(f"\n{directory}/compare.json, compare.csv{', compare.html' if is_drawn else ''}\n")
+    return code
+
+
+def _read_crack(program: Program, name: str) -> _Crack:
+    folder = pathlib.Path(name)
+    info, crack = read_json(folder / "run.json"), read_json(folder / "crack.json")
+    pattern, entries = crack.get("pattern"), info.get("entries", {})
+    if info.get("exit_code") not in (DONE, CLAIM_FAILED) or not isinstance(pattern, str) or not pattern:
+        raise InputError(f"{name}: its crack was not measured; crack.json or run.json is damaged, or the run has not ended")
+    try:
+        spacing = float(entries["Sheet/spacing"])
+    except (KeyError, TypeError, ValueError):
+        raise InputError(f"{folder / 'run.json'}: does not hold the entries of the case") from None
+    path = read_columns(folder / "crack.csv", ("X", "Y"))
+    if (back := np.flatnonzero(np.diff(path["X"]) < 0)).size:
+        raise InputError(f"{folder / 'crack.csv'}: line {back[0] + 3}: damaged: X decreases")
+    # Cracks of the lattice do not name their side.
+    side, problem = crack.get("side", "lattice"), unfit_rows(info) if info["exit_code"] == CLAIM_FAILED else ""
+    return _Crack(name, pattern, side, problem, entries, spacing, measured_values(program, name, spacing), path["X"], path["Y"])
+
+
+def _quantities(program: Program, cracks: Sequence[_Crack]) -> list[dict[str, Any]]:
+    """Returns the quantities that at least one crack has, with uncertainties of one standard deviation."""
+    rows = []
+    for name, unit in program.units.items():
+        (one, one_sigma), (other, other_sigma) = (
+            (crack.values.get(name), crack.values.get(f"{name}_uncertainty")) for crack in cracks)
+        if name.endswith("_uncertainty") or one is None and other is None:
+            continue
+        difference = None if one is None or other is None else other - one
+        combined = 0.0 if one_sigma is None or other_sigma is None else math.hypot(one_sigma, other_sigma)
+        rows.append({"name": name, "unit": unit, "first": one, "first_uncertainty": one_sigma, "second": other,
+                     "second_uncertainty": other_sigma, "difference": difference,
+                     "difference_over_uncertainty": difference / combined if difference is not None and combined > 0 else None})
+    return rows
+
+
+def path_distance(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> dict[str, float] | None:
+    """Returns the distance along Y between two paths (X, Y) [m], over the X that both cover; None if there is none.
+
+    Points between those of a path, whose X does not decrease, are interpolated linearly.
+    """
+    if not all(len(X) for X, _ in (first, second)):
+        return None
+    begin, end = max(X[0] for X, _ in (first, second)), min(X[-1] for X, _ in (first, second))
+    if not end > begin:
+        return None
+    at = np.sort(np.concatenate(([begin, end], *(X[(X > begin) & (X < end)] for X, _ in (first, second)))))
+    apart = _heights(second, at) - _heights(first, at)
+    largest = int(np.argmax(np.abs(apart)))
+    a, b = apart[:-1], apart[1:]
+    integral = np.cumsum(np.diff(at) * (b * b + b * a + a * a) / 3)[-1]  # the square of a linear function
+    return {"X_begin": float(begin), "X_end": float(end), "rms_distance": math.sqrt(integral / (end - begin)),
+            "largest_distance": float(abs(apart[largest])), "largest_distance_X": float(at[largest])}
+
+
+def _heights(path: tuple[Floats, Floats], at: Floats) -> Floats:
+    """Returns Y of a path at X that it covers; of several points at one X the first counts."""
+    X, Y = path
+    after = np.searchsorted(X, at)
+    before = np.maximum(after - 1, 0)
+    width = np.where(X[after] > X[before], X[after] - X[before], 1.0)
+    between = Y[before] + (Y[after] - Y[before]) * (at - X[before]) / width
+    return np.where((X[after] == at) | (after == 0), Y[after], between)
+
+
+def _text(cracks: Sequence[_Crack], quantities: Sequence[Mapping[str, Any]], entries: Sequence[Mapping[str, str]],
+          paths: Mapping[str, float] | None) -> str:
+    def cell(row: Mapping[str, Any], part: str) -> str:
+        return "-" if row[part] is None else quantity_text(row[part], row.get(f"{part}_uncertainty"), row["unit"])
+
+    names = [crack.name for crack in cracks]
+    rows = [["quantity", *names, "difference", "/ uncertainty"]]
+    for name in ("side", "pattern"):
+        values = [getattr(crack, name) for crack in cracks]
+        if name == "pattern" or values[0] != values[1]:
+            rows.append([name, *values, "none" if values[0] == values[1] else "differs", ""])
+    for row in quantities:
+        ratio = row["difference_over_uncertainty"]
+        rows.append([row["name"], *(cell(row, part) for part in (*SIDES, "difference")), "" if ratio is None else f"{ratio:+.1f}"])
+    text = _table(rows) + "\n"
+    text += "".join(f"{crack.name} failed its checks, and is no measurement: {crack.problem}\n"
+                    for crack in cracks if crack.problem)
+    if entries:
+        units = ["" if entry["unit"] == "1" else entry["unit"] for entry in entries]
+        text += _table([["entry", *names, "unit"],
+                        *([entry["key"], entry["first"], entry["second"], unit] for entry, unit in zip(entries, units))])
+    else:
+        text += "The cases have the same entries.\n"
+    if not paths:
+        return text + "\nThe paths have no stretch of X in common.\n"
+    begin, end, at = (quantity_text(paths[name], None, "m") for name in ("X_begin", "X_end", "largest_distance_X"))
+    rms, largest = (f"{quantity_text(paths[name], None, 'm')} ({paths[name] / cracks[0].spacing:.3g} d)"
+                    for name in ("rms_distance", "largest_distance"))
+    return text + f"\nDistance between the paths, X from {begin} to {end}: rms {rms}, largest {largest} at X = {at}\n"
+
+
+def _table(rows: Sequence[Sequence[str]]) -> str:
+    """Returns columns two blanks apart."""
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    return "".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() + "\n" for row in rows)

@@ -1,0 +1,1 @@
+"""Pages of output directories: report of runs, study, comparison of two cracks."""

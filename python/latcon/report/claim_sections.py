@@ -1,0 +1,93 @@
+"""Sections of the page about claims: statement, plots with their error metrics, rows."""
+from .claim_plots import PLOTS
+from .pages import MARKS, first_sentence, number, plural, row, superscripts
+from .summary import VERDICTS, ratio_text, tally_of
+
+# More rows than these are folded.
+MOST_OPEN_ROWS = 8
+# Verdicts of a claim by the class that colours them.
+WORDS = {"fails": "fails", "holds": "holds", "warns": "holds, not verified", "reported": "reported"}
+
+# Title and statement of the rows that compare a crack with published values. No claim of the program computes them.
+FRACTURE = (
+    "the crack beside the published one",
+    "The crack of the lattice is measured and compared with the published values. No continuum is involved, and no "
+    "agreement between lattice and continuum is claimed beyond the onset of fracture. Pictures of the crack are in the "
+    "section of its run.")
+
+
+def claim_sections(runs, plots):
+    """A section per claim, failing claims first. `plots`: {folder of a run: {plot name: (PNG file, metrics)}}."""
+    entries, texts = shared_rows(runs), claim_texts(runs)
+    return [claim_section(name, entries.get(name, []), runs, plots, texts) for name in claim_order(entries, plots, texts)]
+
+
+def claim_texts(runs):
+    """{name: (title, statement)} of the claims that the runs checked, in the order in which they are checked."""
+    return {**{name: text for run in runs for name, text in run.claims.items()}, "fracture": FRACTURE}
+
+
+def claim_order(entries, plots, texts):
+    """Claims that have rows or plots: failing claims first, then in the order of `texts`, then in that of the rows."""
+    made = {name for drawn in plots.values() for name in drawn}
+    drawn = [claim for claim, own in PLOTS.items() if any(plot.name in made for plot in own)]
+    names = list(dict.fromkeys([*entries, *drawn]))
+    known = list(texts)
+    return sorted(names, key=lambda name: (not any(check.verdict == "fails" for check, _ in entries.get(name, [])),
+                                           known.index(name) if name in known else len(known)))
+
+
+def shared_rows(runs):
+    """Rows per claim, {claim: [(check, names of runs), ...]}, failing rows first; a row of several runs is listed once."""
+    runs_of = {}
+    for run in runs:
+        for check in run.checks:
+            # Compared as text, because nan is not equal to itself.
+            runs_of.setdefault(repr(check), (check, []))[1].append(run.name)
+    entries = {}
+    for check, names in runs_of.values():
+        entries.setdefault(check.claim, []).append((check, list(dict.fromkeys(names))))
+    return {claim: sorted(rows, key=lambda entry: VERDICTS.index(entry[0].verdict)) for claim, rows in entries.items()}
+
+
+def claim_section(name, entries, runs, plots, texts):
+    """Contents of the section of one claim: a line that unfolds, open if the claim fails; plots; failing rows, and the others,
+    which are folded if there are many."""
+    tally = tally_of(None, name, [check for check, _ in entries])
+    counts = ", ".join(f"{tally.count[v]} {plural(tally.count[v], one, many)}"
+                       for v, one, many in (("fails", "fails", "fail"), ("holds", "holds", "hold"),
+                                            ("reported", "reported", "reported")) if tally.count[v])
+    show_runs = len(runs) > 1
+    failing = [claim_row(check, names, show_runs) for check, names in entries if check.verdict == "fails"]
+    others = [claim_row(check, names, show_runs) for check, names in entries if check.verdict != "fails"]
+    folded = f"{len(others)} {plural(len(others), 'row', 'rows')}"
+    drawn = {plot for made in plots.values() for plot in made}
+    return {
+        "name": name, "kind": tally.kind, "verdict": f"{MARKS[tally.kind]} {WORDS[tally.kind]}",
+        "heading": f"{name}: {texts[name][0]}" if name in texts else name,
+        "counts": counts + ("" if tally.worst is None else f", worst error / tolerance {ratio_text(tally.worst)}"),
+        "explanation": " ".join([*(texts[name][1:] if name in texts else ()),
+                                 *(plot.claimed for plot in PLOTS.get(name, ()) if plot.name in drawn)]),
+        "plots": [figure for plot in PLOTS.get(name, ()) for figure in plot_figures(plot, runs, plots)],
+        "head": ["verdict", "quantity", "unit", "#lattice", "#continuum", "#published" if name == "fracture" else "#theory",
+                 "#error", "#tolerance", *["run"] * show_runs],
+        "failing": failing, "others": others, "is_short": len(others) <= MOST_OPEN_ROWS,
+        "summary": folded + (plural(len(others), " that does not fail", " that do not fail") if failing else ""),
+    }
+
+
+def plot_figures(plot, runs, plots):
+    """A plot with its error metrics of the first run that has it, and different ones of other runs, which are folded."""
+    made = [(run, *plots[run.folder][plot.name]) for run in runs if plot.name in plots.get(run.folder, {})]
+    return [{"png": png, "metrics": metrics, "of_run": run.name if number else None,
+             "alt": f"{plot.name}, run {run.name}. {first_sentence(plot.caption)}",
+             "caption": f"{plot.caption}{f' Run {run.name}.' if number or len(runs) > 1 else ''} ({plot.name}.csv)"}
+            for number, (run, png, metrics) in enumerate(made) if not number or png.read_bytes() != made[0][1].read_bytes()]
+
+
+def claim_row(check, shared, show_runs):
+    """One checked quantity."""
+    cells = [("words", superscripts(check.quantity)), ("short", superscripts(check.unit))]
+    cells += [("number", number(value, ".7g")) for value in (check.lattice, check.continuum, check.theory)]
+    cells += [("number", number(check.error, ".2e")), ("number", number(check.tolerance, ".3g"))]
+    return row(check.kind, cells + [("short", ", ".join(shared))] * show_runs, check.word)

@@ -1,0 +1,129 @@
+"""The path of a crack through the undeformed sheet: its best-fitting sinusoid, and its picture."""
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..quantities import number_text
+from .pictures import BLUE, COLOUR_MAP, GREY, RED, WIDTH, Page, save
+from .runs import has_rows
+
+LEFT, RIGHT, TOP = 1.0, 0.25, 0.45  # margins of the axes [in]
+
+
+@dataclass(frozen=True)
+class Sinusoid:
+    """Y(X) = offset + slope (X - origin) + amplitude sin(2 pi (X - origin) / wavelength + phase); lengths in m."""
+
+    origin: float
+    offset: float
+    slope: float
+    amplitude: float
+    phase: float
+    wavelength: float
+
+    def __call__(self, X):
+        turn = 2 * np.pi * (X - self.origin) / self.wavelength
+        return self.offset + self.slope * (X - self.origin) + self.amplitude * np.sin(turn + self.phase)
+
+
+def fit_sinusoid(X, Y, wavelength, begin, end):
+    """Least-squares sinusoid of a given wavelength through the part of a path between begin and end, all in m.
+
+    None if that part has too few points for the four coefficients.
+    """
+    inside = (X >= begin) & (X <= end)
+    if np.count_nonzero(inside) < 5:
+        return None
+    origin = (begin + end) / 2
+    distance = X[inside] - origin
+    turn = 2 * np.pi * distance / wavelength
+    columns = np.column_stack((np.ones_like(distance), distance, np.sin(turn), np.cos(turn)))
+    offset, slope, sine, cosine = np.linalg.lstsq(columns, Y[inside], rcond=None)[0]
+    return Sinusoid(origin, offset, slope, math.hypot(sine, cosine), math.atan2(cosine, sine), wavelength)
+
+
+def measured_sinusoid(run):
+    """The sinusoid of an oscillating crack, with the measured wavelength and amplitude; None if there is none."""
+    crack = run.crack
+    if crack is None or crack["pattern"] != "oscillating" or not crack["wavelength"]:
+        return None
+    if None in (crack["window_begin"], crack["window_end"]):
+        return None
+    curve = fit_sinusoid(run.tip["X"], run.tip["Y"], crack["wavelength"], crack["window_begin"], crack["window_end"])
+    if curve is None or crack["amplitude"] is None:
+        return curve
+    return replace(curve, amplitude=crack["amplitude"])
+
+
+def draw_crack_path(run, path):
+    """Draws the path of the tip with the measurement (above) and positions and times of broken bonds (below)."""
+    X, Y = 100 * run.tip["X"], 100 * run.tip["Y"]
+    broken = run.broken if has_rows(run.broken) else None
+    length = run.input_number("Sheet/length")
+    X_range = (0.0, 100 * length) if length else (X.min(), max(X.max(), X.min() + 0.1))
+    width, upper = WIDTH - LEFT - RIGHT, 2.6
+    scale = width / (X_range[1] - X_range[0])  # [in] of picture per cm of sheet
+
+    # The largest integer exaggeration of Y for which the path fits.
+    centre, half = (Y.min() + Y.max()) / 2, max(0.6 * (Y.max() - Y.min()), 1e-2 * (X_range[1] - X_range[0]))
+    exaggeration = max(1, math.floor(upper / (2 * half * scale)))
+    upper = max(upper, min(2 * half * scale, 8.0)) if exaggeration == 1 else upper
+    half = upper / (2 * exaggeration * scale)
+
+    lower, half_below = 0.0, 0.0
+    if broken is not None:
+        half_below = max(1.15 * 100 * np.abs(broken["Y"]).max(), 0.45 / scale)
+        lower = min(2 * half_below * scale, 8.0)
+    page = Page(TOP + upper + (0.7 + lower + 1.35 if broken is not None else 0.6))
+
+    axes = page.axes(LEFT, TOP, width, upper)
+    axes.plot(X, Y, color=BLUE, label=tip_label(run.crack))
+    draw_measurement(axes, run)
+    larger = f",\n{exaggeration} times the scale of X" if exaggeration > 1 else ""
+    axes.set(xlim=X_range, ylim=(centre - half, centre + half), ylabel=f"Y of the tip [cm]{larger}")
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=3, borderaxespad=0.2, fontsize=9.5, columnspacing=1.5)
+    if broken is None:
+        axes.set_xlabel("X in the undeformed sheet [cm]")
+    else:
+        below = page.axes(LEFT, TOP + upper + 0.7, width, lower)
+        dots = below.scatter(100 * broken["X"], 100 * broken["Y"], c=1e3 * broken["t"], cmap=COLOUR_MAP, s=5,
+                             linewidths=0)
+        below.set(xlim=X_range, ylim=(-half_below, half_below), aspect="equal", ylabel="Y [cm]",
+                  xlabel="X in the undeformed sheet [cm]", title="midpoints of broken bonds, equal axes")
+        bar = page.figure.colorbar(dots, cax=page.axes(LEFT, page.height - 0.68, width, 0.13),
+                                   orientation="horizontal")
+        bar.set_label("time of breaking [ms]")
+        bar.outline.set_visible(False)
+    save(page.figure, path)
+
+
+def tip_label(crack):
+    """Legend entry of the tip."""
+    if crack is None or crack["speed_lagrangian"] is None:
+        return "tip"
+    return f"tip, {number_text(crack['speed_lagrangian'], crack['speed_lagrangian_uncertainty'])} m/s"
+
+
+def draw_measurement(axes, run):
+    """Draws the window of the measurement, and the sinusoid of an oscillating crack."""
+    crack = run.crack
+    if crack is None or None in (crack["window_begin"], crack["window_end"]):
+        return
+    begin, end = crack["window_begin"], crack["window_end"]
+    if end > begin:
+        axes.axvspan(100 * begin, 100 * end, color=GREY, alpha=0.15, linewidth=0, label="measured window")
+    curve = measured_sinusoid(run)
+    if curve is None:
+        return
+    text = f"sinusoid, wavelength {in_cm(crack, 'wavelength')} cm"
+    if crack["amplitude"] is not None:
+        text += f", amplitude {in_cm(crack, 'amplitude')} cm"
+    X = np.linspace(begin, end, 500)
+    axes.plot(100 * X, 100 * curve(X), "--", color=RED, label=text)
+
+
+def in_cm(crack, name):
+    """A measured length with its uncertainty [cm]."""
+    uncertainty = crack[f"{name}_uncertainty"]
+    return number_text(100 * crack[name], None if uncertainty is None else 100 * uncertainty)

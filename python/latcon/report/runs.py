@@ -1,0 +1,247 @@
+"""Reader of the runs in a folder: their checks and measurements."""
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import UnreadableFile
+from ..files import if_present, read_columns, read_json, read_text
+from ..folder import EARLIER
+from .claim_plots import read_claim_tables
+
+# A folder with any of these files is the output directory of a run, complete or interrupted.
+SIGNS_OF_A_RUN = ("results.json", "run.json", "crack.json", "crack.csv", "lattice.pvd")
+# First columns of energy.csv of an equilibrium and of a motion of the continuum.
+CONTINUUM_ENERGIES = ("load_factor,", "t,elastic,kinetic,micro_inertia,")
+INTERRUPTED = 130  # exit code of latcon
+
+
+@dataclass(frozen=True)
+class Check:
+    """Row of results.json. Values that do not apply are None."""
+
+    claim: str
+    quantity: str
+    unit: str  # of lattice, continuum and theory; "1" for a pure number
+    lattice: float
+    continuum: float
+    theory: float  # closed formula, or, in the claim "fracture", the published value
+    error: float  # as the claim defines it, smaller is better
+    tolerance: float  # None: for information only
+    verdict: str  # "holds", "fails" or "reported"
+    verified: bool = True  # whether the material of the run was verified
+
+    @property
+    def kind(self):
+        """CSS class: rows of an unverified run are not shown as holding."""
+        return "warns" if self.verdict == "holds" and not self.verified else self.verdict
+
+    @property
+    def word(self):
+        """The verdict in words."""
+        return "holds, not verified" if self.kind == "warns" else self.verdict
+
+    @property
+    def ratio(self):
+        """Error over tolerance, at most 1 if the row holds; None without a tolerance, infinite if a given number is not
+        finite."""
+        if self.tolerance is None:
+            return None
+        given = [x for x in (self.lattice, self.continuum, self.theory, self.error, self.tolerance) if x is not None]
+        if self.error is None or not all(map(math.isfinite, given)):
+            return math.inf
+        if self.tolerance == 0:
+            return 0.0 if self.error == 0 else math.inf
+        return self.error / self.tolerance
+
+
+@dataclass(frozen=True)
+class Run:
+    """Contents of the output directory of a run. Missing parts are None."""
+
+    name: str
+    folder: Path
+    checks: list  # of Check; empty without results.json
+    has_results: bool
+    info: dict  # run.json
+    case_text: str  # case.prm
+    crack: dict  # crack.json, SI units
+    near_tip: dict  # near_tip.json, SI units
+    tip: dict  # crack.csv: t [s], X, Y [m] in the undeformed sheet
+    broken: dict  # broken_bonds.csv: t [s], the two sites, X, Y [m] in the undeformed sheet
+    energy: dict  # energy.csv of a motion of the lattice: t [s], the rest in J per metre of sheet thickness
+    claims: dict  # claims.json: {name: (title, statement)}, in the order in which they are checked; empty without it
+    tables: dict  # of the claims, {file name without ".csv": {column: array}}; those that are there
+
+    @property
+    def is_fracture(self):
+        """True if a crack was run, or at least started."""
+        return self.crack is not None or has_rows(self.tip) or any(c.claim == "fracture" for c in self.checks)
+
+    @property
+    def on_continuum(self):
+        """True if the crack ran through the continuum."""
+        return (self.info or {}).get("side") == "continuum"
+
+    @property
+    def state(self):
+        """State of the run: "complete", "interrupted" or "unfinished"."""
+        exit_code = (self.info or {"exit_code": 0}).get("exit_code")
+        if exit_code == INTERRUPTED:
+            return "interrupted"
+        return "complete" if self.has_results and exit_code is not None else "unfinished"
+
+    @property
+    def skipped_verification(self):
+        """True if the crack was run without checking the claims for its material."""
+        return bool((self.info or {}).get("skip_verification"))
+
+    def input_number(self, key):
+        """Value of an entry of the case, SI unit, as run.json records it; None if it is missing or not a number."""
+        try:
+            return float((self.info or {})["entries"][key])
+        except (KeyError, ValueError):
+            return None
+
+
+@dataclass(frozen=True)
+class Unreadable:
+    """A run that cannot be read."""
+
+    name: str
+    folder: Path
+    problem: str  # the file and what is wrong with it
+
+
+def has_rows(table, at_least=1):
+    """Returns whether a table was read and has at least `at_least` rows."""
+    return table is not None and len(table["t"]) >= at_least
+
+
+def find_runs(folder):
+    """Finds the runs in `folder` and in its sub-folders, runs without a crack first, and the runs that cannot be read.
+
+    Studies have their own page and are omitted if there are other runs.
+    @return (list of Run, list of Unreadable)
+    """
+    try:
+        candidates = [folder] + sorted(path for path in folder.iterdir()
+                                       if path.is_dir() and not path.name.startswith(EARLIER))
+        candidates = [path for path in candidates if any((path / sign).exists() for sign in SIGNS_OF_A_RUN)]
+    except OSError as error:
+        raise UnreadableFile(folder, error.strerror) from error
+    if not candidates:
+        raise UnreadableFile(folder, "no run found (no results.json here or in a sub-folder)")
+    plain = [path for path in candidates if not (path / "study.json").exists()]
+    runs, unreadable = [], []
+    for path in plain or candidates:
+        try:
+            runs.append(read_run(path))
+        except UnreadableFile as error:
+            unreadable.append(Unreadable(path.resolve().name, path, str(error)))
+    return sorted(runs, key=lambda run: run.is_fracture), unreadable
+
+
+def read_run(folder):
+    """Reads all files of a run except its fields."""
+    results, info = if_present(read_json, folder / "results.json"), if_present(read_json, folder / "run.json")
+    verified = not (info or {}).get("skip_verification")
+    return Run(
+        name=folder.resolve().name,
+        folder=folder,
+        checks=[] if results is None else read_checks(folder / "results.json", results, verified),
+        has_results=results is not None,
+        info=info,
+        case_text=if_present(read_text, folder / "case.prm"),
+        crack=read_crack(folder / "crack.json"),
+        near_tip=read_near_tip(folder / "near_tip.json"),
+        tip=if_present(read_columns, folder / "crack.csv", ("t", "X", "Y")),
+        broken=if_present(read_columns, folder / "broken_bonds.csv", ("t", "site", "other_site", "X", "Y")),
+        energy=read_energy(folder / "energy.csv"),
+        claims=read_claims(folder / "claims.json"),
+        tables=read_claim_tables(folder),
+    )
+
+
+def read_energy(path):
+    """Reads energy.csv of a motion of the lattice, or of a crack of the continuum, which also has the column "shed". None if
+    there is none, or for the two other forms written by the continuum (docs/reference-files.md), which have other columns."""
+    text = if_present(read_text, path)
+    if text is None or text.startswith(CONTINUUM_ENERGIES):
+        return None
+    columns = ("t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance")
+    has_shed = "shed" in text.partition("\n")[0].split(",")
+    return if_present(read_columns, path, columns + ("shed",) if has_shed else columns)
+
+
+def read_checks(path, results, verified):
+    """Reads the rows of results.json."""
+    rows = results.get("claims")
+    if not isinstance(rows, list):
+        raise UnreadableFile(path, 'the list "claims" is missing')
+    checks = []
+    for number, row in enumerate(rows, start=1):
+        where = f"row {number} of \"claims\""
+        try:
+            texts = {key: row[key] for key in ("claim", "quantity", "unit", "verdict")}
+            numbers = {key: row[key] for key in ("lattice", "continuum", "theory", "error", "tolerance")}
+        except (KeyError, TypeError) as error:
+            raise UnreadableFile(path, f"{where} lacks {error}") from error
+        for key, value in texts.items():
+            if not isinstance(value, str):
+                raise UnreadableFile(path, f"{where}: {key} is {value!r}, not a string")
+        for key, value in numbers.items():
+            numbers[key] = checked_number(path, f"{where}: {key}", value)
+        check = Check(**texts, **numbers, verified=verified)
+        if check.verdict != expected_verdict(check):
+            raise UnreadableFile(path, f"{where}: the verdict {check.verdict!r} contradicts its numbers")
+        checks.append(check)
+    return checks
+
+
+def read_claims(path):
+    """Titles and statements in claims.json."""
+    claims = (if_present(read_json, path) or {"claims": []}).get("claims")
+    try:
+        return {claim["name"]: (str(claim["title"]), str(claim["statement"])) for claim in claims}
+    except (KeyError, TypeError) as error:
+        raise UnreadableFile(path, f"holds no list of claims with name, title and statement: {error!r}") from error
+
+
+def expected_verdict(check):
+    """The verdict that follows from the numbers of a row."""
+    if check.tolerance is None:
+        return "reported"
+    return "holds" if check.ratio <= 1 else "fails"
+
+
+def read_crack(path):
+    """Reads crack.json and checks its numbers; None if there is none."""
+    crack = if_present(read_json, path)
+    if crack is None:
+        return None
+    if not isinstance(crack.get("pattern"), str):
+        raise UnreadableFile(path, '"pattern" is missing')
+    measured = ("speed_lagrangian", "speed_laboratory", "wavelength", "amplitude")
+    for key in measured + tuple(f"{name}_uncertainty" for name in measured) + ("window_begin", "window_end"):
+        crack[key] = checked_number(path, key, crack.get(key))
+    return crack
+
+
+def read_near_tip(path):
+    """Reads near_tip.json and checks its numbers; None if there is none."""
+    near_tip = if_present(read_json, path)
+    if near_tip is None:
+        return None
+    if not isinstance(near_tip.get("reason"), str):
+        raise UnreadableFile(path, '"reason" is missing')
+    return {key: value if key in ("reason", "units") else checked_number(path, key, value)
+            for key, value in near_tip.items()}
+
+
+def checked_number(path, what, value):
+    """A number as written by latcon: null for none, the strings "nan", "inf", "-inf" for non-finite values."""
+    if value is None:
+        return None
+    if value in ("nan", "inf", "-inf") or (isinstance(value, (int, float)) and not isinstance(value, bool)):
+        return float(value)
+    raise UnreadableFile(path, f"{what} is {value!r}, not a number")

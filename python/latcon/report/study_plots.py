@@ -1,0 +1,151 @@
+"""Plots of a study: paths of cracks, quantities along a sweep, speeds by pattern."""
+import numpy as np
+from matplotlib.lines import Line2D
+
+from .phase_map import COLOURS, Cell, draw_phase_map
+from .pictures import BLACK, BLUE, GREEN, GREY, RED, SKY, WIDTH, Page, save
+from .study_quantities import against_axis, entry_axis, quantity_axis
+from .study_runs import mean_of, patterns_of, tip_path
+
+# Marker and colour of each pattern, as in the map.
+PATTERNS = {pattern: (marker, COLOURS[pattern]) for pattern, marker in (
+    ("oscillating", "o"), ("straight", "s"), ("branching", "v"), ("arrested", "X"), ("undecided", "D"))}
+LEFT, RIGHT, GAP = 0.75, 0.2, 0.75  # of a grid of panels [in]
+SEED_COLOURS = [BLUE, RED, GREEN, SKY, BLACK, GREY]
+CONTOURS = ("wavelength", "speed_lagrangian")  # of the map of patterns: the first that was measured
+DECADES = 30.0  # ratio of the largest to the smallest abscissa above which the axis is logarithmic
+
+
+class Panels:
+    """Axes of equal size in rows and columns, each with room for a title and labels."""
+
+    def __init__(self, count, columns, height, top=0.1):
+        self.columns, self.height, self.top = columns, height, top
+        rows = -(-count // columns)
+        self.width = (WIDTH - LEFT - RIGHT - GAP * (columns - 1)) / columns
+        self.pitch = height + 0.85
+        self.page = Page(top + rows * self.pitch)
+
+    def axes(self, number):
+        row, column = divmod(number, self.columns)
+        return self.page.axes(LEFT + column * (self.width + GAP), self.top + 0.3 + row * self.pitch, self.width,
+                              self.height)
+
+
+def draw_map(study, path):
+    """Draws the map of patterns over the two entries that the runs of a sweep vary, with contours of the wavelength, or of
+    the speed where no crack has one. @return caption, or None if there are not exactly two abscissas"""
+    varied = study.abscissas
+    if len(varied) != 2:
+        return None
+    (x_unit, x_label), (y_unit, y_label) = (entry_axis(entry["entry"], entry["unit"]) for entry in varied)
+    means = {quantity: [mean_of(seeds, quantity) for _, _, seeds in study.runs.values()] for quantity in CONTOURS}
+    quantity = next((name for name in CONTOURS if any(means[name])), CONTOURS[0])
+    scale, label = quantity_axis(quantity, study.document["units"][quantity])
+    cells = [Cell(x_unit * x, y_unit * y, patterns_of(seeds), scale * mean.mean if mean else None, study.levels[name])
+             for x, y, (name, (_, _, seeds)), mean in zip(varied[0]["values"], varied[1]["values"], study.runs.items(),
+                                                          means[quantity])]
+    if not draw_phase_map(cells, x_label, y_label, path, label):
+        return None
+    return (f"Patterns over {varied[0]['entry']} and {varied[1]['entry']}. A cell whose seeds disagree is divided between "
+            f"their patterns and has a dot. Bars: between the nearest points on a line at which all seeds show one pattern and "
+            f"another, the boundary with its uncertainty. Contours, where neighbouring cells have one: {label}, mean over the seeds.")
+
+
+def draw_paths(study, names, path):
+    """Draws paths of the tip, one panel per run with its seeds superimposed. @return whether there are any"""
+    paths = {name: [(seed, way) for seed in study.runs[name][2] if (way := tip_path(seed)) is not None]
+             for name in names}
+    paths = {name: ways for name, ways in paths.items() if ways}
+    if not paths:
+        return False
+    everything = [way for ways in paths.values() for _, way in ways]
+    right = 105 * max(X.max() for X, _ in everything)
+    half = 115 * max(max(np.abs(Y).max() for _, Y in everything), 1e-3)
+    columns = min(2, len(paths))
+    panels = Panels(len(paths), columns, 1.5 if columns == 2 else 2.4)
+    for number, (name, ways) in enumerate(paths.items()):
+        axes = panels.axes(number)
+        for place, (seed, (X, Y)) in enumerate(ways):
+            axes.plot(100 * X, 100 * Y, color=SEED_COLOURS[place % len(SEED_COLOURS)], linewidth=1.1,
+                      label=f"seed {seed.seed}")
+        axes.set(xlim=(0, right), ylim=(-half, half), title=f"{name}: {pattern_text(study.runs[name][2])}",
+                 xlabel="X [cm]", ylabel="Y [cm]")
+        axes.title.set_fontsize(9.5)
+    save(panels.page.figure, path)
+    return True
+
+
+def pattern_text(seeds):
+    """Patterns over the seeds of a run, with their counts."""
+    return ", ".join(f"{pattern} {count}/{len(seeds)}" for pattern, count in patterns_of(seeds).items()) or "not run"
+
+
+def draw_sweep(study, row, quantities, path, onsets=None):
+    """Draws quantities against the abscissa of a row, one panel each, with the power laws that were fitted to them,
+    {quantity: "onset" of a row}. @return whether any run was measured"""
+    points = [(value["against"], study.runs[value["run"]][2]) for value in row["values"]
+              if value["against"] is not None]
+    points = [(x, seeds) for x, seeds in points if patterns_of(seeds)]
+    if not points:
+        return False
+    unit, name = against_axis(row)
+    points = [(unit * x, seeds) for x, seeds in points]
+    columns = min(3, len(quantities))
+    panels = Panels(len(quantities), columns, 2.2 if columns == 3 else 2.6)
+    for number, quantity in enumerate(quantities):
+        axes = panels.axes(number)
+        scale, label = quantity_axis(quantity, study.document["units"][quantity])
+        for x, seeds in points:
+            marker, colour = PATTERNS[next(iter(patterns_of(seeds)))]
+            found = mean_of(seeds, quantity)
+            y, error = (scale * found.mean, scale * found.deviation) if found else (0.0, 0.0)
+            axes.errorbar(x, y, yerr=error, marker=marker, color=colour, capsize=3, markersize=6, linestyle="none",
+                          markerfacecolor=colour if found else "white")
+        if onsets and quantity in onsets:
+            draw_onset(axes, onsets[quantity], unit, scale, max(x for x, _ in points))
+        axes.set(xlabel=name, ylabel=label)
+        if axes.get_ylim()[0] >= 0:  # the axis begins at 0 unless values are negative
+            top = max(axes.get_ylim()[1], 1e-12)
+            axes.set_ylim(-0.04 * top, top)
+        if min(x for x, _ in points) > 0 and max(x for x, _ in points) > DECADES * min(x for x, _ in points):
+            axes.set_xscale("log")
+    shown = {next(iter(patterns_of(seeds))) for _, seeds in points}
+    panels.page.figure.legend(handles=[legend_entry(pattern) for pattern in PATTERNS if pattern in shown],
+                              loc="upper left", bbox_to_anchor=(LEFT / WIDTH, 1), ncol=4)
+    save(panels.page.figure, path)
+    return True
+
+
+def draw_onset(axes, fit, unit, scale, end):
+    """Draws the power law of a row above its onset, from there to `end`."""
+    distance = np.linspace(0, end / unit - fit["onset"]["value"], 200)
+    axes.plot(unit * (fit["onset"]["value"] + distance), scale * fit["prefactor"] * distance ** fit["exponent"]["value"],
+              color=GREY, linewidth=1)
+
+
+def legend_entry(pattern):
+    """Legend entry with the symbol and colour of a pattern."""
+    marker, colour = PATTERNS[pattern]
+    return Line2D([], [], linestyle="none", marker=marker, color=colour, label=pattern)
+
+
+def draw_speeds(study, path):
+    """Draws crack speed over the shear wave speed of the stretched sheet, by pattern. @return whether any was measured"""
+    points = [(seed.pattern, seed.values["speed_over_shear"]) for seed in study.seeds
+              if seed.pattern and seed.values["speed_over_shear"] is not None]
+    if not points:
+        return False
+    panels = Panels(1, 1, 2.8)
+    axes = panels.axes(0)
+    shown = [pattern for pattern in PATTERNS if any(p == pattern for p, _ in points)]
+    for place, pattern in enumerate(shown):
+        marker, colour = PATTERNS[pattern]
+        values = np.array([value for p, value in points if p == pattern])
+        aside = np.linspace(-0.25, 0.25, len(values)) if len(values) > 1 else np.zeros(1)
+        axes.plot(place + aside, values, marker, color=colour, markersize=5, alpha=0.8)
+    axes.axhline(1, color=BLACK, linestyle="--", linewidth=1)
+    axes.set(xticks=range(len(shown)), xticklabels=shown, xlim=(-0.6, len(shown) - 0.4),
+             ylabel="crack speed /\nshear speed")
+    save(panels.page.figure, path)
+    return True

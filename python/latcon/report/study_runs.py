@@ -1,0 +1,123 @@
+"""Reader of studies: study.json and the output directories of the runs."""
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import UnreadableFile
+from ..files import if_present, read_columns, read_json
+from ..quantities import number_text
+
+
+@dataclass(frozen=True)
+class Seed:
+    """One run with one seed."""
+
+    run: str
+    seed: int
+    folder: Path
+    state: str  # "measured", "refused: verification", "failed", "not run"
+    problem: str
+    pattern: str  # None if not measured
+    wall_time: float  # [s]
+    values: dict  # {quantity: number or None}, SI
+
+
+@dataclass(frozen=True)
+class Study:
+    """Contents of the page."""
+
+    folder: Path
+    document: dict  # study.json
+    runs: dict  # {name: (about, {entry: value}, [Seed, ...])}, in the order of the study
+
+    @property
+    def claims(self):
+        return self.document["claims"]
+
+    @property
+    def varied(self):
+        """Entries in which the runs differ: [{"entry", "unit", "values": [number or text, per run]}, ...]."""
+        return self.document.get("varied", [])
+
+    @property
+    def levels(self):
+        """Level of refinement of each run: {name: level}."""
+        return {run["run"]: run.get("level", 0) for run in self.document["runs"]}
+
+    @property
+    def abscissas(self):
+        """Entries over which the page may begin with a map or plot: those that the runs of a sweep vary, if all values
+        are numbers and no point occurs twice; none for studies without a sweep."""
+        values = [entry["values"] for entry in self.varied]
+        points = list(zip(*values))
+        are_numbers = all(isinstance(value, (int, float)) for value in sum(values, []))
+        is_plotted = self.document.get("swept") and are_numbers and len(set(points)) == len(points)
+        return self.varied if is_plotted else []
+
+    @property
+    def seeds(self):
+        return [seed for _, _, seeds in self.runs.values() for seed in seeds]
+
+
+@dataclass(frozen=True)
+class Mean:
+    """A quantity over the seeds of a run."""
+
+    mean: float
+    deviation: float  # 0 for a single seed
+    n: int  # number of seeds that have the quantity
+    n_seeds: int  # number of seeds of the run
+
+
+def read_study(folder):
+    """Reads the study in a folder. @raises UnreadableFile"""
+    path = folder / "study.json"
+    document = read_json(path)
+    try:
+        seeds = [Seed(s["run"], s["seed"], folder / s["folder"], s["state"], s["problem"], s["pattern"],
+                      wall_time(folder / s["folder"]), s["values"]) for s in document["seeds"]]
+        runs = {run["run"]: (run["about"], run["set"], [seed for seed in seeds if seed.run == run["run"]])
+                for run in document["runs"]}
+    except (KeyError, TypeError) as error:
+        raise UnreadableFile(path, f"lacks {error}") from error
+    return Study(folder, document, runs)
+
+
+def wall_time(folder):
+    """Wall time of the run in a folder [s]; 0 if unknown. study.json has none, so that equal runs give equal files."""
+    seconds = (if_present(read_json, folder / "run.json") or {}).get("wall_time_total_s")
+    return seconds if isinstance(seconds, (int, float)) else 0.
+
+
+def mean_of(seeds, quantity):
+    """Mean over the seeds that have a quantity; None if none has."""
+    values = np.array([s.values[quantity] for s in seeds if s.state == "measured" and s.values[quantity] is not None])
+    if not len(values):
+        return None
+    return Mean(values.mean(), values.std(ddof=1) if len(values) > 1 else 0.0, len(values), len(seeds))
+
+
+def patterns_of(seeds):
+    """Number of seeds with each pattern, the most frequent first: {pattern: count}."""
+    found = [seed.pattern for seed in seeds if seed.pattern]
+    return {pattern: found.count(pattern) for pattern in sorted(set(found), key=lambda p: (-found.count(p), p))}
+
+
+def tip_path(seed):
+    """Path of the tip in the undeformed sheet, (X, Y) in m; None if the run has none."""
+    table = if_present(read_columns, seed.folder / "crack.csv", ("X", "Y"))
+    return None if table is None or len(table["X"]) < 2 else (table["X"], table["Y"])
+
+
+def first_measured(study, name):
+    """The first seed of a run that was measured; None if there is none."""
+    return next((seed for seed in study.runs[name][2] if seed.state == "measured"), None)
+
+
+def value_text(mean, scale=1.0):
+    """Mean and standard deviation as text: "2.29 ± 0.04 (5)", or "(4 of 5)" if a seed lacks the quantity; a dash for None."""
+    if mean is None:
+        return "–"
+    text = number_text(scale * mean.mean, scale * mean.deviation)
+    return f"{text} ({mean.n}{f' of {mean.n_seeds}' if mean.n < mean.n_seeds else ''})"

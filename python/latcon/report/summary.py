@@ -1,0 +1,160 @@
+"""Summary of all runs: counts, worst errors, comparison with published values, and the table on stdout."""
+import textwrap
+from dataclasses import dataclass
+
+from ..quantities import number_text
+from .runs import Check, Run
+
+VERDICTS = ("fails", "holds", "reported")
+
+
+@dataclass(frozen=True)
+class Tally:
+    """Number of rows of one claim in one run, by verdict."""
+
+    run: Run
+    claim: str
+    count: dict  # verdict: number of rows
+    worst: float  # largest error over tolerance; None if no row has a tolerance
+    kind: str  # CSS class: "fails", "warns" (holds, but was not verified), "holds" or "reported"
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A measured quantity and its published value, both in `unit`."""
+
+    run: Run
+    quantity: str
+    unit: str
+    published: float
+    measured: float  # None: not measured
+    uncertainty: float  # one standard deviation; None: not known
+    check: Check  # the row
+
+    @property
+    def verdict(self):
+        """Its verdict."""
+        return self.check.verdict
+
+    @property
+    def difference(self):
+        """Relative difference from the published value [1]; None if nothing was measured."""
+        return None if self.measured is None or self.published == 0 else self.measured / self.published - 1
+
+
+def tallies(run):
+    """One Tally per claim, in the order in which the claims were checked."""
+    result = []
+    for claim in dict.fromkeys(check.claim for check in run.checks):
+        rows = [check for check in run.checks if check.claim == claim]
+        result.append(tally_of(run, claim, rows))
+    return result
+
+
+def tally_of(run, claim, checks):
+    """Tally of the given rows."""
+    ratios = [check.ratio for check in checks if check.ratio is not None]
+    count = {verdict: sum(check.verdict == verdict for check in checks) for verdict in VERDICTS}
+    kind = next((kind for kind in ("fails", "warns", "holds") if any(check.kind == kind for check in checks)), "reported")
+    return Tally(run, claim, count, max(ratios, default=None), kind)
+
+
+def comparisons(run):
+    """Rows of the claim "fracture" that have a published value; lengths in cm, as the literature gives them."""
+    result = []
+    for check in run.checks:
+        if check.claim != "fracture" or check.theory is None:
+            continue
+        scale, unit = (100, "cm") if check.unit == "m" else (1, check.unit)
+        uncertainty = uncertainty_of(check.quantity, run.crack)
+        measured = check.continuum if check.lattice is None else check.lattice
+        result.append(Comparison(
+            run, check.quantity, unit, scale * check.theory,
+            None if measured is None else scale * measured,
+            None if uncertainty is None else scale * uncertainty, check))
+    return result
+
+
+# Rows of the claim "fracture", and their names in crack.json.
+NAMES = {"Lagrangian crack speed": "speed_lagrangian", "laboratory crack speed": "speed_laboratory",
+         "wavelength, undeformed": "wavelength", "amplitude, undeformed": "amplitude"}
+
+
+def uncertainty_of(quantity, crack):
+    """Uncertainty that crack.json gives for the quantity of a row; None if there is none."""
+    return crack[f"{NAMES[quantity]}_uncertainty"] if crack is not None and quantity in NAMES else None
+
+
+def unpublished(run):
+    """Quantities of crack.json without a published value: [(quantity, unit, value, uncertainty), ...], lengths in cm."""
+    compared = {c.quantity for c in comparisons(run)}
+    found = []
+    for quantity, name in NAMES.items():
+        value, uncertainty = ((run.crack or {}).get(key) for key in (name, f"{name}_uncertainty"))
+        if quantity not in compared and value is not None:
+            scale, unit = (1, "m/s") if "speed" in name else (100, "cm")
+            found.append((quantity, unit, scale * value, None if uncertainty is None else scale * uncertainty))
+    return found
+
+
+def percent(fraction):
+    """Signed percentage; "not measured" for None."""
+    return "not measured" if fraction is None else f"{100 * fraction:+.1f} %"
+
+
+def ratio_text(ratio):
+    """Error over tolerance; a dash if there is none."""
+    return "-" if ratio is None else f"{ratio:.2g}"
+
+
+def text_table(header, rows, numbers, width=120):
+    """Aligned text of at most `width` columns; the second column is wrapped if need be. `numbers`: right-aligned."""
+    sizes = [max(len(row[i]) for row in [header, *rows]) for i in range(len(header))]
+    sizes[1] = max(8, min(sizes[1], width - sum(sizes) + sizes[1] - 2 * (len(sizes) - 1)))
+    lines = []
+    for row in [header, *rows]:
+        wrapped = textwrap.wrap(row[1], sizes[1]) or [""]
+        for i, part in enumerate(wrapped):
+            cells = [row[0] if i == 0 else "", part] + [cell if i == 0 else "" for cell in row[2:]]
+            padded = [cell.rjust(size) if column in numbers else cell.ljust(size)
+                      for column, (cell, size) in enumerate(zip(cells, sizes))]
+            lines.append("  ".join(padded).rstrip()[:width])
+    lines.insert(1, "-" * min(width, sum(sizes) + 2 * (len(sizes) - 1)))
+    return "\n".join(lines)
+
+
+def text_summary(runs, unreadable=()):
+    """Text for the terminal: claims of every run, failing rows, measured and published values. `unreadable`: runs that
+    cannot be read."""
+    parts = []
+    rows = []
+    for run in runs:
+        name = shortened(run.name)
+        for tally in tallies(run):
+            rows.append([name, tally.claim] + [str(tally.count[v]) for v in ("holds", "fails", "reported")]
+                        + [ratio_text(tally.worst)])
+            name = ""
+        for word in [*([run.state] if run.state != "complete" else []),
+                     *(["not verified"] if run.skipped_verification else [])]:
+            rows.append([name, word, "", "", "", ""])
+            name = ""
+    rows += [[shortened(run.name), "cannot be read", "", "", "", ""] for run in unreadable]
+    parts.append(text_table(["run", "claim", "holds", "fails", "reported", "worst error / tolerance"], rows,
+                            (2, 3, 4, 5)))
+    failing = [[shortened(run.name), f"{check.claim}: {check.quantity}", ratio_text(check.ratio)]
+               for run in runs for check in run.checks if check.verdict == "fails"]
+    if failing:
+        parts.append(text_table(["run", "fails", "error / tolerance"], failing, (2,)))
+    compared = [[shortened(c.run.name), c.quantity, c.unit, f"{c.published:.4g}",
+                 "-" if c.measured is None else number_text(c.measured, c.uncertainty, "+-"),
+                 percent(c.difference), c.verdict]
+                for run in runs for c in comparisons(run)]
+    if compared:
+        parts.append(text_table(["run", "quantity", "unit", "paper", "latcon", "difference", "verdict"], compared,
+                                (3, 4, 5)))
+    return "\n\n".join(parts)
+
+
+def shortened(name, length=24):
+    """A name, shortened to leave room for the rest of the line."""
+    return name if len(name) <= length else name[:length - 3] + "..."

@@ -1,0 +1,40 @@
+#include "verification/input/cracked_sheet.h"
+
+namespace latcon::input
+{
+namespace
+{
+
+lattice::EndLoads::End end_load(Case::End end)
+{
+  switch (end)
+  {
+  case Case::End::free:
+    return lattice::EndLoads::End::free;
+  case Case::End::absorbing:
+    return lattice::EndLoads::End::absorbing;
+  default:
+    return lattice::EndLoads::End::held;
+  }
+}
+
+} // namespace
+
+std::unique_ptr<lattice::Simulation> cracked_sheet(const Case &input, const lattice::RowPartition &band)
+{
+  const lattice::Material material = input.material();
+  const lattice::Edges edges{input.left_end == Case::End::held, input.right_end == Case::End::held, true, true};
+  lattice::State state = lattice::homogeneous_state(band, material, input.deformation(), edges);
+  lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
+  auto simulation = std::make_unique<lattice::Simulation>(
+    band, material, std::move(state), input.fracture_time_stepping(),
+    lattice::Fracture(band, material, *input.breaking_stretch, input.toughening_rule(), input.deformation()));
+  if (!edges.left || !edges.right)
+    simulation->load_ends(input.deformation(), end_load(input.left_end), end_load(input.right_end));
+  if (input.has_contact)
+    simulation->enable_contact(input.contact_law());
+  simulation->cut(input.seed(band.lattice()));
+  return simulation;
+}
+
+} // namespace latcon::input

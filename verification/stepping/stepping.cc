@@ -1,0 +1,259 @@
+// The lattice of a case, stepped from Python: the module latcon_stepping, which python/latcon/stepping.py wraps.
+#include <cstring>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "support/errors.h"
+#include "verification/bridge/lattice_sheet.h"
+#include "verification/input/cracked_sheet.h"
+
+namespace py = pybind11;
+
+namespace latcon::stepping
+{
+namespace
+{
+
+template <class T>
+struct IsVector : std::false_type
+{
+};
+template <class T, class Allocator>
+struct IsVector<std::vector<T, Allocator>> : std::true_type
+{
+};
+
+using Bytes = std::map<std::string, std::string>; // of what was archived, by name
+
+// Archive of the bytes of numbers, vectors and optional numbers, for the same program on the same machine.
+template <bool is_loading>
+class Archive
+{
+public:
+  static constexpr bool loads = is_loading;
+  explicit Archive(Bytes &bytes) : bytes_(bytes) {}
+
+  template <class T>
+  void operator()(const std::string &name, T &value)
+  {
+    if constexpr (IsVector<T>::value)
+    {
+      if constexpr (loads)
+        value.resize(of(name).size() / sizeof(value[0]));
+      exchange(name, value.data(), value.size() * sizeof(value[0]));
+    }
+    else if constexpr (std::is_trivially_copyable_v<T>)
+      exchange(name, &value, sizeof(T));
+    else
+    {
+      const std::string outer = prefix_;
+      prefix_ += name + "/";
+      value.archive(*this);
+      prefix_ = outer;
+    }
+  }
+
+private:
+  const std::string &of(const std::string &name) const
+  {
+    const auto found = bytes_.find(prefix_ + name);
+    lattice::require_archived(found != bytes_.end(), "`" + prefix_ + name + "` is missing");
+    return found->second;
+  }
+
+  void exchange(const std::string &name, void *value, std::size_t size)
+  {
+    if constexpr (loads)
+    {
+      lattice::require_archived(of(name).size() == size, "`" + prefix_ + name + "` is of another size");
+      std::memcpy(value, of(name).data(), size);
+    }
+    else
+      bytes_[prefix_ + name].assign(static_cast<const char *>(value), size);
+  }
+
+  Bytes &bytes_;
+  std::string prefix_;
+};
+
+// Sheet of a case with its seed crack. Arrays are views of its fields, over all places; sites() tells which are sites.
+class Sheet
+{
+public:
+  explicit Sheet(const std::string &case_text)
+  {
+    input::Parameters parameters;
+    input_.declare(parameters);
+    parameters.read_text(case_text, "case");
+    input_.check(parameters);
+    bridge::require_fracture_case(input_, parameters);
+    parameters.finish();
+    lattice_ = std::make_unique<lattice::TriangularLattice>(input_.lattice());
+    band_ = std::make_unique<lattice::RowPartition>(*lattice_);
+    simulation_ = input::cracked_sheet(input_, *band_);
+  }
+
+  // Bonds that broke: (time, site, other site, X, Y, stretch).
+  using Broken = std::vector<std::tuple<double, std::size_t, std::size_t, double, double, double>>;
+  Broken step(std::size_t n)
+  {
+    Broken broken;
+    for (std::size_t i = 0; i < n; ++i)
+      for (const lattice::BrokenBond &bond : simulation_->step())
+        broken.emplace_back(bond.time, bond.near, bond.far, bond.midpoint.x(), bond.midpoint.y(), bond.stretch);
+    return broken;
+  }
+
+  // Places of the sites that are there, by row.
+  py::array sites() const
+  {
+    std::vector<std::size_t> found;
+    for (std::size_t place = 0; place < lattice_->n_places(); ++place)
+      if (lattice_->is_site(place) && simulation_->state().removed[place] == 0)
+        found.push_back(place);
+    return py::array_t<std::size_t>(found.size(), found.data());
+  }
+
+  // Places at the ends of each bond that is there, and its stretch.
+  py::tuple bonds() const
+  {
+    const lattice::State &state = simulation_->state();
+    std::vector<std::size_t> ends;
+    std::vector<double> stretches;
+    lattice::for_each_bond(state, *lattice_,
+                           [&](std::size_t near, std::size_t kind, std::size_t far)
+                           {
+                             ends.insert(ends.end(), {near, far});
+                             stretches.push_back(lattice::stretch(state, *lattice_, near, kind));
+                           });
+    return py::make_tuple(pairs(ends), py::array_t<double>(stretches.size(), stretches.data()));
+  }
+
+  // Undeformed position of each place [m].
+  py::array reference() const
+  {
+    std::vector<double> found;
+    for (std::size_t place = 0; place < lattice_->n_places(); ++place)
+      found.insert(found.end(), {lattice_->reference(place).x(), lattice_->reference(place).y()});
+    return pairs(found);
+  }
+
+  // Adds impulses per sheet thickness over the masses of the sites to their velocities.
+  void kick(const std::vector<double> &px, const std::vector<double> &py)
+  {
+    const lattice::State &state = simulation_->state();
+    if (px.size() != state.vx.size() || py.size() != state.vy.size())
+      throw std::invalid_argument("impulses are needed for all " + std::to_string(state.vx.size()) + " places");
+    lattice::Field vx = state.vx, vy = state.vy;
+    for (std::size_t place = 0; place < vx.size(); ++place)
+    {
+      vx[place] += px[place] * state.inverse_mass[place];
+      vy[place] += py[place] * state.inverse_mass[place];
+    }
+    simulation_->set_velocities(vx, vy);
+  }
+
+  std::map<std::string, double> energies() const
+  {
+    const lattice::EnergyBalance energies = simulation_->energies();
+    return {{"elastic", energies.elastic},      {"kinetic", energies.kinetic},
+            {"viscous", energies.viscous},      {"broken", energies.broken},
+            {"contact", energies.contact},      {"boundary_work", energies.boundary_work},
+            {"imbalance", energies.imbalance()}};
+  }
+
+  Bytes save()
+  {
+    Bytes bytes;
+    Archive<false> archive(bytes);
+    simulation_->archive(archive);
+    return bytes;
+  }
+  void load(Bytes bytes)
+  {
+    Archive<true> archive(bytes);
+    simulation_->archive(archive);
+  }
+
+  lattice::Simulation &simulation() { return *simulation_; }
+
+private:
+  template <class T>
+  static py::array pairs(const std::vector<T> &values)
+  {
+    return py::array_t<T>({values.size() / 2, std::size_t{2}}, values.data());
+  }
+
+  input::Case input_;
+  std::unique_ptr<lattice::TriangularLattice> lattice_;
+  std::unique_ptr<lattice::RowPartition> band_;
+  std::unique_ptr<lattice::Simulation> simulation_;
+};
+
+// View of a field, which cannot be written.
+template <const auto lattice::State::*field>
+py::array view(py::object self)
+{
+  const auto &values = self.cast<Sheet &>().simulation().state().*field;
+  py::array_t<std::decay_t<decltype(values[0])>> array(values.size(), values.data(), self);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+} // namespace
+
+PYBIND11_MODULE(latcon_stepping, module)
+{
+  py::register_exception_translator(
+    [](std::exception_ptr error)
+    {
+      try
+      {
+        std::rethrow_exception(error);
+      }
+      catch (const support::InputError &problem)
+      {
+        PyErr_SetString(PyExc_ValueError, problem.what());
+      }
+    });
+  const py::call_guard<py::gil_scoped_release> without_lock;
+  py::class_<Sheet>(module, "Sheet")
+    .def(py::init<const std::string &>())
+    .def("step", &Sheet::step, without_lock)
+    .def("kick", &Sheet::kick)
+    .def("move_edges", [](Sheet &sheet, const Eigen::Matrix2d &L) { sheet.simulation().move_edges(L); })
+    .def("save",
+         [](Sheet &sheet)
+         {
+           py::dict bytes;
+           for (const auto &[name, content] : sheet.save())
+             bytes[py::str(name)] = py::bytes(content);
+           return bytes;
+         })
+    .def("load", &Sheet::load)
+    .def("sites", &Sheet::sites)
+    .def("bonds", &Sheet::bonds)
+    .def("reference", &Sheet::reference)
+    .def_property_readonly("x", view<&lattice::State::x>)
+    .def_property_readonly("y", view<&lattice::State::y>)
+    .def_property_readonly("vx", view<&lattice::State::vx>)
+    .def_property_readonly("vy", view<&lattice::State::vy>)
+    .def_property_readonly("lost_bonds", view<&lattice::State::lost_bonds>)
+    .def_property_readonly("time", [](Sheet &sheet) { return sheet.simulation().state().time; })
+    .def_property_readonly("time_step", [](Sheet &sheet) { return sheet.simulation().time_step(); })
+    .def_property_readonly("n_broken", [](Sheet &sheet) { return sheet.simulation().n_broken(); })
+    .def_property_readonly("tip", [](Sheet &sheet) { return sheet.simulation().tip(); })
+    .def_property_readonly("energies", &Sheet::energies);
+}
+
+} // namespace latcon::stepping
