@@ -64,9 +64,9 @@ configure=()
 if [ ! -f "$build/build.ninja" ] || [ ! "$(cached CMAKE_HOME_DIRECTORY)" -ef "$root" ]; then
   configure=(--fresh)
   # The presets are for developers.
-  [ $tests = ON ] || configure+=(-D BUILD_TESTING=OFF -D LATCON_BENCHMARKS=OFF -D LATCON_DOCS=OFF -D LATCON_PACKAGE=OFF)
+  [ $tests = ON ] || configure+=(-D BUILD_TESTING=OFF -D LATCON_BENCHMARKS=OFF -D LATCON_DOCS=OFF -D LATCON_PACKAGE=OFF -D LATCON_STEPPING=OFF)
 elif [ $tests = ON ] && [ "$(cached BUILD_TESTING)" = OFF ]; then
-  configure=(-D BUILD_TESTING=ON -D LATCON_BENCHMARKS=ON -D LATCON_DOCS=ON -D LATCON_PACKAGE=ON)
+  configure=(-D BUILD_TESTING=ON -D LATCON_BENCHMARKS=ON -D LATCON_DOCS=ON -D LATCON_PACKAGE=ON -D LATCON_STEPPING=ON)
 fi
 if [ ${#configure[@]} -gt 0 ]; then
   echo "Configuring ($preset)" >&2
