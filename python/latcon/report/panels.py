@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
+from .claim_tables import fitted_order, groups, range_text, sorted_by
 from .pictures import BLACK, BLUE, GREEN, RED, WIDTH, Page
 
 LEFT, RIGHT, GAP = 0.95, 0.2, 0.85  # margins of the grid and space between its columns [in]
@@ -99,6 +100,24 @@ def note(axes, lines, corner="upper left"):
                       xytext=(0, -13 * number if top else 13 * number), textcoords="offset points", color=colour,
                       fontsize=9, ha="left" if left else "right", va="top" if top else "bottom",
                       bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1})
+
+
+def draw_errors(axes, state, errors):
+    """Errors of laws against k d, logarithmic, with their orders in a note. errors: {law: column of errors}.
+    Returns {law: its orders in words}, of the laws that have one."""
+    orders = {}
+    for law, error in errors.items():
+        found = []
+        for (wave, _), part in groups({**state, "error": np.abs(error)}, "wave", "angle [deg]"):
+            part = sorted_by(part, "k d")
+            axes.plot(part["k d"], np.where(part["error"] > 0, part["error"], np.nan), "-", marker=MARKERS[wave],
+                      markersize=3, color=LAW_COLOURS[law], linewidth=0.8)
+            found.append(fitted_order(part["k d"], part["error"], share=0.5))
+        orders[law] = range_text(found)
+    logarithmic(axes)
+    headroom(axes, 2.2)
+    note(axes, [(f"{law}{f': order {order}' if order else ''}", LAW_COLOURS[law]) for law, order in orders.items()])
+    return {law: order for law, order in orders.items() if order}
 
 
 def headroom(axes, decades):

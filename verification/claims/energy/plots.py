@@ -1,8 +1,8 @@
 """Tables and plots of the claim on energy."""
 import numpy as np
 
-from latcon.report.claim_tables import WAVE, Plot, fitted_order, groups, largest_text, off, range_text, sorted_by, states
-from latcon.report.panels import LAW_COLOURS, MARKERS, Grid, colours_of, entry, headroom, logarithmic, note
+from latcon.report.claim_tables import WAVE, Plot, groups, largest_text, off, sorted_by, states
+from latcon.report.panels import MARKERS, Grid, colours_of, draw_errors, entry, headroom, logarithmic, note
 from latcon.report.pictures import BLACK, GREY
 
 TABLES = {
@@ -28,7 +28,6 @@ def draw_sinusoidal_energy(tables):
     for name, state, (*panels, error) in grid.each(rows, titles, "k d [1]"):
         panels[0].set_ylabel("energy / local [1]")
         panels = dict(zip("LS", panels))
-        found = {law: [] for law in laws}
         for (wave, angle), part in groups(state, "wave", "angle [deg]"):
             part = sorted_by(part, "k d")
             k, axes, colour = part["k d"], panels[wave], colours[angle]
@@ -37,16 +36,8 @@ def draw_sinusoidal_energy(tables):
             done = np.isfinite(part["fem"])
             axes.plot(k[done], part["fem"][done], "-x", color=colour, linewidth=1, markersize=5)
             axes.plot(k, part["lattice"], "o", color=colour, markerfacecolor="none", markersize=6)
-            for law in laws:
-                difference = np.abs(part[law] / part["lattice"] - 1)
-                error.plot(k, np.where(difference > 0, difference, np.nan), "-", marker=MARKERS[wave], markersize=3,
-                           color=LAW_COLOURS[law], linewidth=0.8)
-                found[law].append(fitted_order(k, difference, share=0.5))
-        logarithmic(error)
-        headroom(error, 2.2)
-        orders = {law: range_text(found[law]) for law in laws}
-        note(error, [(f"{law}{f': order {orders[law]}' if orders[law] else ''}", LAW_COLOURS[law]) for law in laws])
-        found = [f"order of the {law} energy {orders[law]}" for law in laws if orders[law]]
+        orders = draw_errors(error, state, {law: state[law] / state["lattice"] - 1 for law in laws})
+        found = [f"order of the {law} energy {order}" for law, order in orders.items()]
         found.append(f"finite elements off the gradient energy by {largest_text(state['fem'] / state['gradient'] - 1)}")
         metrics.append(f"{name}: {'; '.join(found)}")
     return grid, metrics

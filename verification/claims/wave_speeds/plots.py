@@ -1,8 +1,8 @@
 """Tables and plots of the claim on wave speeds."""
 import numpy as np
 
-from latcon.report.claim_tables import WAVE, Plot, fitted_order, groups, largest, off, range_text, sorted_by, states
-from latcon.report.panels import LAW_COLOURS, MARKERS, WAVES, Grid, colours_of, entry, headroom, logarithmic, logarithmic_along_x, note
+from latcon.report.claim_tables import WAVE, Plot, groups, largest, off, sorted_by, states
+from latcon.report.panels import WAVES, Grid, colours_of, draw_errors, entry, logarithmic, logarithmic_along_x
 from latcon.report.pictures import BLUE
 
 TABLES = {
@@ -31,13 +31,11 @@ def draw_wave_speeds(tables):
         panels = dict(zip(WAVES, panels))
         for (wave, angle), part in groups(state, "wave", "angle [deg]"):
             draw_speeds(panels[wave], sorted_by(part, "k d"), colours[angle])
-        orders = draw_speed_errors(axes, state, laws)
-        headroom(axes, 2.2)
-        note(axes, [(f"{law}{f': order {orders[law]}' if orders[law] else ''}", LAW_COLOURS[law]) for law in laws])
+        orders = draw_errors(axes, state, {law: state[f"{law} [m/s]"] / state["bloch [m/s]"] - 1 for law in laws})
         metrics.append(f"{name}: " + "; ".join(filter(None, (
             off("a run of the lattice", state["lattice [m/s]"], state["bloch [m/s]"], "the exact dispersion"),
             off("finite elements", state["fem [m/s]"], state["gradient [m/s]"], "the gradient continuum"),
-            *(f"order of the {law} continuum {orders[law]}" for law in laws if orders[law])))))
+            *(f"order of the {law} continuum {order}" for law, order in orders.items())))))
     return grid, metrics
 
 
@@ -51,22 +49,6 @@ def draw_speeds(axes, part, colour):
     done = np.isfinite(fem)
     axes.plot(k[done], fem[done], "-x", color=colour, linewidth=1, markersize=5)
     axes.plot(k, lattice, "o", color=colour, markerfacecolor="none", markersize=6)
-
-
-def draw_speed_errors(axes, state, laws):
-    """Errors of the continua against the exact dispersion. @return {law: orders in words, None for none}"""
-    orders = {}
-    for law in laws:
-        found = []
-        for (wave, _), part in groups(state, "wave", "angle [deg]"):
-            part = sorted_by(part, "k d")
-            error = np.abs(part[f"{law} [m/s]"] / part["bloch [m/s]"] - 1)
-            axes.plot(part["k d"], np.where(error > 0, error, np.nan), "-", marker=MARKERS[wave], markersize=3,
-                      color=LAW_COLOURS[law], linewidth=0.8)
-            found.append(fitted_order(part["k d"], error, share=0.5))
-        orders[law] = range_text(found)
-    logarithmic(axes)
-    return orders
 
 
 def draw_attenuation(tables):

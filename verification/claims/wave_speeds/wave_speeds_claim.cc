@@ -27,57 +27,24 @@ const output::Tolerance lattice_tolerance{
 constexpr double compared_kd = 0.25;
 constexpr double gradient_tolerance = 1e-4;
 
-std::array<double, 2> frequencies(const std::array<bridge::PlaneWave, 2> &waves)
+// Of plane waves or of oscillations.
+template <class Wave>
+std::array<double, 2> frequencies(const std::array<Wave, 2> &waves)
 {
   return {waves[0].frequency, waves[1].frequency};
 }
 
-// Waves of one direction at one state.
-class Waves
-{
-public:
-  Waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, const WaveSpeedsOptions &options)
-    : F_(F), material_(lattice::without_dashpots(subject.material)),
-      of_runs_(options.planted ? options.planted(material_) : material_), sheet_(subject.sheet()), media_(subject)
-  {
-  }
-
-  std::array<double, 2> bloch(const Eigen::Vector2d &K) const
-  {
-    return frequencies(bridge::bloch_waves(sheet_, material_, F_, K));
-  }
-  std::array<double, 2> local(const Eigen::Vector2d &K) const { return closed(media_.local, K); }
-  std::array<double, 2> gradient(const Eigen::Vector2d &K) const { return closed(media_.gradient, K); }
-  std::array<double, 2> isotropic(const Eigen::Vector2d &K) const { return closed(media_.isotropic, K); }
-
-  std::array<double, 2> run(const WaveCell &cell) const
-  {
-    const std::array<Oscillation, 2> found = lattice_waves(cell, of_runs_, F_);
-    return {found[0].frequency, found[1].frequency};
-  }
-
-  std::array<double, 2> finite_elements(const Eigen::Vector2d &K, const WaveMesh &mesh) const
-  {
-    return discrete_frequencies(media_.gradient, F_, K, mesh);
-  }
-
-private:
-  std::array<double, 2> closed(const WaveContinuum &medium, const Eigen::Vector2d &K) const
-  {
-    return frequencies(continuum_waves(medium, F_, K));
-  }
-
-  Eigen::Matrix2d F_;
-  lattice::Material material_, of_runs_;
-  lattice::TriangularLattice sheet_; // only its bonds matter
-  SubjectContinua media_;
-};
-
 void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const WaveSpeedsOptions &options,
                ClaimOutcome &outcome)
 {
-  const Waves waves(subject, F, options);
   const double d = subject.spacing;
+  const lattice::Material material = lattice::without_dashpots(subject.material),
+                          of_runs = options.planted ? options.planted(material) : material;
+  const lattice::TriangularLattice sheet = subject.sheet(); // only its bonds matter
+  const SubjectContinua media(subject);
+  const auto exact = [&](const Eigen::Vector2d &K) { return frequencies(bridge::bloch_waves(sheet, material, F, K)); };
+  const auto closed = [&](const WaveContinuum &medium, const Eigen::Vector2d &K)
+  { return frequencies(continuum_waves(medium, F, K)); };
   const Rows rows(outcome.results, "wave-speeds", subject.name + ", " + state_name(F) + ": ");
   output::Table &table =
     outcome.table("wave_speeds", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "local [m/s]", "bloch [m/s]",
@@ -94,8 +61,8 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
     {
       const WaveCell cell = wave_cell(d, subject.orientation, direction, options.kd[i]);
       const double k = cell.K.norm();
-      const auto local = waves.local(cell.K), bloch = waves.bloch(cell.K), gradient = waves.gradient(cell.K),
-                 isotropic = waves.isotropic(cell.K);
+      const auto bloch = exact(cell.K), local = closed(media.local, cell.K), gradient = closed(media.gradient, cell.K),
+                 isotropic = closed(media.isotropic, cell.K);
       // If a wave does not oscillate, its rows fail.
       std::array<double, 2> run{unknown, unknown}, elements = run;
       const auto attempt = [&](const std::string &side, const std::function<void()> &compute)
@@ -105,8 +72,8 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
               << " degrees, kd = " << options.kd[i];
         rows.attempt(where.str(), compute);
       };
-      attempt("lattice run", [&] { run = waves.run(cell); });
-      attempt("finite elements", [&] { elements = waves.finite_elements(cell.K, options.mesh); });
+      attempt("lattice run", [&] { run = frequencies(lattice_waves(cell, of_runs, F)); });
+      attempt("finite elements", [&] { elements = discrete_frequencies(media.gradient, F, cell.K, options.mesh); });
       for (std::size_t w = 0; w < 2; ++w)
       {
         run_against_bloch.add_relative(run[w] / k, bloch[w] / k);
@@ -125,21 +92,21 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
     { return frequency[w] * d / compared_kd; };
     for (std::size_t w = 0; w < 2; ++w)
     {
-      gradient_against_bloch.add_relative(speed(waves.gradient(K), w), speed(waves.bloch(K), w));
+      gradient_against_bloch.add_relative(speed(closed(media.gradient, K), w), speed(exact(K), w));
       for (std::size_t i = 0; i < order_kd.size(); ++i)
       {
         const Eigen::Vector2d of = order_kd[i] / d * N;
-        const double exact = waves.bloch(of)[w];
-        local_order.add(i, std::abs(waves.local(of)[w] / exact - 1.));
-        gradient_order.add(i, std::abs(waves.gradient(of)[w] / exact - 1.));
+        const double bloch = exact(of)[w];
+        local_order.add(i, std::abs(closed(media.local, of)[w] / bloch - 1.));
+        gradient_order.add(i, std::abs(closed(media.gradient, of)[w] / bloch - 1.));
       }
       // v = c (1 - alpha (kd)^2 / 2 + ...): two waves give c.
       const double a = std::pow(longest_kd[0], 2), b = std::pow(longest_kd[1], 2);
       const double extrapolated = (b * longest[w][0] - a * longest[w][1]) / (b - a);
-      const double closed = F.isIdentity(1e-12)
-                              ? (w == 0 ? subject.theory.longitudinal_speed : subject.theory.shear_speed)
-                              : waves.local(N / d)[w] * d;
-      long_waves[w].add_relative(extrapolated, closed);
+      const double speed_of_long = F.isIdentity(1e-12)
+                                     ? (w == 0 ? subject.theory.longitudinal_speed : subject.theory.shear_speed)
+                                     : closed(media.local, N / d)[w] * d;
+      long_waves[w].add_relative(extrapolated, speed_of_long);
     }
   }
 
