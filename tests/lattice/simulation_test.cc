@@ -154,6 +154,28 @@ TEST(Simulation, DividesStepsInWhichBondsAreTooShort)
   EXPECT_EQ(rubber.simulation->n_divided_steps(), 0u);
 }
 
+// Of a compressed sheet two sites approach each other: the step is divided if it would make their bond short.
+// theory.md, eq. (L.24).
+TEST(Simulation, DividesAStepThatMakesABondShort)
+{
+  const TriangularLattice sheet = sheets::square(8);
+  const Material material = Recoil(1e10).material;
+  const std::size_t near = sheet.index(4, 3), far = near + 1;
+  const double now = 0.7, h = 1.01 * recoil_step({1., 2}, sheet, material, 0, short_stretch, nullptr);
+  for (const double then : {0.45, 0.499, 0.501, 0.55, 0.69})
+  {
+    Simulation simulation(sheet, material,
+                          homogeneous_state(sheet, material, now * Eigen::Matrix2d::Identity(), Edges::held),
+                          TimeStepping(h, 2));
+    Field vx(sheet.n_places()), vy(sheet.n_places());
+    vx[near] = 0.5 * (now - then) * sheet.spacing() / h;
+    vx[far] = -vx[near];
+    simulation.set_velocities(vx, vy);
+    simulation.step();
+    EXPECT_EQ(simulation.n_divided_steps(), then < short_stretch ? 1u : 0u) << then;
+  }
+}
+
 // Sheet of nearest neighbours alone, by hand: e = 3 A0 d psi, half of six bonds pull.
 // theory.md, eq. (L.26).
 TEST(TimeStep, WatchesBondsByWhatTheyCanLoseInIt)
