@@ -33,6 +33,12 @@ def study(tmp_path):
     return study
 
 
+def stop(process):
+    process.send_signal(signal.SIGSTOP)
+    tasks = pathlib.Path(f"/proc/{process.pid}/task")  # a thread that writes stops after the call
+    assert wait_for(lambda: all(") T " in (task / "stat").read_text() for task in tasks.iterdir()), process)
+
+
 def commands(study, out):
     yield ["lattice", *TINY, "--output-dir", out]
     yield ["continuum", CASES / "shear_layer.prm", "--output-dir", out]
@@ -45,9 +51,7 @@ def commands(study, out):
 def test_second_command_is_refused_and_writes_nothing(start, out, tmp_path, study):
     owner = start(*ENDLESS, "--output-dir", out)
     assert wait_for((out / "lattice-0000.vtp").exists, owner)
-    owner.send_signal(signal.SIGSTOP)
-    tasks = pathlib.Path(f"/proc/{owner.pid}/task")  # a thread that writes stops after the call
-    assert wait_for(lambda: all(") T " in (task / "stat").read_text() for task in tasks.iterdir()), owner)
+    stop(owner)
     before = contents(out)
     for command in commands(study, out):
         run = latcon(*command)
@@ -81,7 +85,7 @@ def test_runs_of_a_study_hold_theirs(start, study, out):
     part.mkdir(parents=True)
     owner = start(*ENDLESS, "--output-dir", part)
     assert wait_for((part / "lattice-0000.vtp").exists, owner)
-    owner.send_signal(signal.SIGSTOP)
+    stop(owner)
     before = contents(part)
     run = latcon("study", study, "--skip-verification", "--output-dir", out)
     assert run.returncode == 2, run.stderr

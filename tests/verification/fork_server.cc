@@ -58,7 +58,7 @@ void redirect(int descriptor, const std::string &path)
     argv.push_back(argument.data());
   argv.push_back(nullptr);
   // A fork cannot end MPI, as they do before they become Python.
-  if (arguments.size() > 1 && (arguments[1] == "study" || arguments[1] == "batch"))
+  if (arguments.size() > 1 && (arguments[1] == "study" || arguments[1] == "batch" || arguments[1] == "compare"))
   {
     execv("/proc/self/exe", argv.data());
     _exit(99);

@@ -20,24 +20,27 @@ struct Sides
   std::optional<double> lattice = {}, continuum = {}, theory = {};
 };
 
-/// Returns a row's sides by their names.
+/// Returns the sides of a row that compares both.
 inline Sides of_both(double lattice, double continuum, std::optional<double> theory = {})
 {
   return {lattice, continuum, theory};
 }
+/// Returns the sides of a row about the lattice alone.
 inline Sides of_lattice(double value, std::optional<double> theory = {})
 {
   return {value, {}, theory};
 }
+/// Returns the sides of a row about the continuum alone.
 inline Sides of_continuum(double value, std::optional<double> theory = {})
 {
   return {{}, value, theory};
 }
-/// Returns the sides of the largest error, whose reference is in theory.
+/// Returns the sides of the lattice's largest error, whose reference is in theory.
 inline Sides of_lattice(const support::LargestError &error)
 {
   return {error.value(), {}, error.reference()};
 }
+/// Returns the sides of the continuum's largest error, whose reference is in theory.
 inline Sides of_continuum(const support::LargestError &error)
 {
   return {{}, error.value(), error.reference()};
