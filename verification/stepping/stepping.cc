@@ -131,10 +131,10 @@ public:
     std::vector<std::size_t> ends;
     std::vector<double> stretches;
     lattice::for_each_bond(state, *lattice_,
-                           [&](std::size_t near, std::size_t kind, std::size_t far)
+                           [&](const lattice::Bond &bond)
                            {
-                             ends.insert(ends.end(), {near, far});
-                             stretches.push_back(lattice::stretch(state, *lattice_, near, kind));
+                             ends.insert(ends.end(), {bond.near, bond.far});
+                             stretches.push_back(lattice::stretch(state, *lattice_, bond));
                            });
     return py::make_tuple(pairs(ends), py::array_t<double>(stretches.size(), stretches.data()));
   }
