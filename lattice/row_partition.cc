@@ -11,7 +11,7 @@ namespace
 
 constexpr auto reach = static_cast<std::ptrdiff_t>(TriangularLattice::reach);
 
-// Of messages between two ranks, which arrive in the order in which they are sent.
+// Tag of messages between two ranks, which arrive in the order in which they are sent.
 constexpr int tag = 0;
 
 } // namespace

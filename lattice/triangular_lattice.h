@@ -106,7 +106,7 @@ public:
   {
     return (row + margin) * stride() + row_alignment + column;
   }
-  /// The row of this number, or that which stands there in a periodic sheet; none beyond other sheets.
+  /// Returns the row of this number, wrapped in a sheet that is periodic across rows; none outside of other sheets.
   std::optional<std::size_t> row(std::ptrdiff_t number) const;
   std::size_t row_of(std::size_t place) const { return place / stride() - margin; }
   std::size_t column_of(std::size_t place) const { return place % stride() - row_alignment; }
@@ -130,9 +130,9 @@ public:
   /// Reference position (X, Y) [m] of a place; X from 0 to length(), Y centred on 0. Valid in the margin as well.
   Eigen::Vector2d reference(std::size_t place) const;
 
-  /// The bond of a kind that starts at a place, whether anything is at its end or not.
+  /// Returns the bond of a kind that starts at a place; its far end need not be a site.
   Bond bond(std::size_t near, std::size_t kind) const { return {near, kind, near + shift(kind, row_of(near))}; }
-  /// The bond of a kind that ends at a site, or at an image of it: it starts at a site, if at anything.
+  /// Returns the bond of a kind that ends at a site, or at its image; its near end need not be a site.
   Bond bond_into(std::size_t site, std::size_t kind) const
   {
     return bond(canonical_place(site - shift(kind, row_of(site) + static_cast<std::size_t>(rows_across(kind)))), kind);

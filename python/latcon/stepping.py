@@ -121,7 +121,7 @@ class Simulation:
 
     @property
     def bonds(self) -> np.ndarray[Any, np.dtype[np.int64]]:
-        """Sites at the ends of each bond that is there, as rows of `reference`, shape (bonds, 2)."""
+        """Sites at the ends of each unbroken bond, as rows of `reference`, shape (bonds, 2)."""
         return self._index(self._sheet.bonds()[0])
 
     @property

@@ -213,7 +213,7 @@ TEST(GradientForces, HaveTheDispersionOfTheLatticeOnAGrid)
           continue;
         EXPECT_NEAR(force[i][a], -omega2 * inertia[a], 2e-6 * scale) << J << ' ' << i << ' ' << a;
       }
-      // Of second order in h: the derivative by K times k^4 h^2 / 12.
+      // Error of second order in h: the derivative by K times k^4 h^2 / 12.
       double error[2];
       for (const unsigned int n : {0u, 1u})
       {

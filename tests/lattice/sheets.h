@@ -137,7 +137,7 @@ inline latcon::lattice::Material rubber_with_branches(double viscosity = 65.625)
   return material;
 }
 
-/// The same with disorder of all bonds.
+/// Such a rubber with disorder of all bonds.
 inline latcon::lattice::Material disordered_rubber(double viscosity = 65.625)
 {
   using latcon::lattice::Distribution;

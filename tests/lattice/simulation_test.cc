@@ -154,7 +154,7 @@ TEST(Simulation, DividesStepsInWhichBondsAreTooShort)
   EXPECT_EQ(rubber.simulation->n_divided_steps(), 0u);
 }
 
-// Of a compressed sheet two sites approach each other: the step is divided if it would make their bond short.
+// Two sites of a compressed sheet approach each other: the step is divided if it would make their bond short.
 // theory.md, eq. (L.24).
 TEST(Simulation, DividesAStepThatMakesABondShort)
 {

@@ -68,7 +68,7 @@ TEST(Dense, InvertsWhatHasFullRank)
   EXPECT_FALSE(left_inverse(A, 1e-6));
   EXPECT_TRUE(left_inverse(A, 1e-10));
 
-  // Of the points of the line x + 2 y = 5, (1, 2) is nearest to the origin.
+  // The point (1, 2) of the line x + 2 y = 5 is nearest to the origin.
   const Eigen::VectorXd x = shortest_least_squares(Eigen::RowVector2d(1., 2.), Eigen::VectorXd::Constant(1, 5.));
   EXPECT_LT((x - Eigen::Vector2d(1., 2.)).norm(), 1e-14);
 }

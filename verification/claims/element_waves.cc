@@ -140,7 +140,7 @@ std::vector<Oscillation> measure(const WaveContinuum &medium, const Eigen::Matri
   return record.fit(time_step);
 }
 
-// Of the wave; nonlinear terms change frequencies by its square.
+// Amplitude of the wave; nonlinear terms change frequencies by its square.
 constexpr double memory_wave_strain = 1e-4;
 
 // The error is a series in h^2 with terms of (w h)^2 / 12 and w h^2 / (12 tau) (theory-viscoelastic.md, eq. (V.7)).

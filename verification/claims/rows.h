@@ -11,10 +11,10 @@
 namespace latcon::claims
 {
 
-/// A number that could not be computed; a row that is given it fails.
+/// Number that could not be computed; it makes a row fail.
 inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// What a row compares; what does not apply is empty.
+/// Numbers that a row compares; empty where a side does not apply.
 struct Sides
 {
   std::optional<double> lattice = {}, continuum = {}, theory = {};
@@ -59,8 +59,9 @@ public:
   /// Returns a writer with more words before quantities.
   [[nodiscard]] Rows about(const std::string &more) const { return {results_, claim_, where_ + more}; }
 
-  /// Adds a row. @param tolerance with its reason; none: the row is reported @param is_judged false: so it is whatever
-  /// its tolerance
+  /// Adds a row.
+  /// @param tolerance with its reason; none: the row is reported
+  /// @param is_judged false: the row is reported, with or without a tolerance
   void add(const std::string &quantity, const std::string &unit, const Sides &sides, std::optional<double> error = {},
            output::Tolerance tolerance = {}, bool is_judged = true) const
   {

@@ -153,7 +153,7 @@ MemoryNeed lattice_memory(const input::Case &input, const RunKind run, const boo
   const double factors = factors_per_place(input, run == RunKind::fracture);
   const double fields =
     places * (bytes_of_place + (is_chebyshev ? bytes_of_chebyshev_place : 0.) + 2. * history + factors);
-  // Of frames that are pending, and of the one that waits for them.
+  // The state is copied for each pending frame, and for the one that waits for them.
   const double copies = run != RunKind::equilibrium ? static_cast<double>(support::TaskThread::max_pending + 1) * places *
                                                         (bytes_of_place_in_copy + history + factors)
                                                     : 0.;

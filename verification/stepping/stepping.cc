@@ -124,7 +124,7 @@ public:
     return py::array_t<std::size_t>(found.size(), found.data());
   }
 
-  // Places at the ends of each bond that is there, and its stretch.
+  // Returns the places at the ends of each unbroken bond, and its stretch.
   py::tuple bonds() const
   {
     const lattice::State &state = simulation_->state();

@@ -130,7 +130,7 @@ public:
     const std::string of_elements = has_elements_ ? " of finite elements" : "";
     rows.add(part + ", frequency" + of_elements + " below the rubbery or above the glassy limit, worst of all waves",
              "1", {}, outside_, has_elements_ ? element_tolerance : frequency_tolerance);
-    // Of finite elements, decays a factor of three beside the peak are smaller by 0.05 of the frequency, which makes
+    // Decays of finite elements a factor of three beside the peak are smaller by 0.05 of the frequency, which makes
     // the error of the vertex 45 times that of the decays. In the lattice decays near the peak, which differ by a few
     // percent, are known to 1e-6.
     rows.add(part + ", w tau at the largest decay" + of_elements + ", worst of both waves", "1", sides(peaks), peaks,

@@ -27,7 +27,7 @@ const output::Tolerance lattice_tolerance{
 constexpr double compared_kd = 0.25;
 constexpr double gradient_tolerance = 1e-4;
 
-// Of plane waves or of oscillations.
+// Frequency and decay of plane waves or of oscillations.
 template <class Wave>
 std::array<double, 2> frequencies(const std::array<Wave, 2> &waves)
 {

@@ -1,0 +1,307 @@
+// Forces of all kinds of sheets against a plain implementation, on all threads and instruction sets.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "lattice/energy.h"
+#include "lattice/forces.h"
+#include "support/largest_error.h"
+#include "tests/lattice/reference_forces.h"
+#include "tests/lattice/sheets.h"
+
+namespace forces_reference_test
+{
+
+using namespace latcon;
+
+using namespace lattice;
+
+// Variants of a sheet: material, orientation, periodic direction, and number of sites in a row.
+struct Subject
+{
+  Material material;
+  Orientation orientation;
+  Periodic periodic;
+  double columns;
+};
+
+Material linear()
+{
+  Material material = sheets::rubber();
+  material.nearest.law = LinearBond{2e5};
+  material.next_nearest->law = LinearBond{3e5};
+  return material;
+}
+
+// One shell with a law from outside, the other with one of latcon's.
+Material mixed()
+{
+  Material material = sheets::rubber();
+  material.nearest.law = sheets::from_outside(LinearBond{2e5});
+  return material;
+}
+
+// Bonds of one stiffness and one shell with a law from outside.
+Material differently_strong()
+{
+  Material material = sheets::without_next_nearest(sheets::rubber_from_outside());
+  material.disorder.strength = {Distribution::Kind::uniform, 0.2};
+  return material;
+}
+
+std::vector<Subject> subjects()
+{
+  std::vector<Subject> all;
+  // Few and many columns, of all remainders that a vector of up to eight sites leaves.
+  for (const double columns : {3., 10., 11., 12., 13., 14., 15., 16., 17., 40.})
+    for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
+      for (const Material &material :
+           {sheets::rubber(), sheets::nearest_only(), linear(), sheets::rubber_from_outside(), mixed(),
+            sheets::rubber_with_branches(), sheets::disordered_rubber(), differently_strong(),
+            sheets::without_next_nearest(sheets::rubber_of_three_shells()),
+            sheets::disordered_rubber_of_three_shells()})
+        for (const Periodic periodic : {Periodic{}, Periodic{true, false}, Periodic{false, true}, Periodic{true, true}})
+          all.push_back({material, orientation, periodic, columns});
+  return all;
+}
+
+TriangularLattice sheet_of(const Subject &subject, double rows = 11.)
+{
+  const double along = subject.columns * sheets::spacing, across = rows * sheets::spacing;
+  const bool along_x = subject.orientation == Orientation::rows_along_crack;
+  return {sheets::spacing, along_x ? along : across, along_x ? across : along, subject.orientation, subject.periodic};
+}
+
+constexpr double first_limit = 2.6, toughened_limit = 4.; // breaking stretches in a random state
+
+// Sites all over the place at random velocities, bonds that are broken, overstretched or toughened, sites removed with
+// a neighbour on the very spot.
+State random_state(const TriangularLattice &sheet, const Material &material, unsigned int seed)
+{
+  std::mt19937 random(seed);
+  const auto uniform = [&] { return std::uniform_real_distribution<double>(0., 1.)(random); };
+  State state = homogeneous_state(sheet, material, sheets::stretched(1.6, 1.9), Edges::free);
+  relax_memory(state, sheet, material);
+  for (BondHistory::Kind &history : state.history.kinds)
+    for (Field &variable : history.variables)
+      for (double &overstress : variable)
+        overstress = 1e5 * (uniform() - 0.5);
+  state.breaking_stretch = first_limit;
+  state.toughened_stretch = toughened_limit;
+  state.strength = bond_factors(sheet, material, BondProperty::strength);
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+  {
+    if (!sheet.is_site(place))
+      continue;
+    state.x[place] += 0.5 * sheets::spacing * (uniform() - 0.5);
+    state.y[place] += 0.5 * sheets::spacing * (uniform() - 0.5);
+    state.vx[place] = 40. * (uniform() - 0.5);
+    state.vy[place] = 40. * (uniform() - 0.5);
+    for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    {
+      const double lot = uniform();
+      if (!state.bonds.present(place, kind))
+        continue;
+      if (lot < 0.1)
+        state.bonds.remove(place, kind);
+      else if (lot < 0.2)
+        state.bonds.toughen(place, kind);
+    }
+  }
+  const std::size_t removed = sheet.index(sheet.rows() / 2, 1), neighbour = removed + 1;
+  for_each_bond_of_site(state, sheet, removed, [&](const Bond &bond) { state.bonds.remove(bond.near, bond.kind); });
+  state.x[removed] = state.x[neighbour];
+  state.y[removed] = state.y[neighbour];
+  update_images(state, sheet);
+  return state;
+}
+
+constexpr std::array<double, n_bond_kinds> retraction{{1.3, 1.35, 1.4, 1.3, 1.35, 1.4, 1.3, 1.35, 1.4}};
+
+TEST(Forces, AreThoseOfTheReference)
+{
+  bool some_retract_alone = false;
+  for (const Subject &subject : subjects())
+  {
+    const TriangularLattice sheet = sheet_of(subject);
+    SCOPED_TRACE(testing::Message() << sheet.rows() << " rows of " << sheet.columns() << ", periodic "
+                                    << subject.periodic.x << subject.periodic.y << ", "
+                                    << subject.material.coordination() << " neighbours");
+    const State state = random_state(sheet, subject.material, 1);
+    Forces forces(sheet, subject.material);
+    for (const bool watch : {false, true})
+    {
+      if (watch)
+        forces.set_retraction_threshold(retraction);
+      forces.evaluate(state, state.vx, state.vy);
+      const ReferenceForces expected = watch ? reference_forces(state, sheet, subject.material, retraction)
+                                             : reference_forces(state, sheet, subject.material);
+      for (std::size_t place = 0; place < sheet.n_places(); ++place)
+      {
+        // A bond takes some 20 roundings, a sum of up to eighteen takes 18, and the reference as many.
+        const double tolerance = 80. * std::numeric_limits<double>::epsilon() * expected.magnitude[place];
+        ASSERT_NEAR(forces.fx()[place], expected.fx[place], tolerance) << place;
+        ASSERT_NEAR(forces.fy()[place], expected.fy[place], tolerance);
+      }
+      // All terms are positive, so the sum is as good as its terms and its number of additions: a few thousand.
+      ASSERT_NEAR(forces.viscous_power(), expected.viscous_power, 1e-12 * expected.viscous_power);
+      for (std::size_t row = 0; row < sheet.rows(); ++row)
+        ASSERT_EQ(forces.row_has_events(row), expected.row_has_events[row]) << row;
+      if (watch)
+        some_retract_alone |=
+          expected.row_has_events != reference_forces(state, sheet, subject.material).row_has_events;
+    }
+  }
+  EXPECT_TRUE(some_retract_alone);
+}
+
+// Rows with bonds that are shorter than a limit, and no others; linear bonds do not count.
+TEST(Forces, ReportRowsWithShortBonds)
+{
+  std::size_t n_short = 0, n_others = 0;
+  for (const Subject &subject : subjects())
+  {
+    const TriangularLattice sheet = sheet_of(subject);
+    const State state = random_state(sheet, subject.material, 3);
+    Forces forces(sheet, subject.material);
+    forces.evaluate(state, state.vx, state.vy);
+    for (std::size_t row = 0; row < sheet.rows(); ++row)
+      EXPECT_FALSE(forces.row_has_short_bonds(row)); // none are watched
+    std::vector<double> shortest(sheet.rows(), 1e9);
+    for_each_bond(state, sheet,
+                  [&](const Bond &bond)
+                  {
+                    if (std::holds_alternative<LinearBond>(subject.material.shell(bond.kind)->law))
+                      return;
+                    double &of_row = shortest[sheet.row_of(bond.near)];
+                    of_row = std::min(of_row, stretch(state, sheet, bond));
+                  });
+    for (const double limit : {0.9, 1., 1.1, 1.2})
+    {
+      forces.set_shortness_threshold(limit);
+      forces.evaluate(state, state.vx, state.vy);
+      for (std::size_t row = 0; row < sheet.rows(); ++row)
+      {
+        if (std::abs(shortest[row] / limit - 1.) > 1e-12) // a row at the limit may be either
+        {
+          EXPECT_EQ(forces.row_has_short_bonds(row), shortest[row] < limit) << row << ' ' << limit;
+        }
+        ++(shortest[row] < limit ? n_short : n_others);
+      }
+    }
+  }
+  EXPECT_GT(n_short, 20u);
+  EXPECT_GT(n_others, 20u);
+}
+
+bool same_bits(const Field &a, const Field &b)
+{
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+TEST(Forces, BitsDoNotDependOnThreads)
+{
+  const int before = omp_get_max_threads();
+  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
+    for (const Periodic periodic : {Periodic{}, Periodic{true, true}})
+      for (const auto &[rows, material] : {std::pair(20., sheets::rubber()),
+                                           {90., sheets::rubber()},
+                                           {20., sheets::rubber_from_outside()},
+                                           {20., sheets::disordered_rubber_of_three_shells()},
+                                           {20., sheets::disordered_rubber()}})
+      {
+        const TriangularLattice sheet = sheet_of({material, orientation, periodic, 5000. / rows}, rows);
+        ASSERT_GE(sheet.n_places(), min_places_for_threads);
+        const State state = random_state(sheet, material, 2);
+        Forces one(sheet, material), many(sheet, material);
+        omp_set_num_threads(1);
+        one.evaluate(state, state.vx, state.vy);
+        for (const int threads : {2, 3, 4, 40}) // at last more of them than rows
+        {
+          omp_set_num_threads(threads);
+          many.evaluate(state, state.vx, state.vy);
+          EXPECT_TRUE(same_bits(many.fx(), one.fx()));
+          EXPECT_TRUE(same_bits(many.fy(), one.fy()));
+          EXPECT_EQ(many.viscous_power(), one.viscous_power());
+          for (std::size_t row = 0; row < sheet.rows(); ++row)
+            EXPECT_EQ(many.row_has_events(row), one.row_has_events(row));
+        }
+      }
+  omp_set_num_threads(before);
+}
+
+TEST(Forces, BitsDoNotDependOnTheInstructionSet)
+{
+  const std::vector<std::string> sets = kernels::instruction_sets();
+  EXPECT_EQ(kernels::instruction_set(), sets.front());
+  // Without vectors; Highway has one for compilers that it trusts with its emulated ones.
+  EXPECT_TRUE(sets.back() == "SCALAR" || sets.back() == "EMU128") << sets.back();
+  EXPECT_THROW(kernels::use_instruction_set("none"), std::invalid_argument);
+  for (const Subject &subject : subjects())
+  {
+    const TriangularLattice sheet = sheet_of(subject);
+    const State state = random_state(sheet, subject.material, 5);
+    Forces best(sheet, subject.material), other(sheet, subject.material);
+    for (Forces *forces : {&best, &other})
+      forces->set_retraction_threshold(retraction);
+    kernels::use_instruction_set(sets.front());
+    best.evaluate(state, state.vx, state.vy);
+    for (const std::string &set : sets)
+    {
+      kernels::use_instruction_set(set);
+      ASSERT_EQ(kernels::instruction_set(), set);
+      other.evaluate(state, state.vx, state.vy);
+      ASSERT_TRUE(same_bits(other.fx(), best.fx())) << set;
+      ASSERT_TRUE(same_bits(other.fy(), best.fy())) << set;
+      ASSERT_EQ(other.viscous_power(), best.viscous_power()) << set;
+      for (std::size_t row = 0; row < sheet.rows(); ++row)
+        ASSERT_EQ(other.row_has_events(row), best.row_has_events(row)) << set;
+    }
+  }
+  kernels::use_instruction_set(sets.front());
+}
+
+// Bonds taken out one by one, in whatever order, leave the power of a sheet that never had them, and single sites feel
+// the forces of an evaluation of all, to the last bit.
+TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
+{
+  for (const Subject &subject : subjects())
+  {
+    const TriangularLattice sheet = sheet_of(subject);
+    const State before = random_state(sheet, subject.material, 3);
+    std::vector<Bond> bonds;
+    for_each_bond(before, sheet,
+                  [&](const Bond &bond)
+                  {
+                    if ((7 * bond.near + bond.kind) % 10 < 3)
+                      bonds.push_back(bond);
+                  });
+    std::mt19937 random(4);
+    std::shuffle(bonds.begin(), bonds.end(), random);
+    State state = before;
+    Forces forces(sheet, subject.material), without(sheet, subject.material);
+    forces.evaluate(state, state.vx, state.vy);
+    const double power = forces.viscous_power();
+    for (const Bond &bond : bonds)
+    {
+      state.bonds.remove(bond.near, bond.kind);
+      forces.remove_bond(state, state.vx, state.vy, bond);
+    }
+    without.evaluate(state, state.vx, state.vy);
+    for (std::size_t place = 0; place < sheet.n_places(); ++place)
+      if (sheet.is_site(place))
+      {
+        const Eigen::Vector2d force = forces.on_site(state, state.vx, state.vy, place);
+        ASSERT_EQ(force.x(), without.fx()[place]);
+        ASSERT_EQ(force.y(), without.fy()[place]);
+      }
+    ASSERT_LT(without.viscous_power(), 0.9 * power);
+    ASSERT_NEAR(forces.viscous_power(), without.viscous_power(), 1e-12 * power);
+  }
+}
+
+} // namespace forces_reference_test

@@ -1,0 +1,128 @@
+"""Tests of motions of finite elements from the command line: energy, dispersion, ranks, signals."""
+import json
+import math
+
+import numpy as np
+import pytest
+import vtk
+
+from continuum_run import DENSITY, LAYER, MODULUS, field, last_mesh, numbers, settings
+from program import CASES, frames, latcon, latcon_on_ranks, read, read_csv
+
+# A shear wave in a strip that is periodic both ways.
+AMPLITUDE = 0.01  # of velocity [m/s]
+LENGTH = 0.01  # of the strip and the wave [m]
+STATIC, INERTIA = 0.5e-3, 1e-3  # l_s, l_d [m]
+
+
+def arguments(folder, cells, step=5e-6, across="periodic"):
+    """@param across condition of the bottom and of the top edge"""
+    return ["continuum", LAYER, "--quiet", "--output-dir", folder,
+            *settings("Loading/shear=0", "Continuum/law=cauchy-born", "Continuum/ratio=auto",
+                      "Bottom edge/normal gradient=free", "Top edge/normal gradient=free",
+                      f"Bottom edge/condition={across}", f"Top edge/condition={across}",
+                      "Continuum/solution=motion", "Initial state/base=undeformed", "Output/energy interval=1",
+                      f"Continuum/cells x={cells}", "Continuum/cells y=2", f"Continuum/static length={STATIC}",
+                      f"Continuum/inertia length={INERTIA}", f"Continuum/time step={step}", "Time/end=5e-5",
+                      f"Initial state/velocity y={AMPLITUDE}*sin(2*pi*x/{LENGTH})")]
+
+
+def moved(out, cells):
+    run = latcon(*arguments(out, cells))
+    assert run.returncode == 0, run.stderr
+    return numbers(out / "energy.csv")
+
+
+def test_energy_balances(out):
+    energy = moved(out, 8)
+    assert list(energy) == ["t", "elastic", "kinetic", "micro_inertia", "viscous", "boundary_work", "imbalance"]
+    np.testing.assert_allclose(energy["t"], 5e-6 * np.arange(11), rtol=1e-12)
+    total = energy["elastic"] + energy["kinetic"] + energy["viscous"] - energy["boundary_work"]
+    # Average acceleration conserves the energy of a linear problem, and strains of 4e-4 are nearly linear: measured
+    # 1e-9.
+    assert abs(total - total[0]).max() < 1e-8 * total[0]
+    np.testing.assert_allclose(energy["imbalance"], total - total[0], atol=1e-12 * total[0])
+    # Micro-inertia contributes in the ratio (l_d k)^2 to 1.
+    inertia = (2. * math.pi * INERTIA / LENGTH) ** 2
+    np.testing.assert_allclose(energy["micro_inertia"] / energy["kinetic"], inertia / (1. + inertia), rtol=1e-4)
+    assert energy["elastic"][-1] > 0.3 * total[0]
+
+
+def test_step_too_long_for_the_motion_fails_by_its_ledger(tmp_path):
+    """A sheet released at both ends; 50 us is the time in which a wave crosses a cell."""
+    for step, code, verdict in ((50, 0, "holds"), (200, 3, "fails")):
+        run = latcon("continuum", CASES / "quick.prm", "--quiet", "--output-dir", tmp_path / str(step), *settings(
+            "Continuum/solution=motion", "Left edge/condition=free", "Right edge/condition=free", "Time/end=1 ms",
+            f"Continuum/time step={step} us", "Output/energy interval=1", "Output/frame interval=0"))
+        assert run.returncode == code, run.stderr
+        row = [row for row in read_csv(tmp_path / str(step) / "results.csv")
+               if row["quantity"] == "energy imbalance over energy exchanged"][0]
+        assert row["verdict"] == verdict
+        energy = numbers(tmp_path / str(step) / "energy.csv")
+        exchanged = (energy["viscous"][-1] + abs(energy["boundary_work"]).max()
+                     + abs(energy["kinetic"] - energy["kinetic"][0]).max())
+        assert float(row["error"]) == pytest.approx(abs(energy["imbalance"]).max() / exchanged, abs=1e-12)
+
+
+def test_frequency_is_that_of_the_dispersion_relation(out):
+    k = 2. * math.pi / LENGTH
+    omega = k * math.sqrt(MODULUS / DENSITY * (1. + (STATIC * k) ** 2) / (1. + (INERTIA * k) ** 2))
+    step = 5e-6
+    discrete = 2. / step * math.atan(0.5 * omega * step)  # of average acceleration
+    errors = []
+    for cells in (8, 16):
+        energy = moved(out, cells)
+        phase = np.arccos(np.sqrt(energy["kinetic"][1:] / energy["kinetic"][0]))
+        errors.append(abs(phase[-1] / energy["t"][-1] / discrete - 1.))
+    # The order is 2 (p - 1) = 4 (motion.md). Measured: 2.1e-5 and 1.2e-6.
+    assert errors[0] < 5e-5
+    assert errors[0] / errors[1] > 8.
+
+
+def test_ranks_leave_no_trace(out, tmp_path):
+    one = moved(out, 8)
+    run = latcon_on_ranks(2, *arguments(tmp_path / "ranks", 8))
+    assert run.returncode == 0, run.stderr
+    two = numbers(tmp_path / "ranks" / "energy.csv")
+    assert list(one) == list(two)
+    for name, column in one.items():
+        # The order of summation differs; displacements are 1e-7 of the size of a cell, so strains keep nine digits.
+        np.testing.assert_allclose(two[name], column, rtol=0., atol=1e-9 * max(abs(column).max(), one["kinetic"][0]))
+    time, path = frames(tmp_path / "ranks" / "continuum.pvd")[-1]
+    whole = read(vtk.vtkXMLPUnstructuredGridReader(), path)
+    assert (time, whole.GetNumberOfCells()) == (one["t"][-1], 16)
+    here = last_mesh(out)
+    for name in ["displacement", "velocity"]:
+        assert abs(field(whole, name)).max() / abs(field(here, name)).max() == pytest.approx(1., abs=1e-6)
+
+
+def test_damped_motion_is_the_same_solved_directly_or_by_iterations(out):
+    ledgers, counts = [], []
+    for limit in (20000, 0):
+        run = latcon(*arguments(out, 8, across="free"), *settings(
+            "Left edge/condition=held", "Right edge/condition=held", "Nearest neighbours/viscosity=50",
+            f"Continuum/direct limit={limit}"))
+        assert run.returncode == 0, run.stderr
+        ledgers.append(numbers(out / "energy.csv"))
+        record = json.loads((out / "run.json").read_text())
+        counts.append((record["newton_iterations"], record["linear_iterations"]))
+    direct, iterated = ledgers
+    assert direct["viscous"][-1] > 0.01 * direct["kinetic"][0]
+    # Newton stops at residuals of 1e-10; energies are of the order of the first.
+    for name in ("elastic", "kinetic", "viscous"):
+        np.testing.assert_allclose(iterated[name], direct[name], rtol=0., atol=1e-9 * direct["kinetic"][0])
+    (newton, none), (_, linear) = counts
+    assert newton >= 10  # steps
+    assert none == 0
+    assert linear >= newton
+
+
+def test_ends_when_it_is_told(out):
+    run = latcon(*arguments(out, 8, step="auto"))
+    assert run.returncode == 0, run.stderr
+    steps = np.diff(numbers(out / "energy.csv")["t"])
+    assert steps.sum() / 5e-5 == pytest.approx(1., abs=1e-12)
+    # Half the time in which a longitudinal wave crosses the smaller side of a cell, or slightly less.
+    longest = 0.5 * (LENGTH / 8) / math.sqrt(3. * MODULUS / DENSITY)
+    assert steps.max() < longest
+    assert 1 / steps.max() < 1 / longest + 1 / 5e-5

@@ -1,0 +1,15 @@
+/// Exit codes and messages of commands.
+#pragma once
+
+#include <functional>
+
+#include "support/errors.h"
+
+namespace latcon::commands
+{
+
+/// Runs a command and returns its exit code, or that of the exception that it throws, whose message goes to standard
+/// error; `run.json` and `log.txt` record both. With several ranks an exception ends all of them.
+support::ExitCode run_command(const std::function<support::ExitCode()> &command);
+
+} // namespace latcon::commands
