@@ -30,13 +30,15 @@ BondFactors bond_factors(const RowPartition &band, const Material &material, Bon
     return factors;
   const TriangularLattice &lattice = band.lattice();
   const std::uint64_t stream = splitmix64(splitmix64(material.disorder.seed) + (is_strength ? 1 : 2));
-  constexpr std::uint64_t most_kinds = 16; // not n_bond_kinds: further kinds do not change the factors of others
+  // Further shells of the lattice do not change the factors of others.
+  const std::uint64_t most_kinds = lattice.is_triangular() ? 16 : TriangularLattice::most_kinds;
   // Sites are numbered with two places between rows, whatever the storage.
   const auto number = [&](std::size_t row, std::size_t column) { return row * (lattice.columns() + 2) + column; };
   const std::vector<std::size_t> rows = band.known_rows();
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  factors.kinds.resize(lattice.n_kinds());
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
   {
-    if (material.shell(kind) == nullptr)
+    if (material.shell(lattice, kind) == nullptr)
       continue;
     Field &of_kind = factors.kinds[kind];
     of_kind = Field(lattice.n_places());

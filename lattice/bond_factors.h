@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <vector>
 
 #include "lattice/disorder.h"
 #include "lattice/row_partition.h"
@@ -14,10 +14,13 @@ struct Material;
 /// One factor per bond, by the place where it starts; nothing is stored if all are 1.
 struct BondFactors
 {
-  std::array<Field, n_bond_kinds> kinds; ///< empty: all 1, or no such bonds [-]
+  std::vector<Field> kinds; ///< empty: all 1, or no such bonds [-]
 
   /// Factor of a bond [-].
-  double of(std::size_t place, std::size_t kind) const { return kinds[kind].empty() ? 1. : kinds[kind][place]; }
+  double of(std::size_t place, std::size_t kind) const 
+  {
+    return kinds.empty() || kinds[kind].empty() ? 1. : kinds[kind][place];
+  }
   /// Returns whether all factors are 1.
   bool empty() const;
 

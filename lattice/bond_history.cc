@@ -11,7 +11,7 @@ std::vector<std::size_t> BondHistory::rows(const RowPartition &band)
   std::vector<std::size_t> rows;
   if (begin == end)
     return rows;
-  for (std::ptrdiff_t number = begin - static_cast<std::ptrdiff_t>(TriangularLattice::reach); number < end; ++number)
+  for (std::ptrdiff_t number = begin - static_cast<std::ptrdiff_t>(band.lattice().reach()); number < end; ++number)
     if (const auto row = band.lattice().row(number))
       rows.push_back(*row);
   std::sort(rows.begin(), rows.end());

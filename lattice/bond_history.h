@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "lattice/bonds/bond_memory.h"
@@ -12,8 +11,8 @@ namespace latcon::lattice
 /// History of bonds with a memory, by the place where they start: their stretch and the variables of their memory at
 /// the last update. Nothing is stored for kinds of bonds without a memory.
 ///
-/// A rank holds values for the bonds that it computes: those that start in its own rows, and in the two rows below
-/// them, which the rank that owns those rows updates alike.
+/// A rank holds values for the bonds that it computes: those that start in its own rows, and in the rows below
+/// them that bonds reach from, which the rank that owns those rows updates alike.
 struct BondHistory
 {
   /// Bonds of one kind.
@@ -22,7 +21,9 @@ struct BondHistory
     Field stretch;                ///< [-]; 0 for absent bonds
     std::vector<Field> variables; ///< one field per variable of BondMemory; none: no memory
   };
-  std::array<Kind, n_bond_kinds> kinds;
+  std::vector<Kind> kinds; ///< none: no bond has a memory
+
+  bool remembers(std::size_t kind) const { return !kinds.empty() && !kinds[kind].variables.empty(); }
 
   /// Returns whether no bond remembers anything.
   bool empty() const

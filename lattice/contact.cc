@@ -64,7 +64,9 @@ void erase(std::vector<Item> &sorted, const Item &item)
 ContactLaw contact_like_nearest_bond(const TriangularLattice &lattice, const Material &material, double distance,
                                      double stiffness, double viscosity)
 {
-  const double per_length = cross_section(material.nearest, lattice) / lattice.rest_length(0);
+  // Points of a continuum repel each other in proportion to the areas of both.
+  const double d = lattice.lattice_spacing(), area = half_sqrt3 * d * d, share = lattice.site_area() / area;
+  const double per_length = share * share * (material.nearest.area_factor * area / d / d);
   return {distance, stiffness * per_length * lattice::stiffness(material.nearest.law, 1.),
           viscosity * per_length * material.nearest.viscosity};
 }
@@ -180,7 +182,8 @@ void Contact::list(const State &state, std::size_t index)
       std::any_of(listed.begin(), listed.end(), [&](std::size_t other) { return is_exchanged(place, other); }) ? 1 : 0;
 }
 
-// Returns whether no bond joins two sites, at least one of which is in the band.
+// Returns whether no bond joins two sites, at least one of which is in the band. Sites that never had a bond are in
+// contact only if they were farther apart than the contact distance from the start.
 bool Contact::may_touch(const State &state, std::size_t first, std::size_t second) const
 {
   if (!band_.owns(first) && !band_.owns(second))
@@ -189,7 +192,8 @@ bool Contact::may_touch(const State &state, std::size_t first, std::size_t secon
     for (std::size_t kind = 0; kind < state.bonds.n_kinds(); ++kind)
       if (lattice_.bond(near, kind).far == far)
         return !state.bonds.present(near, kind);
-  return true;
+  return lattice_.is_triangular() ||
+         (lattice_.reference(second) - lattice_.reference(first)).norm() >= law_.distance;
 }
 
 // Returns whether the sites of a pair are of two ranks of which one does not know the other's site.

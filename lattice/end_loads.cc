@@ -25,11 +25,11 @@ Eigen::Matrix2d fast_tangent_along_x(const TriangularLattice &lattice, const Mat
                                      const Eigen::Matrix2d &F)
 {
   Eigen::Matrix2d tangent = tangent_along_x(lattice, material, F);
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-    if (const Shell *shell = material.shell(kind); shell && n_variables(shell->memory) > 0)
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+    if (const Shell *shell = material.shell(lattice, kind); shell && n_variables(shell->memory) > 0)
     {
       const Eigen::Vector2d N = lattice.bond_vector(kind) / lattice.rest_length(kind), n = (F * N).normalized();
-      tangent += cross_section(*shell, lattice) * lattice.rest_length(kind) / lattice.site_area() * N.x() * N.x() *
+      tangent += cross_section(*shell, lattice, kind) * lattice.rest_length(kind) / lattice.site_area() * N.x() * N.x() *
                  largest_stiffness(shell->memory) * n * n.transpose();
     }
   return tangent;
@@ -40,15 +40,15 @@ Eigen::Vector2d missing_force(const TriangularLattice &lattice, const Material &
                               const Eigen::Matrix2d &F)
 {
   Eigen::Vector2d force = Eigen::Vector2d::Zero();
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
   {
-    const Shell *shell = material.shell(kind);
+    const Shell *shell = material.shell(lattice, kind);
     if (shell == nullptr)
       continue;
     const Eigen::Vector2d bond = F * lattice.bond_vector(kind);
     const double length = bond.norm();
     const double axial =
-      cross_section(*shell, lattice) * lattice::force(shell->law, length / lattice.rest_length(kind));
+      cross_section(*shell, lattice, kind) * lattice::force(shell->law, length / lattice.rest_length(kind));
     if (!lattice.is_occupied(lattice.bond(place, kind).far))
       force += axial / length * bond;
     if (!lattice.is_occupied(lattice.bond_into(place, kind).near))
@@ -62,8 +62,8 @@ Eigen::Vector2d missing_force(const TriangularLattice &lattice, const Material &
 Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F)
 {
   Eigen::Matrix2d tangent = Eigen::Matrix2d::Zero();
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-    if (const Shell *shell = material.shell(kind))
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+    if (const Shell *shell = material.shell(lattice, kind))
     {
       const Eigen::Vector2d R = lattice.bond_vector(kind);
       const double l = lattice.rest_length(kind);
@@ -72,7 +72,7 @@ Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material
       const Eigen::Matrix2d along = n * n.transpose();
       const Eigen::Matrix2d h = stiffness(shell->law, stretch) * along +
                                 force(shell->law, stretch) / stretch * (Eigen::Matrix2d::Identity() - along);
-      tangent += cross_section(*shell, lattice) * l / lattice.site_area() * (R.x() / l) * (R.x() / l) * h;
+      tangent += cross_section(*shell, lattice, kind) * l / lattice.site_area() * (R.x() / l) * (R.x() / l) * h;
     }
   return tangent;
 }
@@ -98,7 +98,7 @@ EndLoads::EndLoads(const RowPartition &band, const Material &material, const Sta
         continue;
       unsigned int bonds = 0;
       for_each_bond_of_site(state, lattice, place, [&](const Bond &) { ++bonds; });
-      if (bonds == material.coordination())
+      if (bonds == material.coordination(lattice))
         continue;
       dead_.push_back({place, missing_force(lattice, material, place, F)});
       if (end == End::absorbing && outermost(lattice, place, on_left))
@@ -106,6 +106,8 @@ EndLoads::EndLoads(const RowPartition &band, const Material &material, const Sta
     }
   if (left != End::absorbing && right != End::absorbing)
     return;
+  if (!lattice.is_triangular())
+    throw std::invalid_argument("only ends of the triangular lattice absorb waves");
   if (!waves_run_along_x(lattice, material, F))
     throw std::invalid_argument("no waves run along x in the loaded sheet, so that an end cannot absorb them");
   const support::SymmetricModes modes =

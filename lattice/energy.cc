@@ -26,16 +26,16 @@ double sum_over_bonds(const State &state, const RowPartition &band, const Energy
 double elastic_energy(const State &state, const RowPartition &band, const Material &material)
 {
   const TriangularLattice &lattice = band.lattice();
-  std::array<double, n_bond_kinds> volume{};
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-    if (const Shell *shell = material.shell(kind))
-      volume[kind] = cross_section(*shell, lattice) * lattice.rest_length(kind);
+  std::vector<double> volume(lattice.n_kinds());
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+    if (const Shell *shell = material.shell(lattice, kind))
+      volume[kind] = cross_section(*shell, lattice, kind) * lattice.rest_length(kind);
   return sum_over_bonds(state, band,
                         [&](const Bond &bond)
                         {
                           return state.stiffness.of(bond.near, bond.kind) *
                                  (volume[bond.kind] *
-                                  energy(material.shell(bond.kind)->law, stretch(state, lattice, bond)));
+                                  energy(material.shell(lattice, bond.kind)->law, stretch(state, lattice, bond)));
                         });
 }
 
@@ -48,11 +48,11 @@ void for_each_mechanism(const State &state, const TriangularLattice &lattice, co
                         const Bond &bond, const Add &add)
 {
   const std::size_t place = bond.near, kind = bond.kind;
-  const BondHistory::Kind &history = state.history.kinds[kind];
-  if (history.variables.empty())
+  if (!state.history.remembers(kind))
     return;
-  const Shell &shell = *material.shell(kind);
-  const double volume = state.stiffness.of(place, kind) * (cross_section(shell, lattice) * lattice.rest_length(kind));
+  const BondHistory::Kind &history = state.history.kinds[kind];
+  const Shell &shell = *material.shell(lattice, kind);
+  const double volume = state.stiffness.of(place, kind) * (cross_section(shell, lattice, kind) * lattice.rest_length(kind));
   std::array<double, max_history_variables> variables{};
   state.history.variables_of(place, kind, variables.data());
   for (std::size_t m = 0; m < n_mechanisms(shell.memory); ++m)
@@ -86,7 +86,7 @@ std::vector<double> memory_energies(const State &state, const RowPartition &band
                                {
                                  for_each_mechanism(state, lattice, material, bond,
                                                     [&](std::size_t m, double energy)
-                                                    { of_rows[first[shell_of(bond.kind)] + m][row] += energy; });
+                                                    { of_rows[first[lattice.shell(bond.kind)] + m][row] += energy; });
                                });
                });
   std::vector<double> energies;

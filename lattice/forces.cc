@@ -9,8 +9,6 @@ namespace latcon::lattice
 namespace
 {
 
-constexpr auto reach = static_cast<std::ptrdiff_t>(TriangularLattice::reach);
-
 // History of the bonds of one kind that start at a place and the places after it.
 template <class Pointer, class Kind>
 kernels::RememberedRow<Pointer> remembered_from(Kind &kind, std::size_t place)
@@ -38,7 +36,8 @@ bool has_factors(const State &state)
 } // namespace
 
 Forces::Forces(const RowPartition &band, const Material &material)
-  : band_(band), lattice_(band.lattice()), laws_(laws_of(material)), n_kinds_(material.n_kinds()),
+  : band_(band), lattice_(band.lattice()), laws_(laws_of(material)), n_kinds_(material.n_kinds(lattice_)),
+    reach_(static_cast<std::ptrdiff_t>(lattice_.reach())),
     columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_viscous_power_(lattice_.rows(), 0.),
     row_mechanism_power_(material.n_mechanisms(), Field(lattice_.rows(), 0.)), row_events_(lattice_.rows(), 0),
     row_short_bonds_(lattice_.rows(), 0)
@@ -47,12 +46,19 @@ Forces::Forces(const RowPartition &band, const Material &material)
   for (std::size_t number = 0; number < n_shells; ++number)
     if (const Shell *shell = material.in_shell(number))
     {
-      const double rest_length = lattice_.rest_length(number * n_kinds_per_shell);
-      const double section = cross_section(*shell, lattice_);
-      constants_[number] = {rest_length, section, section * shell->viscosity / rest_length};
+      has_shell_[number] = true;
       memories_[number] = shell->memory;
       first_mechanism_[number] = material.first_mechanism(number);
     }
+  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
+  {
+    constants_.emplace_back();
+    if (const Shell *shell = material.shell(lattice_, kind))
+    {
+      const double rest_length = lattice_.rest_length(kind), section = cross_section(*shell, lattice_, kind);
+      constants_.back() = {rest_length, section, section * shell->viscosity / rest_length};
+    }
+  }
   set_elapsed(0.);
 }
 
@@ -73,25 +79,26 @@ void Forces::update_memory(State &state)
   {
     const std::size_t row = rows[static_cast<std::size_t>(i)];
     const kernels::RowOfBonds sites = sites_of_row({state, state.vx, state.vy}, row);
-    const BondsOfKinds kinds = bonds_of_kinds(state, row);
+    std::vector<kernels::BondsOfKind> kinds(n_kinds_);
+    bonds_of_kinds(state, row, kinds);
     for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-      if (BondHistory::Kind &history = state.history.kinds[kind]; !history.variables.empty())
-        kernels::update_memory(memory_steps_[shell_of(kind)], sites, kinds[kind],
-                               remembered_from<double *>(history, lattice_.index(row, 0)));
+      if (state.history.remembers(kind))
+        kernels::update_memory(memory_steps_[lattice_.shell(kind)], sites, kinds[kind],
+                               remembered_from<double *>(state.history.kinds[kind], lattice_.index(row, 0)));
   }
   set_elapsed(0.);
 }
 
-// Adds the overstress of the bonds that start in row `from` to what their laws give.
+// Adds the overstress of the bonds of a kind that start in row `from` to what their law gives.
 void Forces::add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &row,
-                            const BondsOfKinds &kinds, std::vector<double> &mechanism_power) const
+                            const kernels::BondsOfKind &bonds, std::size_t kind,
+                            std::vector<double> &mechanism_power) const
 {
-  mechanism_power.assign(row_mechanism_power_.size(), 0.);
-  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-    if (const BondHistory::Kind &history = state.history.kinds[kind]; !history.variables.empty())
-      kernels::add_overstress(memory_steps_[shell_of(kind)], row, kinds[kind],
-                              remembered_from<const double *>(history, lattice_.index(from, 0)),
-                              &mechanism_power[first_mechanism_[shell_of(kind)]]);
+  const std::size_t shell = lattice_.shell(kind);
+  if (state.history.remembers(kind))
+    kernels::add_overstress(memory_steps_[shell], row, bonds,
+                            remembered_from<const double *>(state.history.kinds[kind], lattice_.index(from, 0)),
+                            &mechanism_power[first_mechanism_[shell]]);
 }
 
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy, const RowCallbacks &work)
@@ -100,7 +107,7 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy, cons
   const bool threads = (own.end - own.begin) * lattice_.stride() >= min_places_for_threads;
   const std::size_t n_scratch = threads ? static_cast<std::size_t>(omp_get_max_threads()) : 1;
   while (scratch_.size() < n_scratch)
-    scratch_.emplace_back(lattice_.stride(), n_kinds_);
+    scratch_.emplace_back(lattice_, n_kinds_);
 #pragma omp parallel if (threads)
   {
     const auto first = static_cast<std::ptrdiff_t>(own.begin);
@@ -110,7 +117,7 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy, cons
     // The rows that the threads next to this one look at, before anyone does.
     if (work.pre_force)
       for (std::ptrdiff_t row = begin; row < end; ++row)
-        if (row < begin + reach || row >= end - reach)
+        if (row < begin + reach_ || row >= end - reach_)
           work.pre_force(static_cast<std::size_t>(row));
 #pragma omp barrier
     evaluate_rows({state, vx, vy}, begin, end, scratch_[static_cast<std::size_t>(i)], work);
@@ -132,32 +139,46 @@ void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrd
   if (begin == end)
     return;
   scratch.ahead.clear();
-  bonds_from_below(motion, begin - 2, scratch);
-  bonds_from_below(motion, begin - 1, scratch);
+  scratch.sums.clear();
+  for (std::ptrdiff_t row = begin - reach_; row < begin; ++row)
+    bonds_from_below(motion, row, begin, scratch);
   for (std::ptrdiff_t row = begin; row < end; ++row)
   {
     const auto index = static_cast<std::size_t>(row);
     // As far up as bonds of this row reach, and where this has not been done for the thread next to it.
-    if (work.pre_force && row + 2 * reach < end)
-      work.pre_force(index + reach);
+    if (work.pre_force && row + 2 * reach_ < end)
+      work.pre_force(index + lattice_.reach());
     scratch.ahead.clear();
-    if (work.fields != nullptr && row + 2 * reach + 1 < end)
+    if (work.fields != nullptr && row + 2 * reach_ + 1 < end)
       for (const Field *field : *work.fields)
-        scratch.ahead.push_back(&(*field)[lattice_.index(index + reach + 1, 0)]);
-    const kernels::RowSums sums = bonds_of_row(motion, index, row, scratch);
+        scratch.ahead.push_back(&(*field)[lattice_.index(index + lattice_.reach() + 1, 0)]);
+    const kernels::RowSums sums = lattice_.is_triangular() ? bonds_of_row(motion, index, row, scratch)
+                                                           : scatter_row(motion, index, begin, scratch);
     row_viscous_power_[index] = sums.viscous_power;
     for (std::size_t m = 0; m < row_mechanism_power_.size(); ++m)
       row_mechanism_power_[m][index] = scratch.mechanism_power[m];
     row_events_[index] = sums.has_events ? 1 : 0;
     row_short_bonds_[index] = sums.has_short_bonds ? 1 : 0;
-    gather_row(row, scratch);
-    work.post_force(index, scratch.fx.data(), scratch.fy.data());
+    if (lattice_.is_triangular())
+    {
+      gather_row(row, scratch);
+      work.post_force(index, scratch.fx.data(), scratch.fy.data());
+      continue;
+    }
+    work.post_force(index, scratch.sums.at(row, 0), scratch.sums.at(row, 1));
+    scratch.sums.clear(row);
   }
 }
 
-void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, Scratch &scratch) const
+void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, std::ptrdiff_t begin, Scratch &scratch) const
 {
-  if (const auto from = lattice_.row(row))
+  const auto from = lattice_.row(row);
+  if (!lattice_.is_triangular())
+  {
+    if (from)
+      scatter_row(motion, *from, begin, scratch);
+  }
+  else if (from)
     bonds_of_row(motion, *from, row, scratch);
   else
     for (std::size_t kind = 0; kind < n_kinds_; ++kind)
@@ -165,25 +186,24 @@ void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, Scratch 
         std::fill_n(component - TriangularLattice::row_alignment, lattice_.stride(), 0.);
 }
 
-Forces::BondsOfKinds Forces::bonds_of_kinds(const State &state, std::size_t row) const
+void Forces::bonds_of_kinds(const State &state, std::size_t row, std::vector<kernels::BondsOfKind> &kinds) const
 {
   const std::size_t near = lattice_.index(row, 0);
-  const auto from = [near](const Field &factors) { return factors.empty() ? nullptr : factors.data() + near; };
-  BondsOfKinds kinds;
+  const auto from = [near](const BondFactors &factors, std::size_t kind)
+  { return factors.kinds.empty() || factors.kinds[kind].empty() ? nullptr : factors.kinds[kind].data() + near; };
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {
     // One by one: a whole that is copied would wait for its parts.
     kernels::BondsOfKind &bonds = kinds[kind];
-    bonds.constants = constants_[shell_of(kind)];
+    bonds.constants = constants_[kind];
     bonds.shift = static_cast<std::ptrdiff_t>(lattice_.shift(kind, row));
     bonds.states = state.bonds.words(kind) + near;
     bonds.present = BondStates::bit(kind);
     bonds.toughened = BondStates::toughened_bit(kind);
-    bonds.retraction_stretch = retraction_stretch_[kind];
-    bonds.stiffness = from(state.stiffness.kinds[kind]);
-    bonds.strength = from(state.strength.kinds[kind]);
+    bonds.retraction_stretch = retraction_stretch_.empty() ? 0. : retraction_stretch_[kind];
+    bonds.stiffness = from(state.stiffness, kind);
+    bonds.strength = from(state.strength, kind);
   }
-  return kinds;
 }
 
 kernels::RowOfBonds Forces::sites_of_row(const Motion &motion, std::size_t row) const
@@ -196,7 +216,8 @@ kernels::RowOfBonds Forces::sites_of_row(const Motion &motion, std::size_t row) 
 
 bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ahead) const
 {
-  const BondsOfKinds kinds = bonds_of_kinds(state, row);
+  std::vector<kernels::BondsOfKind> kinds(n_kinds_);
+  bonds_of_kinds(state, row, kinds);
   kernels::RowOfBonds bonds = sites_of_row({state, state.vx, state.vy}, row);
   bonds.kinds = kinds.data();
   bonds.n_kinds = n_kinds_;
@@ -207,7 +228,8 @@ bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ah
 kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row,
                                       Scratch &scratch) const
 {
-  BondsOfKinds kinds = bonds_of_kinds(motion.state, from);
+  std::vector<kernels::BondsOfKind> &kinds = scratch.kinds;
+  bonds_of_kinds(motion.state, from, kinds);
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
     kinds[kind].force = scratch.bonds.at(row, kind);
   kernels::RowOfBonds bonds = sites_of_row(motion, from);
@@ -232,7 +254,9 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
     }
   if (!row_mechanism_power_.empty())
   {
-    add_overstress(motion.state, from, bonds, kinds, scratch.mechanism_power);
+    scratch.mechanism_power.assign(row_mechanism_power_.size(), 0.);
+    for (std::size_t kind = 0; kind < n_kinds_; ++kind)
+      add_overstress(motion.state, from, bonds, kinds[kind], kind, scratch.mechanism_power);
     for (const double power : scratch.mechanism_power)
       sums.viscous_power += power;
   }
@@ -248,12 +272,49 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   return sums;
 }
 
+// The bonds that start in row `from`, added to the sums of rows from `begin` on.
+kernels::RowSums Forces::scatter_row(const Motion &motion, std::size_t from, std::ptrdiff_t begin,
+                                     Scratch &scratch) const
+{
+  bonds_of_kinds(motion.state, from, scratch.kinds);
+  scratch.mechanism_power.assign(row_mechanism_power_.size(), 0.);
+  kernels::RowOfBonds sites = sites_of_row(motion, from);
+  sites.n_kinds = 1;
+  const auto row = static_cast<std::ptrdiff_t>(from);
+  kernels::RowSums sums;
+  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
+  {
+    const std::ptrdiff_t rows = lattice_.rows_across(kind);
+    if (row + rows < begin || !has_shell(lattice_.shell(kind)))
+      continue;
+    kernels::BondsOfKind &bonds = scratch.kinds[kind];
+    bonds.force = {{scratch.fx.data(), scratch.fy.data()}};
+    sites.kinds = &bonds;
+    kernels::bonds_of_stencil(laws_[lattice_.shell(kind)], sites, sums);
+    add_overstress(motion.state, from, sites, bonds, kind, scratch.mechanism_power);
+    const std::ptrdiff_t columns = bonds.shift - rows * static_cast<std::ptrdiff_t>(lattice_.stride());
+    for (std::size_t component = 0; component < 2; ++component)
+    {
+      const double *const force = bonds.force[component];
+      if (double *const near = row >= begin ? scratch.sums.at(row, component) : nullptr)
+        for (std::size_t i = 0, n = sites.n; i < n; ++i)
+          near[i] += force[i];
+      double *const far = scratch.sums.at(row + rows, component) + columns;
+      for (std::size_t i = 0, n = sites.n; i < n; ++i)
+        far[i] -= force[i];
+    }
+  }
+  for (const double power : scratch.mechanism_power)
+    sums.viscous_power += power;
+  return sums;
+}
+
 void Forces::gather_row(std::ptrdiff_t row, Scratch &scratch) const
 {
   std::array<std::array<const double *, n_bond_kinds>, 2> start{}, end{};
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {
-    const std::ptrdiff_t rows = TriangularLattice::rows_across(kind);
+    const std::ptrdiff_t rows = lattice_.rows_across(kind);
     // From the place of the same column where a bond starts to the one where it ends.
     const auto columns = static_cast<std::ptrdiff_t>(lattice_.shift(kind, static_cast<std::size_t>(row + rows)) -
                                                      static_cast<std::size_t>(rows) * lattice_.stride());
@@ -284,10 +345,10 @@ void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, c
 {
   if (!band_.owns(bond.near))
     return;
-  const std::size_t row = lattice_.row_of(bond.near), shell = shell_of(bond.kind);
+  const std::size_t row = lattice_.row_of(bond.near), shell = lattice_.shell(bond.kind);
   const kernels::BondForce force = single_bond({state, vx, vy}, bond);
   row_viscous_power_[row] -= force.viscous_power;
-  if (state.history.kinds[bond.kind].variables.empty())
+  if (!state.history.remembers(bond.kind))
     return;
   const kernels::Overstress over = overstress(state, bond, force.stretch);
   for (std::size_t m = 0; m < n_mechanisms(memories_[shell]); ++m)
@@ -296,8 +357,7 @@ void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, c
 
 kernels::Overstress Forces::overstress(const State &state, const Bond &bond, double stretch) const
 {
-  const std::size_t shell = shell_of(bond.kind);
-  kernels::Overstress over = kernels::overstress(memory_steps_[shell], constants_[shell], stretch, bond.near,
+  kernels::Overstress over = kernels::overstress(memory_steps_[lattice_.shell(bond.kind)], constants_[bond.kind], stretch, bond.near,
                                                  remembered_from<const double *>(state.history.kinds[bond.kind], 0));
   const double factor = state.stiffness.of(bond.near, bond.kind);
   over.axial *= factor;
@@ -310,10 +370,10 @@ kernels::BondForce Forces::single_bond(const Motion &motion, const Bond &bond) c
 {
   const auto &[state, vx, vy] = motion;
   const auto [near, kind, far] = bond;
-  kernels::BondForce force = kernels::bond_force(laws_[shell_of(kind)], constants_[shell_of(kind)],
+  kernels::BondForce force = kernels::bond_force(laws_[lattice_.shell(kind)], constants_[kind],
                                                  state.stiffness.of(near, kind), state.x[far] - state.x[near],
                                                  state.y[far] - state.y[near], vx[far] - vx[near], vy[far] - vy[near]);
-  if (!state.history.kinds[kind].variables.empty())
+  if (state.history.remembers(kind))
   {
     const kernels::Overstress over = overstress(state, bond, force.stretch);
     force.x += over.axial * force.nx;
@@ -324,8 +384,32 @@ kernels::BondForce Forces::single_bond(const Motion &motion, const Bond &bond) c
   return force;
 }
 
+// In the order of an evaluation: rows from the lowest up, half-bond by half-bond.
+Eigen::Vector2d Forces::on_site_of_stencil(const Motion &motion, std::size_t place) const
+{
+  Eigen::Vector2d sum(0., 0.);
+  const auto add = [&](double sign, const Bond &bond)
+  {
+    if (!motion.state.bonds.present(bond.near, bond.kind))
+      return;
+    const kernels::BondForce force = single_bond(motion, bond);
+    sum += sign * Eigen::Vector2d(force.x, force.y);
+  };
+  for (std::ptrdiff_t below = reach_; below >= 0; --below)
+    for (std::size_t kind = 0; kind < n_kinds_; ++kind)
+    {
+      if (below == 0)
+        add(1., lattice_.bond(place, kind));
+      if (lattice_.rows_across(kind) == below)
+        add(-1., lattice_.bond_into(place, kind));
+    }
+  return sum;
+}
+
 Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field &vy, std::size_t place) const
 {
+  if (!lattice_.is_triangular())
+    return on_site_of_stencil({state, vx, vy}, place);
   std::array<std::array<double, n_bond_kinds>, 2> start{}, end{};
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <limits>
@@ -18,17 +19,20 @@ namespace latcon::lattice
 /// with the overstress A0 q of its memory (eq. (L.27)) if the state has a history. Every thread takes some of the rows
 /// from its lower to its upper end. It computes the bonds that start in a row, keeps those of the last three rows, and
 /// lets the sites of the row gather their bonds while these are in cache. Bonds that reach into these from below
-/// are computed once more there. The order of a gather is symmetric under both mirrors of the lattice, so the bits of a
-/// result depend neither on the number of threads nor on which side of a symmetry line a site stands.
+/// are computed once more there. The order of a gather is symmetric under both mirrors of the triangular lattice, so the
+/// bits of a result depend neither on the number of threads nor on which side of a symmetry line a site stands.
+///
+/// Other stencils have too many half-bonds to keep: each adds to the sums of the sites at its ends, half-bond by
+/// half-bond of the rows from the lowest up, which does not depend on the number of threads either.
 class Forces
 {
 public:
   /// @param band rows whose sites are to get their forces, of the whole sheet or of the share of a rank
   Forces(const RowPartition &band, const Material &material);
 
-  /// Bonds below this stretch that are not toughened count as events too, per kind: all positive, or all 0 (no such
+  /// Bonds below this stretch that are not toughened count as events too, per kind: all positive, or none (no such
   /// event), which is the default. For toughening on retraction.
-  void set_retraction_threshold(const std::array<double, n_bond_kinds> &stretch) { retraction_stretch_ = stretch; }
+  void set_retraction_threshold(const std::vector<double> &stretch) { retraction_stretch_ = stretch; }
 
   /// Enables row_has_short_bonds() for bonds whose stretch is below `stretch` [-], but for linear ones; 0: for none,
   /// the default.
@@ -123,28 +127,57 @@ private:
     const Field &vx, &vy;
   };
 
+  /// Sums of the forces on the sites of the rows that bonds reach from one row, as far as they are known.
+  class SiteSums
+  {
+  public:
+    SiteSums(const TriangularLattice &lattice, std::size_t n_rows)
+      : stride_(lattice.stride()), column_(lattice.index(0, 0) % stride_), n_rows_(n_rows), values_(2 * n_rows * stride_)
+    {
+    }
+    /// Sums along x (0) or y (1) in a row >= 0: column 0.
+    double *at(std::ptrdiff_t row, std::size_t component)
+    {
+      return &values_[(2 * (static_cast<std::size_t>(row) % n_rows_) + component) * stride_ + column_];
+    }
+    void clear() { std::fill(values_.begin(), values_.end(), 0.); }
+    void clear(std::ptrdiff_t row) { std::fill_n(at(row, 0) - column_, 2 * stride_, 0.); }
+
+  private:
+    std::size_t stride_, column_, n_rows_;
+    Field values_;
+  };
+
   /// Scratch arrays of a thread.
   struct Scratch
   {
-    Scratch(std::size_t stride, std::size_t n_kinds) : bonds(stride, n_kinds), fx(stride, 0.), fy(stride, 0.) {}
-    BondRows bonds;
-    Field fx, fy;                             // forces on the sites of a row
+    Scratch(const TriangularLattice &lattice, std::size_t n_kinds)
+      : bonds(lattice.stride(), lattice.is_triangular() ? n_kinds : 0),
+        sums(lattice, lattice.is_triangular() ? 0 : lattice.reach() + 1), kinds(n_kinds), fx(lattice.stride(), 0.),
+        fy(lattice.stride(), 0.)
+    {
+    }
+    BondRows bonds; // of the triangular lattice
+    SiteSums sums;  // of other stencils
+    std::vector<kernels::BondsOfKind> kinds;
+    Field fx, fy;                             // forces on the sites of a row, or of the bonds of a kind
     std::vector<double> mechanism_power = {}; // of the bonds that start in a row
     std::vector<const double *> ahead = {};   // what is fetched during a row
   };
 
   void evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
                      const RowCallbacks &work);
-  using BondsOfKinds = std::array<kernels::BondsOfKind, n_bond_kinds>;
-  BondsOfKinds bonds_of_kinds(const State &state, std::size_t row) const;
+  void bonds_of_kinds(const State &state, std::size_t row, std::vector<kernels::BondsOfKind> &kinds) const;
   kernels::RowOfBonds sites_of_row(const Motion &motion, std::size_t row) const;
-  bool has_shell(std::size_t shell) const { return constants_[shell].cross_section > 0.; }
-  void bonds_from_below(const Motion &motion, std::ptrdiff_t row, Scratch &scratch) const;
+  bool has_shell(std::size_t shell) const { return has_shell_[shell]; }
+  void bonds_from_below(const Motion &motion, std::ptrdiff_t row, std::ptrdiff_t begin, Scratch &scratch) const;
+  kernels::RowSums scatter_row(const Motion &motion, std::size_t from, std::ptrdiff_t begin, Scratch &scratch) const;
   kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, Scratch &scratch) const;
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
-  void add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &row, const BondsOfKinds &kinds,
-                      std::vector<double> &mechanism_power) const;
+  void add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &row,
+                      const kernels::BondsOfKind &bonds, std::size_t kind, std::vector<double> &mechanism_power) const;
   kernels::Overstress overstress(const State &state, const Bond &bond, double stretch) const;
+  Eigen::Vector2d on_site_of_stencil(const Motion &motion, std::size_t place) const;
   kernels::BondForce single_bond(const Motion &motion, const Bond &bond) const;
 
   RowPartition band_;
@@ -154,8 +187,10 @@ private:
   std::array<MemoryStep, n_shells> memory_steps_;
   std::array<std::size_t, n_shells> first_mechanism_{}; // of each shell
   std::size_t n_kinds_;                                 // of bonds: the first so many
-  std::array<kernels::BondConstants, n_shells> constants_;
-  std::array<double, n_bond_kinds> retraction_stretch_{};
+  std::ptrdiff_t reach_;                                // of these, in rows
+  std::array<bool, n_shells> has_shell_{};
+  std::vector<kernels::BondConstants> constants_; // by kind
+  std::vector<double> retraction_stretch_;        // by kind; none: not watched
   double shortness_limit_ = std::numeric_limits<double>::infinity();
   bool columns_repeat_; // periodic along the rows
 

@@ -35,7 +35,7 @@ Fracture::Fracture(const RowPartition &band, const Material &material, double br
                    const Eigen::Matrix2d &deformation)
   : band_(band), lattice_(band.lattice()), material_(material), breaking_stretch_(breaking_stretch),
     toughened_stretch_(breaking_stretch * std::visit([](const auto &rule) { return factor(rule); }, toughening)),
-    toughening_(toughening), tip_losses_((material.coordination() + 3) / 4)
+    toughening_(toughening), tip_losses_((material.coordination(band.lattice()) + 3) / 4)
 {
   require(breaking_stretch > 0., "the breaking stretch must be positive");
   require(lattice_.images().empty(), "a periodic sheet does not break: a crack has no tip there");
@@ -48,9 +48,9 @@ Fracture::Fracture(const RowPartition &band, const Material &material, double br
   {
     require(retraction->fraction > 0. && retraction->fraction < 1. && retraction->factor >= 1.,
             "toughening on retraction needs a fraction between 0 and 1 and a factor >= 1");
-    for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-      retraction_stretch_[kind] =
-        retraction->fraction * (deformation * lattice_.bond_vector(kind)).norm() / lattice_.rest_length(kind);
+    for (std::size_t kind = 0; kind < lattice_.n_kinds(); ++kind)
+      retraction_stretch_.push_back(retraction->fraction * (deformation * lattice_.bond_vector(kind)).norm() /
+                                    lattice_.rest_length(kind));
   }
 }
 
@@ -81,7 +81,7 @@ Fracture::Event Fracture::event(const State &state, const Bond &bond) const
 {
   const auto [near, kind, far] = bond;
   const double longest = breaking_stretch_of(state, bond);
-  const double shortest = state.bonds.toughened(near, kind) ? 0. : retraction_stretch_[kind];
+  const double shortest = retraction_stretch_.empty() || state.bonds.toughened(near, kind) ? 0. : retraction_stretch_[kind];
   const auto among = [](double value, double from, double to) {
     return value > to ? Event::broken : value < from ? Event::retracted : Event::none;
   };
@@ -95,9 +95,9 @@ Fracture::Event Fracture::event(const State &state, const Bond &bond) const
 
 double Fracture::bond_energy(const State &state, const Bond &bond) const
 {
-  const Shell &shell = *material_.shell(bond.kind);
+  const Shell &shell = *material_.shell(lattice_, bond.kind);
   const double elastic =
-    state.stiffness.of(bond.near, bond.kind) * (cross_section(shell, lattice_) * lattice_.rest_length(bond.kind) *
+    state.stiffness.of(bond.near, bond.kind) * (cross_section(shell, lattice_, bond.kind) * lattice_.rest_length(bond.kind) *
                                                 energy(shell.law, stretch(state, lattice_, bond)));
   return elastic + memory_energy(state, lattice_, material_, bond);
 }
@@ -244,9 +244,9 @@ std::pair<Rows, Rows> Fracture::strip_around(double from, double to) const
 {
   const bool along = lattice_.orientation() == Orientation::rows_along_crack;
   const Rows own = band_.rows(), columns{0, lattice_.columns()};
-  const double pitch = along ? lattice_.spacing() : std::sqrt(3.) / 2. * lattice_.spacing();
+  const double pitch = along ? lattice_.spacing() : lattice_.site_area() / lattice_.spacing();
   double reach = 0.; // of midpoints from near ends, along X
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  for (std::size_t kind = 0; kind < lattice_.n_kinds(); ++kind)
     reach = std::max(reach, 0.5 * std::abs(lattice_.bond_vector(kind).x()));
   // Columns of odd rows are half a pitch further; the rest of a pitch is for rounding.
   const auto clamped = [&](double x, const Rows &range)

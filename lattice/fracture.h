@@ -160,7 +160,7 @@ private:
   double breaking_stretch_;
   double toughened_stretch_;
   Toughening toughening_;
-  std::array<double, n_bond_kinds> retraction_stretch_{};
+  std::vector<double> retraction_stretch_; // by kind; none: not watched
   double lookahead_ = 0.; // [s]
   unsigned int tip_losses_;
   CrackTip tip_;

@@ -31,6 +31,15 @@ unsigned int Material::coordination() const
   return bonds;
 }
 
+unsigned int Material::coordination(const TriangularLattice &lattice) const
+{
+  unsigned int bonds = 0;
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+    if (shell(lattice, kind) != nullptr)
+      bonds += 2;
+  return bonds;
+}
+
 Material without_memory(Material material)
 {
   for (std::size_t number = 0; number < n_shells; ++number)
@@ -51,6 +60,11 @@ Material without_dashpots(Material material)
 double cross_section(const Shell &shell, const TriangularLattice &lattice)
 {
   return shell.area_factor * lattice.site_area() / lattice.spacing();
+}
+
+double cross_section(const Shell &shell, const TriangularLattice &lattice, std::size_t kind)
+{
+  return shell.area_factor * lattice.site_area() / lattice.section_length(kind);
 }
 
 double site_mass(const Material &material, const TriangularLattice &lattice)

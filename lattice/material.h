@@ -43,11 +43,16 @@ struct Material
   }
   Shell *in_shell(std::size_t number) { return const_cast<Shell *>(std::as_const(*this).in_shell(number)); }
 
-  /// Shell of a bond kind; nullptr where the lattice has no such bonds.
+  /// Shell of a bond kind of the triangular lattice; nullptr where the lattice has no such bonds.
   const Shell *shell(std::size_t kind) const { return in_shell(shell_of(kind)); }
+  /// Shell of a bond kind of a sheet; nullptr where the sheet has no such bonds.
+  const Shell *shell(const TriangularLattice &lattice, std::size_t kind) const { return in_shell(lattice.shell(kind)); }
 
   /// Kinds of bonds that a sheet may have: the first so many.
-  std::size_t n_kinds() const { return third_nearest ? n_bond_kinds : 2 * n_kinds_per_shell; }
+  std::size_t n_kinds(const TriangularLattice &lattice) const
+  {
+    return lattice.is_triangular() && !third_nearest ? 2 * n_kinds_per_shell : lattice.n_kinds();
+  }
 
   /// Returns whether bonds of some kind have a memory.
   bool has_memory() const;
@@ -57,8 +62,10 @@ struct Material
   /// Number of mechanisms of the shells before one.
   std::size_t first_mechanism(std::size_t shell) const;
 
-  /// Bonds of a site inside the sheet: 6 for each shell.
+  /// Bonds of a site inside the triangular lattice: 6 for each shell.
   unsigned int coordination() const;
+  /// Bonds of a site inside a sheet.
+  unsigned int coordination(const TriangularLattice &lattice) const;
 };
 
 /// Returns the bonds with their dashpots, but without memories.
@@ -67,10 +74,13 @@ Material without_memory(Material material);
 /// Returns the bonds without their dashpots and memories, as they are in equilibrium.
 Material without_dashpots(Material material);
 
-/// A0 / h = s (sqrt3 / 2) d [m], cross-section of a bond per sheet thickness (theory.md, eq. (L.4)).
+/// A0 / h = s (sqrt3 / 2) d [m], cross-section of a bond of the triangular lattice per sheet thickness (theory.md, eq.
+/// (L.4)).
 double cross_section(const Shell &shell, const TriangularLattice &lattice);
+/// A0 / h = s V / D [m] of the bonds of a kind; see TriangularLattice::section_length.
+double cross_section(const Shell &shell, const TriangularLattice &lattice, std::size_t kind);
 
-/// m / h = rho (sqrt3 / 2) d^2 [kg/m], mass of a site per sheet thickness (theory.md, eq. (L.1)).
+/// m / h = rho V [kg/m], (sqrt3 / 2) d^2 rho on the triangular lattice: mass of a site per sheet thickness (theory.md, eq. (L.1)).
 double site_mass(const Material &material, const TriangularLattice &lattice);
 
 } // namespace latcon::lattice

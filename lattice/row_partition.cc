@@ -9,8 +9,6 @@ namespace latcon::lattice
 namespace
 {
 
-constexpr auto reach = static_cast<std::ptrdiff_t>(TriangularLattice::reach);
-
 // Tag of messages between two ranks, which arrive in the order in which they are sent.
 constexpr int tag = 0;
 
@@ -62,6 +60,7 @@ std::vector<std::size_t> RowPartition::halo_of(std::size_t rank) const
 {
   const auto begin = static_cast<std::ptrdiff_t>(first_rows_[rank]);
   const auto end = static_cast<std::ptrdiff_t>(first_rows_[rank + 1]);
+  const auto reach = static_cast<std::ptrdiff_t>(lattice_->reach());
   std::vector<std::size_t> halo;
   if (begin == end)
     return halo;
@@ -86,6 +85,7 @@ bool RowPartition::is_relevant_to(std::size_t rank, std::size_t place) const
   const auto begin = static_cast<std::ptrdiff_t>(first_rows_[rank]);
   const auto end = static_cast<std::ptrdiff_t>(first_rows_[rank + 1]);
   const auto n_rows = static_cast<std::ptrdiff_t>(lattice_->rows());
+  const auto reach = static_cast<std::ptrdiff_t>(lattice_->reach());
   std::ptrdiff_t row = static_cast<std::ptrdiff_t>(lattice_->row_of(place)) - (begin - reach);
   if (rows_repeat())
     row = (row + n_rows) % n_rows;
@@ -200,7 +200,7 @@ HaloExchange::HaloExchange(const RowPartition &band)
       if (band.owner(row) == band.rank())
       {
         partner.sent.push_back(row);
-        // Within two rows of either edge of the band.
+        // Within the reach of bonds of either edge of the band.
         if (row < middle)
           interior_.begin = std::max(interior_.begin, row + 1);
         else

@@ -48,7 +48,7 @@ std::vector<Site> sites_in(const Box &box, const TriangularLattice &lattice)
   const bool along_x = lattice.orientation() == Orientation::rows_along_crack;
   const Eigen::Vector2d first = lattice.reference(lattice.index(0, 0));
   const Eigen::Vector2d from = box.lower - first, to = box.upper - first;
-  const double pitch = std::sqrt(0.75) * lattice.spacing();
+  const double pitch = lattice.site_area() / lattice.spacing();
   const auto [along, across] = along_x ? std::pair(0, 1) : std::pair(1, 0);
   const Rows rows = numbers_between(from[across], to[across], pitch, lattice.rows());
   const Rows columns = numbers_between(from[along], to[along], lattice.spacing(), lattice.columns());
@@ -120,6 +120,23 @@ std::vector<Site> sites_of(const SeedLine &line, const TriangularLattice &lattic
 }
 
 } // namespace
+
+std::vector<std::pair<std::size_t, std::size_t>> bonds_across(const TriangularLattice &lattice, double from, double to,
+                                                              double Y)
+{
+  std::vector<std::pair<std::size_t, std::size_t>> bonds;
+  for (std::size_t row = 0; row < lattice.rows(); ++row)
+    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
+      for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+      {
+        const Bond bond = lattice.bond(lattice.index(row, column), kind);
+        const Eigen::Vector2d X = lattice.reference(bond.near), &R = lattice.bond_vector(kind);
+        const double share = (Y - X.y()) / R.y(), at = X.x() + share * R.x();
+        if (share > 0. && share <= 1. && at >= from && at <= to && lattice.is_site(bond.far))
+          bonds.emplace_back(bond.near, kind);
+      }
+  return bonds;
+}
 
 std::vector<std::size_t> seed_sites(const TriangularLattice &lattice, const Seed &seed)
 {

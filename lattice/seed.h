@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -34,5 +35,10 @@ using Seed = std::variant<SeedLine, SeedSlit>;
 /// @throws std::invalid_argument if there are none, or fewer than wanted, or one is less than two spacings from the
 /// lower or the upper edge, where sites are held
 std::vector<std::size_t> seed_sites(const TriangularLattice &lattice, const Seed &seed);
+
+/// Bonds whose reference line crosses the segment from (from, Y) to (to, Y) [m], or ends there: place where each starts
+/// and its kind. For Simulation::cut_bonds(), as the seed crack of a nonlocal continuum.
+std::vector<std::pair<std::size_t, std::size_t>> bonds_across(const TriangularLattice &lattice, double from, double to,
+                                                              double Y);
 
 } // namespace latcon::lattice

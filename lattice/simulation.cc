@@ -23,10 +23,12 @@ std::unique_ptr<Integrator> integrator(const RowPartition &band, Forces &forces,
 // Throws unless each kind of bonds has the variables of its memory at every place.
 void require_history(const State &state, const TriangularLattice &lattice, const Material &material)
 {
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  if (!state.history.kinds.empty() && state.history.kinds.size() != lattice.n_kinds())
+    throw std::invalid_argument("the history of the bonds does not fit the lattice");
+  for (std::size_t kind = 0; kind < state.history.kinds.size(); ++kind)
   {
     const BondHistory::Kind &history = state.history.kinds[kind];
-    const Shell *shell = material.shell(kind);
+    const Shell *shell = material.shell(lattice, kind);
     bool fits = history.variables.size() == (shell != nullptr ? n_variables(shell->memory) : 0);
     for (const Field &variable : history.variables)
       fits = fits && variable.size() == lattice.n_places() && history.stretch.size() == lattice.n_places();
@@ -76,9 +78,9 @@ int Simulation::needed_parts() const
   const ContactLaw *const contact = contact_law_ ? &*contact_law_ : nullptr;
   const Field &vx = integrator_->evaluated_vx(state_), &vy = integrator_->evaluated_vy(state_);
   // Squares of lengths with a hair's room for rounding; 0: bonds that do not stiffen, all of which are longer.
-  std::array<double, n_bond_kinds> short_square{};
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-    if (const Shell *shell = material_.shell(kind); shell != nullptr && stiffens_when_short(shell->law))
+  std::vector<double> short_square(lattice_.n_kinds());
+  for (std::size_t kind = 0; kind < lattice_.n_kinds(); ++kind)
+    if (const Shell *shell = material_.shell(lattice_, kind); shell != nullptr && stiffens_when_short(shell->law))
       short_square[kind] = std::pow((1. + 1e-9) * short_stretch * lattice_.rest_length(kind), 2);
   const auto divide_for = [&](const Bond &short_bond, int &parts)
   {
@@ -197,7 +199,7 @@ void Simulation::cut_bonds(const std::vector<std::pair<std::size_t, std::size_t>
   if (!fracture_)
     throw std::logic_error("a sheet without fracture rules cannot be cut");
   for (const auto &[place, kind] : bonds)
-    if (!lattice_.is_site(place) || kind >= n_bond_kinds)
+    if (!lattice_.is_site(place) || kind >= lattice_.n_kinds())
       throw std::invalid_argument("only a bond that starts at a site can be cut");
   broken_ += fracture_->remove_bonds(state_, bonds);
   fracture_->locate_tip(state_);
@@ -367,7 +369,7 @@ void Simulation::check_loaded(const BondStates &before, double energy) const
     }
   for (std::size_t row = 0; row < lattice_.rows(); ++row)
     for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
-      require_archived(state_.lost_bonds[lattice_.index(row, column)] <= material_.coordination(),
+      require_archived(state_.lost_bonds[lattice_.index(row, column)] <= material_.coordination(lattice_),
                        "`lost_bonds` are more than a site has");
 }
 

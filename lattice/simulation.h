@@ -169,9 +169,13 @@ void Simulation::archive(Archive &archive)
        {std::pair("x", &state_.x), std::pair("y", &state_.y), std::pair("vx", &state_.vx), std::pair("vy", &state_.vy),
         std::pair("ax", &state_.ax), std::pair("ay", &state_.ay)})
     archive_rows(archive, name, *field, band_, known);
-  for (BondStates::Words &words : state_.bonds.storage())
-    archive_rows(archive, &words == &state_.bonds.storage()[0] ? "bonds" : "bonds_of_third_shell", words, band_, known);
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  for (std::size_t word = 0; word < state_.bonds.storage().size(); ++word)
+    archive_rows(archive,
+                 word == 0                  ? "bonds"
+                 : lattice_.is_triangular() ? "bonds_of_third_shell"
+                                            : "bonds_" + std::to_string(word),
+                 state_.bonds.storage()[word], band_, known);
+  for (std::size_t kind = 0; kind < state_.history.kinds.size(); ++kind)
   {
     BondHistory::Kind &history = state_.history.kinds[kind];
     const std::string name = "memory_" + std::to_string(kind) + "_";

@@ -33,13 +33,13 @@ double overstress(const MemoryStep &step, const BondHistory &history, std::size_
 SiteEvaluator::SiteEvaluator(const TriangularLattice &lattice, const Material &material)
   : lattice_(lattice), material_(material)
 {
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
   {
-    const Shell *shell = material.shell(kind);
+    const Shell *shell = material.shell(lattice, kind);
     const Eigen::Vector2d R = lattice.bond_vector(kind);
-    kinds_[kind] = {R, R * R.transpose(), lattice.rest_length(kind),
-                    shell != nullptr ? cross_section(*shell, lattice) : 0.,
-                    memory_step(shell != nullptr ? shell->memory : NoMemory(), 0.)};
+    kinds_.push_back({R, R * R.transpose(), lattice.rest_length(kind),
+                    shell != nullptr ? cross_section(*shell, lattice, kind) : 0.,
+                    memory_step(shell != nullptr ? shell->memory : NoMemory(), 0.)});
   }
 }
 
@@ -54,7 +54,7 @@ SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
                         {
                           const auto [near, number, far] = bond;
                           const Kind &kind = kinds_[number];
-                          const Shell &shell = *material_.shell(number);
+                          const Shell &shell = *material_.shell(lattice_, number);
                           const Eigen::Vector2d r(state.x[far] - state.x[near], state.y[far] - state.y[near]);
                           const Eigen::Vector2d rate(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
                           const double length = r.norm();
@@ -63,7 +63,7 @@ SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
                           const double section = state.stiffness.of(near, number) * kind.section;
                           double axial = section * (force(shell.law, stretch) +
                                                     shell.viscosity * rate.dot(direction) / kind.rest_length);
-                          if (!state.history.kinds[number].variables.empty())
+                          if (state.history.remembers(number))
                             axial += section * overstress(kind.at_rest, state.history, near, number);
                           ++values.bonds;
                           values.strain_energy_density += 0.5 * section * kind.rest_length * energy(shell.law, stretch);

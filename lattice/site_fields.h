@@ -51,7 +51,7 @@ private:
   };
   const TriangularLattice &lattice_;
   Material material_;
-  std::array<Kind, n_bond_kinds> kinds_;
+  std::vector<Kind> kinds_;
 };
 
 /// SiteValues at every place. Zero in the margin and at removed sites, but for F there.

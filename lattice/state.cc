@@ -20,8 +20,8 @@ bool reaches_beyond(const TriangularLattice &lattice, const Material &material, 
 {
   const Eigen::Vector2d X = lattice.reference(place);
   const double margin = 0.1 * lattice.spacing(); // sites are either on the sheet or half a spacing off
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-    if (material.shell(kind) != nullptr)
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+    if (material.shell(lattice, kind) != nullptr)
       for (const double sense : {1., -1.})
       {
         const Eigen::Vector2d end = X + sense * lattice.bond_vector(kind);
@@ -37,16 +37,17 @@ bool reaches_beyond(const TriangularLattice &lattice, const Material &material, 
 // Adds the bonds that start at a site.
 void add_bonds(State &state, const TriangularLattice &lattice, const Material &material, std::size_t place)
 {
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-    if (material.shell(kind) != nullptr && lattice.is_occupied(lattice.bond(place, kind).far))
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+    if (material.shell(lattice, kind) != nullptr && lattice.is_occupied(lattice.bond(place, kind).far))
       state.bonds.add(place, kind);
 }
 
 // Returns whether all bonds of a site end within the sheet, whatever its edges.
 bool is_interior(const TriangularLattice &lattice, std::size_t row, std::size_t column)
 {
-  constexpr std::size_t reach = TriangularLattice::reach;
-  return row >= reach && row + reach < lattice.rows() && column >= reach && column + reach < lattice.sites_in_row(row);
+  const std::size_t rows = lattice.reach(), columns = lattice.column_reach();
+  return row >= rows && row + rows < lattice.rows() && column >= columns &&
+         column + columns < lattice.sites_in_row(row);
 }
 
 } // namespace
@@ -74,7 +75,7 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
     *field = Field(n);
   for (SiteFlags *marks : {&state.held, &state.removed, &state.lost_bonds})
     *marks = SiteFlags(n);
-  state.bonds.clear(n, material.n_kinds());
+  state.bonds.clear(n, material.n_kinds(lattice));
 
   state.periods = F;
   const std::size_t stride = lattice.stride(), below = lattice.index(0, 0) / stride;
@@ -135,9 +136,10 @@ void add_noise(State &state, const RowPartition &band, double amplitude, std::ui
 void relax_memory(State &state, const RowPartition &band, const Material &material)
 {
   const TriangularLattice &lattice = band.lattice();
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  state.history.kinds.resize(lattice.n_kinds());
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
   {
-    const Shell *shell = material.shell(kind);
+    const Shell *shell = material.shell(lattice, kind);
     const std::size_t n = shell != nullptr ? n_variables(shell->memory) : 0;
     state.history.kinds[kind] = {Field(n > 0 ? lattice.n_places() : 0), {}};
     for (std::size_t v = 0; v < n; ++v)

@@ -107,7 +107,7 @@ void for_each_bond(const State &state, const TriangularLattice &lattice, Rows ro
   const std::size_t n_kinds = state.bonds.n_kinds();
   for (std::size_t row = rows.begin; row < rows.end; ++row)
   {
-    std::array<std::size_t, n_bond_kinds> shift{};
+    std::array<std::size_t, TriangularLattice::most_kinds> shift; // the first n_kinds
     for (std::size_t kind = 0; kind < n_kinds; ++kind)
       shift[kind] = lattice.shift(kind, row);
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "support/dense.h"
 
@@ -38,14 +39,16 @@ std::vector<HalfBond> half_bonds(const Grid &grid, const Ring &ring)
   // Rows of a triangular grid are sqrt3 / 2 apart, and columns lean by half a row.
   const int rows = static_cast<int>(std::ceil(1.2 * (ring.radius / h + 1.))), columns = 2 * rows;
   for (int row = 0; row <= rows; ++row)
-    for (int column = row == 0 ? 1 : -columns; column <= columns; ++column)
+    for (int column = columns; column >= (row == 0 ? 1 : -columns); --column)
     {
       const Eigen::Vector2d R = grid.vector(column, row);
-      const double length = R.norm();
+      // Bonds that are those of a lattice have its lengths to the last bit.
+      const bool is_exact = std::abs(R.norm() - ring.radius) < round_off * h;
+      const double length = is_exact ? ring.radius : R.norm();
       const double weight = 1. - std::abs(length - ring.radius) / h;
       const double off = std::remainder(std::atan2(R.y(), R.x()) - ring.direction, M_PI / 3.);
       if (weight > round_off && std::abs(off) <= ring.half_width + round_off)
-        found.push_back({column, row, R, length, weight, ring.shell});
+        found.push_back({column, row, R, length, weight, ring.shell, ring.radius});
     }
   return found;
 }
@@ -63,7 +66,11 @@ void correct(std::vector<HalfBond> &bonds)
     root[i] = std::sqrt(bonds[i].weight / sum);
     scaled.col(i) = root[i] * harmonics(bonds[i].vector);
   }
+  for (HalfBond &bond : bonds)
+    bond.weight /= sum;
   const Eigen::VectorXd missing = Eigen::VectorXd::Unit(5, 0) - scaled * root;
+  if (missing.norm() < 1e-14) // three directions have these moments
+    return;
   const Eigen::VectorXd z = support::shortest_least_squares(scaled, missing);
   require((scaled * z - missing).norm() < 1e-12 && (root + z).minCoeff() > 0.,
           "a ring has too few bonds in its arcs for isotropic fourth moments with positive weights: a finer grid or "
@@ -87,16 +94,42 @@ bool reach_all_points(const std::vector<HalfBond> &bonds)
 
 Eigen::Vector2d Grid::vector(int columns, int rows) const
 {
-  const bool triangular = kind == Kind::triangular;
-  const double u = spacing * (columns + (triangular ? 0.5 * rows : 0.));
-  const double v = spacing * rows * (triangular ? std::sqrt(3.) / 2. : 1.);
+  return from_row_frame(columns + (kind == Kind::triangular ? 0.5 * rows : 0.), rows);
+}
+
+Eigen::Vector2d Grid::from_row_frame(double along, double across) const
+{
+  double u = along * spacing, v = across * (kind == Kind::triangular ? half_sqrt3 : 1.) * spacing;
+  if (orientation == Orientation::rows_across_crack)
+    std::swap(u, v);
+  if (rotation == 0.)
+    return {u, v};
   const double c = std::cos(rotation), s = std::sin(rotation);
   return {c * u - s * v, s * u + c * v};
 }
 
 double Grid::cell_area() const
 {
-  return spacing * spacing * (kind == Kind::triangular ? std::sqrt(3.) / 2. : 1.);
+  return (kind == Kind::triangular ? half_sqrt3 : 1.) * spacing * spacing;
+}
+
+std::vector<HalfBond> triangular_stencil(const Grid &grid)
+{
+  struct Offset
+  {
+    int columns, rows;
+  };
+  constexpr std::array<Offset, 3 * n_shells> offsets{
+    {{1, 0}, {0, 1}, {-1, 1}, {1, 1}, {-2, 1}, {-1, 2}, {2, 0}, {0, 2}, {-2, 2}}};
+  const std::array<double, n_shells> lengths{{1., 2. * half_sqrt3, 2.}};
+  std::vector<HalfBond> stencil;
+  for (const auto &[columns, rows] : offsets)
+  {
+    const std::size_t shell = stencil.size() / 3;
+    const double length = lengths[shell] * grid.spacing;
+    stencil.push_back({columns, rows, grid.vector(columns, rows), length, 1. / 3., shell, length});
+  }
+  return stencil;
 }
 
 std::vector<Ring> lattice_rings(double d, Orientation orientation, double half_width)

@@ -1,27 +1,47 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "lattice/triangular_lattice.h"
-
 namespace latcon::lattice
 {
+
+/// Direction of the rows of nearest neighbours. The crack runs along x.
+enum class Orientation
+{
+  rows_along_crack, ///< NN bonds at 0, 60, 120 degrees to x, NNN bonds at 30, 90, 150
+  rows_across_crack ///< turned by 30 degrees: NN bonds at 30, 90, 150, NNN bonds at 0, 60, 120
+};
+
+/// Shells of bonds, by increasing rest length: nearest neighbours (d), next-nearest (sqrt3 d) and third-nearest (2 d,
+/// in the directions of the nearest). A material need not have all of them.
+inline constexpr std::size_t n_shells = 3;
+/// What the shells are called in files and messages.
+inline constexpr std::array<const char *, n_shells> shell_names{{"nearest", "next-nearest", "third-nearest"}};
+
+inline const double half_sqrt3 = std::sqrt(3.) / 2.;
 
 /// A grid of reference points without end, at column * a1 + row * a2.
 struct Grid
 {
   enum class Kind
   {
-    triangular, ///< a1 = h (1, 0), a2 = h (1, sqrt3) / 2 before the rotation
-    square      ///< a1 = h (1, 0), a2 = h (0, 1) before the rotation
+    triangular, ///< a1 = h (1, 0), a2 = h (1, sqrt3) / 2 with rows along the crack, before the rotation
+    square      ///< a1 = h (1, 0), a2 = h (0, 1) likewise
   };
 
   Kind kind;
   double spacing;       ///< h [m], > 0
   double rotation = 0.; ///< of the whole grid, counter-clockwise [rad]
+  /// Direction of its rows before the rotation; x and y are exchanged where they are across the crack.
+  Orientation orientation = Orientation::rows_along_crack;
+
+  /// Vector of so many spacings along the rows and rows across them [m].
+  Eigen::Vector2d from_row_frame(double along, double across) const;
 
   /// Reference vector from a point to the one that is so many columns and rows away [m].
   Eigen::Vector2d vector(int columns, int rows) const;
@@ -37,6 +57,7 @@ struct HalfBond
   double rest_length;     ///< |R| [m]
   double weight;          ///< q [-], > 0: share of the bond in the energy of its shell
   std::size_t shell;      ///< whose law it has; that of its ring
+  double radius;          ///< l of its ring [m]
 };
 
 /// Bonds of one length that leave every point of a nonlocal continuum.
@@ -47,6 +68,9 @@ struct Ring
   std::size_t shell;             ///< whose law the bonds have; below n_shells
   double half_width = M_PI / 6.; ///< of the arcs about these directions [rad], 0 (six directions) to pi/6 (all)
 };
+
+/// Half-bonds of the triangular lattice on its grid: three for each shell, third-nearest ones included.
+std::vector<HalfBond> triangular_stencil(const Grid &grid);
 
 /// The rings that shells of the triangular lattice with spacing d [m] sample: of nearest and next-nearest neighbours.
 std::vector<Ring> lattice_rings(double d, Orientation orientation, double half_width);
@@ -63,6 +87,9 @@ std::vector<Ring> lattice_rings(double d, Orientation orientation, double half_w
 ///
 /// @throws std::invalid_argument if the grid has too few bonds in the arcs for these moments, if one of the weights is
 /// not positive, or if the bonds leave the grid in parts that do not know each other
+///
+/// On a triangular grid of the lattice's spacing, six directions give the first half-bonds of triangular_stencil(), bit
+/// for bit.
 std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings);
 
 } // namespace latcon::lattice

@@ -1,11 +1,18 @@
 #include "lattice/strain_gradient.h"
 
+#include <stdexcept>
 #include <vector>
 
 #include "support/dense.h"
 
 namespace latcon::lattice
 {
+
+StrainGradientFit::StrainGradientFit(const TriangularLattice &lattice) : lattice_(lattice)
+{
+  if (!lattice.is_triangular())
+    throw std::invalid_argument("strain gradients are fitted on the triangular lattice alone");
+}
 
 const StrainGradientFit::Entry &StrainGradientFit::entry(unsigned int bonds)
 {

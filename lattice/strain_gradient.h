@@ -28,7 +28,8 @@ class StrainGradientFit
 {
 public:
   /// The lattice must outlive this object.
-  explicit StrainGradientFit(const TriangularLattice &lattice) : lattice_(lattice) {}
+  /// @throws std::invalid_argument for other than the triangular lattice
+  explicit StrainGradientFit(const TriangularLattice &lattice);
 
   /// None where the bonds left do not fix a quadratic: a flank of a lattice of nearest neighbours has four, and five
   /// are needed.

@@ -60,32 +60,42 @@ Rates bound_of_bonds(const TriangularLattice &lattice, const Material &material,
 {
   const double mass = site_mass(material, lattice);
   Rates rates;
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-    if (const Shell *shell = material.shell(kind))
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+    if (const Shell *shell = material.shell(lattice, kind))
     {
       // A site has two bonds of each kind, and the bound is twice the sum over its bonds.
       const double per_length =
-        stiffest(material) * (4. * cross_section(*shell, lattice) / (lattice.rest_length(kind) * mass));
-      rates.omega_square += per_length * fast_stiffness(*shell, smallest_stretch[shell_of(kind)]);
+        stiffest(material) * (4. * cross_section(*shell, lattice, kind) / (lattice.rest_length(kind) * mass));
+      rates.omega_square += per_length * fast_stiffness(*shell, smallest_stretch[lattice.shell(kind)]);
       rates.gamma += per_length * shell->viscosity;
     }
   return rates;
 }
 
+double shortest_bond(const TriangularLattice &lattice)
+{
+  double shortest = lattice.rest_length(0);
+  for (std::size_t kind = 1; kind < lattice.n_kinds(); ++kind)
+    shortest = std::min(shortest, lattice.rest_length(kind));
+  return shortest;
+}
+
 // 1 / kappa.
-double damped_step(const Material &material, const SmallestStretch &smallest_stretch)
+double damped_step(const TriangularLattice &lattice, const Material &material, const SmallestStretch &smallest_stretch)
 {
   double step = std::numeric_limits<double>::infinity();
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-    if (const Shell *shell = material.shell(kind))
-      step = std::min(step, shell->viscosity / fast_stiffness(*shell, smallest_stretch[shell_of(kind)]));
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+    if (const Shell *shell = material.shell(lattice, kind))
+      step = std::min(step, shell->viscosity / fast_stiffness(*shell, smallest_stretch[lattice.shell(kind)]));
   return step;
 }
 
-// Bound for a site with six contacts around it, whose sum n n is 3 I; the bound is twice the sum.
+// Bound for a site with six contacts around it, whose sum n n is 3 I; the bound is twice the sum. As many more contacts
+// as sites of a finer grid take the area of one of the lattice.
 Rates bound_of_contacts(const TriangularLattice &lattice, const Material &material, const ContactLaw &contact)
 {
-  const double per_contact = 6. / site_mass(material, lattice);
+  const double d = lattice.lattice_spacing();
+  const double per_contact = 6. / site_mass(material, lattice) * (half_sqrt3 * d * d / lattice.site_area());
   return {per_contact * contact.stiffness, per_contact * contact.viscosity};
 }
 
@@ -112,7 +122,7 @@ TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material
 double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch)
 {
   return std::min(share_of_elastic_limit * time_step_limits(lattice, material, 1.).elastic,
-                  damped_step(material, of_all(smallest_stretch)));
+                  damped_step(lattice, material, of_all(smallest_stretch)));
 }
 
 double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
@@ -144,9 +154,9 @@ double recoil_step(const TimeStepping &stepping, const TriangularLattice &lattic
                    std::size_t kind, double stretch, const ContactLaw *contact)
 {
   SmallestStretch smallest = of_all(short_stretch);
-  smallest[shell_of(kind)] = stretch;
+  smallest[lattice.shell(kind)] = stretch;
   if (stepping.stages > 0)
-    return damped_step(material, smallest);
+    return damped_step(lattice, material, smallest);
   const Rates bonds = bound_of_bonds(lattice, material, smallest);
   const Rates all = contact != nullptr ? with_contacts(bonds, bound_of_contacts(lattice, material, *contact)) : bonds;
   return std::min(limits(all).combined, share_for_recoil * limits(bonds).elastic);
@@ -165,19 +175,19 @@ double watched_stretch(const TimeStepping &stepping, const TriangularLattice &la
 double largest_stretch_rate(const TriangularLattice &lattice, const Material &material, double breaking_stretch)
 {
   double site_energy = 0., of_forces = 0.; // per sheet thickness [J/m], rate [1/s]
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-    if (const Shell *shell = material.shell(kind))
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+    if (const Shell *shell = material.shell(lattice, kind))
     {
       // No overstress exceeds that of a bond that is stretched at once.
       const double overstress = largest_stiffness(shell->memory) * breaking_stretch;
-      site_energy += stiffest(material) * cross_section(*shell, lattice) * lattice.rest_length(kind) *
+      site_energy += stiffest(material) * cross_section(*shell, lattice, kind) * lattice.rest_length(kind) *
                      (energy(shell->law, breaking_stretch) + 0.5 * overstress * breaking_stretch);
-      of_forces = std::max(of_forces, 0.5 * material.coordination() *
+      of_forces = std::max(of_forces, 0.5 * material.coordination(lattice) *
                                         (force(shell->law, breaking_stretch) + overstress) / shell->viscosity);
     }
   // Stiff bonds may pull on one whose dashpot is the weakest.
   of_forces *= stiffest(material) / material.disorder.stiffness.smallest();
-  const double of_energy = std::sqrt(8. * site_energy / site_mass(material, lattice)) / lattice.spacing();
+  const double of_energy = std::sqrt(8. * site_energy / site_mass(material, lattice)) / shortest_bond(lattice);
   return std::min(of_energy, of_forces);
 }
 

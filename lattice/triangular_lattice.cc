@@ -2,24 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 
 namespace latcon::lattice
 {
 namespace
 {
-
-const double half_sqrt3 = std::sqrt(3.) / 2.;
-
-// A bond vector in the row frame.
-struct RowFrameVector
-{
-  int halves; // along the row, in units of d / 2
-  int rows;   // across the rows, in units of their pitch
-};
-
-constexpr std::array<RowFrameVector, n_bond_kinds> bond_directions{
-  {{2, 0}, {1, 1}, {-1, 1}, {3, 1}, {-3, 1}, {0, 2}, {4, 0}, {2, 2}, {-2, 2}}};
 
 std::size_t intervals(double extent, double pitch)
 {
@@ -34,16 +23,55 @@ std::size_t even_intervals(double extent, double pitch)
   return 2 * intervals(extent, 2. * pitch);
 }
 
+// Returns whether half-bonds are those of the triangular lattice, of all shells or of the first two.
+bool has_triangular_kinds(const Grid &grid, const std::vector<HalfBond> &stencil)
+{
+  const std::vector<HalfBond> triangular = triangular_stencil(grid);
+  return grid.kind == Grid::Kind::triangular &&
+         (stencil.size() == n_bond_kinds || stencil.size() == 2 * n_kinds_per_shell) &&
+         std::equal(stencil.begin(), stencil.end(), triangular.begin(),
+                    [](const HalfBond &a, const HalfBond &b)
+                    {
+                      return a.columns == b.columns && a.rows == b.rows && a.rest_length == b.rest_length &&
+                             a.weight == b.weight && a.shell == b.shell;
+                    });
+}
+
 } // namespace
 
 TriangularLattice::TriangularLattice(double spacing, double length, double height, Orientation orientation,
                                      Periodic periodic)
-  : spacing_(spacing), orientation_(orientation)
+  : TriangularLattice({Grid::Kind::triangular, spacing, 0., orientation},
+                      triangular_stencil({Grid::Kind::triangular, spacing, 0., orientation}), spacing, length, height,
+                      periodic)
 {
-  if (!(spacing > 0.) || !(length > 0.) || !(height > 0.))
+}
+
+TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBond> &stencil, double d, double length,
+                                     double height)
+  : TriangularLattice(grid, stencil, d, length, height, Periodic())
+{
+}
+
+TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBond> &stencil, double d, double length,
+                                     double height, Periodic periodic)
+  : grid_(grid), stencil_(stencil), d_(d), is_triangular_(has_triangular_kinds(grid, stencil))
+{
+  const double spacing = grid.spacing;
+  if (!(spacing > 0.) || !(length > 0.) || !(height > 0.) || !(d > 0.))
     throw std::invalid_argument("a lattice needs positive spacing, length and height");
-  const double pitch = half_sqrt3 * spacing;
-  const bool rows_along_x = orientation == Orientation::rows_along_crack;
+  if (grid.rotation != 0. || stencil.empty() || stencil.size() > most_kinds)
+    throw std::invalid_argument("a sheet has 1 to 127 half-bonds on a grid that is not rotated");
+  int columns_reach = 0;
+  for (const HalfBond &bond : stencil_)
+  {
+    section_lengths_.push_back(d * (bond.rest_length / bond.radius) / (3. * bond.weight));
+    reach_ = std::max(reach_, static_cast<std::size_t>(bond.rows));
+    for (const int odd : {0, 1})
+      columns_reach = std::max(columns_reach, std::abs(bond.columns + (rows_shift() ? (bond.rows + odd) / 2 : 0)));
+  }
+  column_reach_ = static_cast<std::size_t>(columns_reach);
+  const bool rows_along_x = grid.orientation == Orientation::rows_along_crack;
   periodic_along_ = rows_along_x ? periodic.x : periodic.y;
   periodic_across_ = rows_along_x ? periodic.y : periodic.x;
 
@@ -54,19 +82,21 @@ TriangularLattice::TriangularLattice(double spacing, double length, double heigh
   else
     columns_ = (rows_along_x ? intervals(along, spacing) : even_intervals(along, spacing)) + 1;
   if (periodic_across_)
-    rows_ = even_intervals(across, pitch);
+    rows_ = even_intervals(across, pitch() * spacing);
   else
-    rows_ = (rows_along_x ? even_intervals(across, pitch) : intervals(across, pitch)) + 1;
+    rows_ = (rows_along_x ? even_intervals(across, pitch() * spacing) : intervals(across, pitch() * spacing)) + 1;
   // The margin of a periodic sheet is filled from the sheet once around, so it must not be wider.
-  if (columns_ < (periodic_along_ ? margin : 3) || rows_ < 2)
+  if (columns_ < (periodic_along_ ? column_reach_ : 3) || rows_ < (periodic_across_ ? reach_ : 2))
     throw std::invalid_argument("the sheet is too small for its lattice spacing: fewer than two rows or three columns");
-  stride_ = row_alignment * (1 + (columns_ + margin + row_alignment - 1) / row_alignment);
+  const auto aligned = [](std::size_t n) { return (n + row_alignment - 1) / row_alignment * row_alignment; };
+  first_column_ = aligned(column_reach_);
+  stride_ = first_column_ + aligned(columns_ + column_reach_);
   find_images();
 }
 
 Periodic TriangularLattice::periodic() const
 {
-  return orientation_ == Orientation::rows_along_crack ? Periodic{periodic_along_, periodic_across_}
+  return orientation() == Orientation::rows_along_crack ? Periodic{periodic_along_, periodic_across_}
                                                        : Periodic{periodic_across_, periodic_along_};
 }
 
@@ -74,28 +104,23 @@ double TriangularLattice::length() const
 {
   const double along = static_cast<double>(periodic_along_ ? columns_ : columns_ - 1);
   const double across = static_cast<double>(periodic_across_ ? rows_ : rows_ - 1);
-  return from_row_frame(along, across).x();
+  return grid_.from_row_frame(along, across).x();
 }
 
 double TriangularLattice::height() const
 {
   const double along = static_cast<double>(periodic_along_ ? columns_ : columns_ - 1);
   const double across = static_cast<double>(periodic_across_ ? rows_ : rows_ - 1);
-  return from_row_frame(along, across).y();
-}
-
-double TriangularLattice::site_area() const
-{
-  return half_sqrt3 * spacing_ * spacing_;
+  return grid_.from_row_frame(along, across).y();
 }
 
 bool TriangularLattice::is_site(std::size_t place) const
 {
   const std::size_t padded_row = place / stride();
   const std::size_t padded_column = place % stride();
-  if (padded_row < margin || padded_row >= rows_ + margin || padded_column < row_alignment)
+  if (padded_row < reach_ || padded_row >= rows_ + reach_ || padded_column < first_column_)
     return false;
-  return padded_column - row_alignment < sites_in_row(padded_row - margin);
+  return padded_column - first_column_ < sites_in_row(padded_row - reach_);
 }
 
 void TriangularLattice::find_images()
@@ -106,9 +131,9 @@ void TriangularLattice::find_images()
   for (std::size_t place = 0; place < n_places(); ++place)
   {
     const std::size_t padded_row = place / width, padded_column = place % width;
-    const bool below = padded_row < margin, above = padded_row >= rows_ + margin;
-    const bool left = padded_column < row_alignment, right = padded_column >= columns_ + row_alignment;
-    if (padded_column + margin < row_alignment || padded_column >= columns_ + row_alignment + margin)
+    const bool below = padded_row < reach_, above = padded_row >= rows_ + reach_;
+    const bool left = padded_column < first_column_, right = padded_column >= columns_ + first_column_;
+    if (padded_column + column_reach_ < first_column_ || padded_column >= columns_ + first_column_ + column_reach_)
       continue;
     if (!below && !above && !left && !right)
     {
@@ -124,8 +149,8 @@ void TriangularLattice::find_images()
       continue; // the missing end of an odd row
     const auto turns = [](bool before, bool after) { return after ? 1. : before ? -1. : 0.; };
     images_.push_back({place, site,
-                       from_row_frame(turns(left, right) * static_cast<double>(columns_),
-                                      turns(below, above) * static_cast<double>(rows_))});
+                       grid_.from_row_frame(turns(left, right) * static_cast<double>(columns_),
+                                            turns(below, above) * static_cast<double>(rows_))});
   }
 }
 
@@ -154,45 +179,14 @@ std::optional<std::size_t> TriangularLattice::row(std::ptrdiff_t number) const
 
 Eigen::Vector2d TriangularLattice::reference(std::size_t place) const
 {
-  const auto row = static_cast<std::ptrdiff_t>(place / stride()) - static_cast<std::ptrdiff_t>(margin);
-  const auto column = static_cast<std::ptrdiff_t>(place % stride()) - static_cast<std::ptrdiff_t>(row_alignment);
-  const double along = static_cast<double>(column) + (row % 2 != 0 ? 0.5 : 0.);
+  const auto row = static_cast<std::ptrdiff_t>(place / stride()) - static_cast<std::ptrdiff_t>(reach_);
+  const auto column = static_cast<std::ptrdiff_t>(place % stride()) - static_cast<std::ptrdiff_t>(first_column_);
+  const double along = static_cast<double>(column) + (rows_shift() && row % 2 != 0 ? 0.5 : 0.);
   const double across = static_cast<double>(row);
   // Centring before scaling keeps mirror sites at exactly opposite y.
-  if (orientation_ == Orientation::rows_along_crack)
-    return from_row_frame(along, across - 0.5 * static_cast<double>(rows_ - 1));
-  return from_row_frame(along - 0.5 * static_cast<double>(columns_ - 1), across);
-}
-
-std::ptrdiff_t TriangularLattice::rows_across(std::size_t kind)
-{
-  return bond_directions[kind].rows;
-}
-
-std::size_t TriangularLattice::shift(std::size_t kind, std::size_t row) const
-{
-  // A bond to a row of the other parity leads half a spacing to one side, and rows of odd numbers begin there.
-  const auto &[halves, rows] = bond_directions[kind];
-  const int columns = rows % 2 == 0 ? halves / 2 : (halves - 1) / 2 + static_cast<int>(row % 2);
-  return static_cast<std::size_t>(rows) * stride() + static_cast<std::size_t>(columns);
-}
-
-Eigen::Vector2d TriangularLattice::bond_vector(std::size_t kind) const
-{
-  return from_row_frame(0.5 * bond_directions[kind].halves, bond_directions[kind].rows);
-}
-
-double TriangularLattice::rest_length(std::size_t kind) const
-{
-  const std::array<double, n_shells> in_spacings{{1., 2. * half_sqrt3, 2.}};
-  return in_spacings[shell_of(kind)] * spacing_;
-}
-
-Eigen::Vector2d TriangularLattice::from_row_frame(double along, double across) const
-{
-  const double u = along * spacing_;
-  const double v = across * half_sqrt3 * spacing_;
-  return orientation_ == Orientation::rows_along_crack ? Eigen::Vector2d(u, v) : Eigen::Vector2d(v, u);
+  if (orientation() == Orientation::rows_along_crack)
+    return grid_.from_row_frame(along, across - 0.5 * static_cast<double>(rows_ - 1));
+  return grid_.from_row_frame(along - 0.5 * static_cast<double>(columns_ - 1), across);
 }
 
 } // namespace latcon::lattice

@@ -1,21 +1,15 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "lattice/stencil.h"
+
 namespace latcon::lattice
 {
-
-/// Direction of the rows of nearest neighbours. The crack runs along x.
-enum class Orientation
-{
-  rows_along_crack, ///< NN bonds at 0, 60, 120 degrees to x, NNN bonds at 30, 90, 150
-  rows_across_crack ///< turned by 30 degrees: NN bonds at 30, 90, 150, NNN bonds at 0, 60, 120
-};
 
 /// Directions along which the sheet repeats itself without end.
 struct Periodic
@@ -24,20 +18,13 @@ struct Periodic
   bool y = false;
 };
 
-/// Shells of bonds, by increasing rest length: nearest neighbours (d), next-nearest (sqrt3 d) and third-nearest (2 d,
-/// in the directions of the nearest). A material need not have all of them.
-inline constexpr std::size_t n_shells = 3;
-/// What the shells are called in files and messages.
-inline constexpr std::array<const char *, n_shells> shell_names{{"nearest", "next-nearest", "third-nearest"}};
-
-/// Half of the bonds that a site has in each shell, each named by its direction in the row frame (along the row, across
-/// the rows). The other half are the same bonds seen from their far ends. Kinds 0 to 2 are nearest neighbours, 3 to 5
-/// next-nearest, 6 to 8 third-nearest.
+/// Half-bonds of the triangular lattice in each shell. Kinds 0 to 2 are nearest neighbours, 3 to 5 next-nearest, 6 to 8
+/// third-nearest.
 inline constexpr std::size_t n_kinds_per_shell = 3;
 inline constexpr std::size_t n_bond_kinds = n_shells * n_kinds_per_shell; ///< of all shells
 inline constexpr std::size_t n_nearest_kinds = n_kinds_per_shell;         ///< of them nearest neighbours
 
-/// Shell of a kind of bonds.
+/// Shell of a kind of bonds of the triangular lattice.
 constexpr std::size_t shell_of(std::size_t kind)
 {
   return kind / n_kinds_per_shell;
@@ -47,14 +34,15 @@ constexpr std::size_t shell_of(std::size_t kind)
 struct Bond
 {
   std::size_t near; ///< where it starts
-  std::size_t kind; ///< see n_bond_kinds
+  std::size_t kind; ///< number of its half-bond in the stencil of the lattice
   std::size_t far;  ///< where it ends; an image where it crosses the edge of a periodic sheet
 };
 
-/// A rectangular piece of the triangular lattice in its reference configuration (theory.md, section "The lattice").
+/// A rectangular sheet in its reference configuration: sites of a grid, joined by the half-bonds of a stencil.
 ///
-/// Sites stand in rows, spacing d along a row, row pitch (sqrt3 / 2) d, every second row shifted by d / 2 and one site
-/// shorter. The sheet is its own mirror image about the line y = 0, to the last bit of its coordinates. About the
+/// The stencil is that of the triangular lattice (theory.md, section "The lattice"), or of rings of bonds on a triangular
+/// or square grid that is not rotated. Sites of a triangular grid stand in rows, spacing h along a row, row pitch
+/// (sqrt3 / 2) h, every second row shifted by h / 2 and one site shorter. The sheet is its own mirror image about the line y = 0, to the last bit of its coordinates. About the
 /// centre line along y it is, to round-off, if the number of rows is odd, as it always is with rows along x; not if it
 /// is even, since the first row then has a site more than the last. With rows along x:
 ///
@@ -62,10 +50,10 @@ struct Bond
 ///     row 1      o     o     o           odd rows:  one site fewer
 ///     row 0   o     o     o     o
 ///
-/// Storage is row by row with a margin of at least two places on every side, so that the neighbour of a site through a
+/// Storage is row by row with a margin on every side as wide as bonds reach, so that the neighbour of a site through a
 /// bond of kind k is always at the same offset in rows of one parity, whether that neighbour exists or not. Rows begin
 /// at multiples of `row_alignment` places, and as many may be worked on at once. The margin is empty, except where the
-/// sheet is periodic: there the two places next to the sheet hold images of the sites at the other end. In a sheet that
+/// sheet is periodic: there the places next to the sheet hold images of the sites at the other end. In a sheet that
 /// is periodic along its rows all rows have `columns()` sites; one that is periodic across them has an even number of
 /// rows.
 class TriangularLattice
@@ -79,37 +67,46 @@ public:
   /// @throws std::invalid_argument if an extent is not positive or holds fewer than two rows or three columns, or 1e9
   TriangularLattice(double spacing, double length, double height, Orientation orientation, Periodic periodic = {});
 
-  double spacing() const { return spacing_; } ///< d [m]
-  Orientation orientation() const { return orientation_; }
+  /// A sheet of a nonlocal continuum.
+  /// @param grid without rotation @param stencil of it, by increasing shell; see ring_stencil()
+  /// @param d spacing of the lattice whose shells the rings are [m], > 0
+  /// @throws std::invalid_argument also for a grid that is rotated, or more half-bonds than `most_kinds`
+  TriangularLattice(const Grid &grid, const std::vector<HalfBond> &stencil, double d, double length, double height);
+  static constexpr std::size_t most_kinds = 127; ///< half-bonds: those that a site has lost are counted in a byte
+
+  double spacing() const { return grid_.spacing; } ///< h [m], distance of nearest sites; d of the triangular lattice
+  double lattice_spacing() const { return d_; }      ///< d [m], of the lattice whose shells the rings are, or its own
+  Orientation orientation() const { return grid_.orientation; }
+  const Grid &grid() const { return grid_; }
   Periodic periodic() const;
   double length() const; ///< distance of the outermost sites along x after rounding, or the period [m]
   double height() const; ///< the same along y [m]
-  /// Reference area of one site, (sqrt3 / 2) d^2 [m^2].
-  double site_area() const;
+  /// Reference area V of one site [m^2], (sqrt3 / 2) d^2 of the triangular lattice.
+  double site_area() const { return grid_.cell_area(); }
 
   std::size_t rows() const { return rows_; }
   std::size_t columns() const { return columns_; } ///< sites in an even row
-  std::size_t sites_in_row(std::size_t row) const { return periodic_along_ ? columns_ : columns_ - row % 2; }
+  std::size_t sites_in_row(std::size_t row) const { return columns_ - (rows_alternate() ? row % 2 : 0); }
   /// Number of a site, counted row by row from the lower left without gaps; what files call it.
   std::size_t site_number(std::size_t place) const
   {
     const std::size_t row = row_of(place);
-    return row * columns_ - (periodic_along_ ? 0 : row / 2) + column_of(place);
+    return row * columns_ - (rows_alternate() ? row / 2 : 0) + column_of(place);
   }
-  std::size_t n_sites() const { return rows_ * columns_ - (periodic_along_ ? 0 : rows_ / 2); }
+  std::size_t n_sites() const { return rows_ * columns_ - (rows_alternate() ? rows_ / 2 : 0); }
   std::size_t stride() const { return stride_; }                           ///< places per row, margin included
-  std::size_t n_places() const { return (rows_ + 2 * margin) * stride(); } ///< length of every field, margin included
+  std::size_t n_places() const { return (rows_ + 2 * reach_) * stride(); } ///< length of every field, margin included
   static constexpr std::size_t row_alignment = 8;                          ///< in places: 64 bytes of a field
 
   /// Place of a site in every field; column < sites_in_row(row).
   std::size_t index(std::size_t row, std::size_t column) const
   {
-    return (row + margin) * stride() + row_alignment + column;
+    return (row + reach_) * stride() + first_column_ + column;
   }
   /// Returns the row of this number, wrapped in a sheet that is periodic across rows; none outside of other sheets.
   std::optional<std::size_t> row(std::ptrdiff_t number) const;
-  std::size_t row_of(std::size_t place) const { return place / stride() - margin; }
-  std::size_t column_of(std::size_t place) const { return place % stride() - row_alignment; }
+  std::size_t row_of(std::size_t place) const { return place / stride() - reach_; }
+  std::size_t column_of(std::size_t place) const { return place % stride() - first_column_; }
   /// Returns whether a place, margin included, has a site that is not an image.
   bool is_site(std::size_t place) const;
 
@@ -137,27 +134,51 @@ public:
   {
     return bond(canonical_place(site - shift(kind, row_of(site) + static_cast<std::size_t>(rows_across(kind)))), kind);
   }
-  /// Rows from the start to the end of a bond of a kind, 0 to `reach`.
-  static std::ptrdiff_t rows_across(std::size_t kind);
+  std::size_t n_kinds() const { return stencil_.size(); } ///< half-bonds of the stencil
+  std::size_t shell(std::size_t kind) const { return stencil_[kind].shell; }
+  /// Returns whether the half-bonds are those of the triangular lattice: of all three shells, or of the first two.
+  bool is_triangular() const { return is_triangular_; }
+  /// Rows from the start to the end of a bond of a kind, 0 to reach().
+  std::ptrdiff_t rows_across(std::size_t kind) const { return stencil_[kind].rows; }
   /// Offset from a place in `row` to the end of the bond of a kind that starts there, modulo 2^64.
-  std::size_t shift(std::size_t kind, std::size_t row) const;
+  std::size_t shift(std::size_t kind, std::size_t row) const
+  {
+    // A bond to a row of the other parity leads half a spacing to one side, and rows of odd numbers begin there.
+    const HalfBond &bond = stencil_[kind];
+    const auto rows = static_cast<std::size_t>(bond.rows);
+    const std::ptrdiff_t columns = bond.columns + (rows_shift() ? (bond.rows + static_cast<int>(row % 2)) / 2 : 0);
+    return rows * stride() + static_cast<std::size_t>(columns);
+  }
 
   /// Reference bond vector R = X_neighbour - X_site of kind k [m].
-  Eigen::Vector2d bond_vector(std::size_t kind) const;
-  /// Rest length |R|: d, sqrt3 d or 2 d [m].
-  double rest_length(std::size_t kind) const;
+  const Eigen::Vector2d &bond_vector(std::size_t kind) const { return stencil_[kind].vector; }
+  /// Rest length |R| [m].
+  double rest_length(std::size_t kind) const { return stencil_[kind].rest_length; }
+  /// D [m]: a bond of cross-section s V / D per sheet thickness, s being the area factor of its shell, has its share of
+  /// the energy of the shell. The spacing d on the triangular lattice; d |R| / (3 q l) for a weight q in a ring of
+  /// radius l.
+  double section_length(std::size_t kind) const { return section_lengths_[kind]; }
   static bool is_nearest(std::size_t kind) { return kind < n_nearest_kinds; }
-  static constexpr std::size_t reach = 2; ///< of bonds, in rows and in places along a row
+  std::size_t reach() const { return reach_; }               ///< of bonds, in rows
+  std::size_t column_reach() const { return column_reach_; } ///< of bonds, in places along a row
 
 private:
-  static constexpr std::size_t margin = reach;
+  TriangularLattice(const Grid &grid, const std::vector<HalfBond> &stencil, double d, double length, double height,
+                    Periodic periodic);
 
-  Eigen::Vector2d from_row_frame(double along, double across) const;
+  bool rows_shift() const { return grid_.kind == Grid::Kind::triangular; }
+  bool rows_alternate() const { return rows_shift() && !periodic_along_; } // in length
+  double pitch() const { return rows_shift() ? half_sqrt3 : 1.; }          // of rows, in spacings
   const Image *site_of_image(std::size_t place) const;
   void find_images();
 
-  double spacing_;
-  Orientation orientation_;
+  Grid grid_;
+  std::vector<HalfBond> stencil_;
+  double d_;
+  std::vector<double> section_lengths_;
+  bool is_triangular_;
+  std::size_t reach_ = 0, column_reach_ = 0;
+  std::size_t first_column_; // place of column 0 in its row
   bool periodic_along_;  // the rows
   bool periodic_across_; // the rows
   std::size_t rows_;

@@ -3,14 +3,17 @@
 //
 //   nonlocal_crack [NAME=VALUE...]
 //
-//   grid=triangular|square  m=2  rotation=0       spacing d/m, turned by degrees
+//   grid=triangular|square  m=2                   spacing d/m
+//   rows=along|across                             the crack, of the grid and of the six directions
 //   half-width=30                                 of the arcs [degrees]; 0 with m=1 on the triangular grid: the lattice
 //   horizon=1                                     lengths of the bonds over the lattice's
 //   viscosity=1                                   over that of Fig. 1
 //   strain-x=1.3 strain-y=1.8 breaking-stretch=3.05 toughening=1.6
 //   length=0.15 height=0.035                      [m]
 //   seed=1 noise=0.05                             of the random displacements; amplitude over 0.625 mm
+//   contact=1                                     distance over d; 0: flanks pass through each other
 //   offset=0                                      of the seed crack from the middle [m]
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -20,7 +23,8 @@
 #include <string>
 #include <vector>
 
-#include "lattice/stencil_sheet.h"
+#include "lattice/seed.h"
+#include "lattice/simulation.h"
 
 using namespace latcon::lattice;
 
@@ -30,8 +34,9 @@ namespace
 struct Options
 {
   Grid::Kind grid = Grid::Kind::triangular;
+  Orientation orientation = Orientation::rows_along_crack;
   std::map<std::string, double> numbers{
-    {"m", 2.},           {"rotation", 0.},  {"half-width", 30.}, {"horizon", 1.},
+    {"m", 2.},           {"contact", 1.},   {"half-width", 30.}, {"horizon", 1.},
     {"viscosity", 1.},   {"strain-x", 1.3}, {"strain-y", 1.8},   {"breaking-stretch", 3.05},
     {"toughening", 1.6}, {"length", 0.15},  {"height", 0.035},   {"seed", 1.},
     {"noise", 0.05},     {"offset", 0.}};
@@ -49,6 +54,8 @@ Options read(int argc, char **argv)
     const double number = std::strtod(value.c_str(), &end);
     if (text == "grid=square" || text == "grid=triangular")
       options.grid = value == "square" ? Grid::Kind::square : Grid::Kind::triangular;
+    else if (text == "rows=along" || text == "rows=across")
+      options.orientation = value == "along" ? Orientation::rows_along_crack : Orientation::rows_across_crack;
     else if (options.numbers.count(name) != 0 && name != text && !value.empty() && *end == '\0')
       options.numbers[name] = number;
     else
@@ -64,34 +71,45 @@ void run(const Options &options)
   const MooneyRivlinBond law(0.1e6, 0.15e6);
   const Material material{
     944., {law, 2. / 3., 65.625 * options["viscosity"]}, Shell{law, 4. / 3., 196.875 * options["viscosity"]}};
-  const Grid grid{options.grid, d / options["m"], options["rotation"] * degree};
+  const Grid grid{options.grid, d / options["m"], 0., options.orientation};
+  const TriangularLattice sheet(
+    grid, ring_stencil(grid, lattice_rings(d, options.orientation, options["half-width"] * degree)), d, length,
+    options["height"]);
   const Eigen::Matrix2d F = Eigen::Vector2d(1. + options["strain-x"], 1. + options["strain-y"]).asDiagonal();
-  StencilSheet sheet(grid, {0., 0.}, length, options["height"], material, d,
-                     lattice_rings(d, Orientation::rows_along_crack, options["half-width"] * degree), F, 0.);
-  sheet.add_noise(options["noise"] * lattice_spacing, static_cast<std::uint64_t>(options["seed"]));
-  sheet.let_break(options["breaking-stretch"], {8.5e-3, options["toughening"]});
+  State state = homogeneous_state(sheet, material, F, Edges::held);
+  add_noise(state, sheet, options["noise"] * lattice_spacing, static_cast<std::uint64_t>(options["seed"]));
+  const ContactLaw contact = contact_like_nearest_bond(sheet, material, std::max(options["contact"], 1e-3) * d, 1., 1.);
+  // Stretches down to these are as in the cases of latcon.
+  const TimeStepping stepping = chebyshev_time_stepping(chebyshev_step(sheet, material, 0.45, contact),
+                                                        time_step_limits(sheet, material, 0.3, contact), 0);
+  Simulation simulation(sheet, material, std::move(state), stepping,
+                        Fracture(sheet, material, options["breaking-stretch"],
+                                 BehindTipToughening{8.5e-3, options["toughening"]}, F));
+  if (options["contact"] > 0.)
+    simulation.enable_contact(contact);
   // Between rows, whatever the grid.
-  sheet.cut(length / 15., length / 7.5, options["offset"] + 0.25 * grid.spacing);
+  simulation.cut_bonds(
+    bonds_across(sheet, length / 15., length / 7.5, options["offset"] + 0.25 * grid.spacing));
   std::printf("# %zu points, %zu half-bonds, %u stages a step of %.3g s\nt,X,Y\n", sheet.n_sites(),
-              sheet.stencil().size(), sheet.stages(), sheet.resolving_step());
+              sheet.n_kinds(), stepping.stages, stepping.step);
 
   const double from = length / 3., to = 0.9 * length;
   std::vector<Eigen::Vector3d> path; // t, X, Y
-  EnergyBalance at_start = sheet.energies();
+  EnergyBalance at_start = simulation.energies();
   double tip = 0.;
-  while (tip < to && sheet.time() < 0.02)
+  while (tip < to && simulation.state().time < 0.02)
   {
-    sheet.step();
-    const Eigen::Vector2d X = sheet.tip() ? sheet.reference(*sheet.tip()) : Eigen::Vector2d(0., 0.);
+    simulation.step();
+    const Eigen::Vector2d X = simulation.tip() ? sheet.reference(*simulation.tip()) : Eigen::Vector2d(0., 0.);
     if (X.x() <= tip)
       continue;
     tip = X.x();
-    std::printf("%.9g,%.9g,%.9g\n", sheet.time(), X.x(), X.y());
+    std::printf("%.9g,%.9g,%.9g\n", simulation.state().time, X.x(), X.y());
     if (tip < from)
       continue;
     if (path.empty())
-      at_start = sheet.energies();
-    path.emplace_back(sheet.time(), X.x(), X.y());
+      at_start = simulation.energies();
+    path.emplace_back(simulation.state().time, X.x(), X.y());
   }
   if (path.size() < 3)
     throw std::runtime_error("the crack stopped at X = " + std::to_string(100. * tip) + " cm");
@@ -102,7 +120,7 @@ void run(const Options &options)
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d &point : path)
     moments += (point - mean) * (point - mean).transpose() / static_cast<double>(path.size());
-  const EnergyBalance end = sheet.energies();
+  const EnergyBalance end = simulation.energies();
   const double advance = path.back()[1] - path.front()[1];
   std::printf("# speed %.2f m/s, rms of the path %.3f mm, mean Y %.3f mm\n", moments(0, 1) / moments(0, 0),
               1e3 * std::sqrt(moments(2, 2)), 1e3 * mean[2]);

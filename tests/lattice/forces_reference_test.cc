@@ -120,7 +120,7 @@ State random_state(const TriangularLattice &sheet, const Material &material, uns
   return state;
 }
 
-constexpr std::array<double, n_bond_kinds> retraction{{1.3, 1.35, 1.4, 1.3, 1.35, 1.4, 1.3, 1.35, 1.4}};
+const std::vector<double> retraction{1.3, 1.35, 1.4, 1.3, 1.35, 1.4, 1.3, 1.35, 1.4};
 
 TEST(Forces, AreThoseOfTheReference)
 {

@@ -20,10 +20,10 @@ inline std::vector<std::array<double, 3>> overstressed_branches(const latcon::la
                                                                 std::size_t kind, double stretch)
 {
   std::vector<std::array<double, 3>> branches;
-  const latcon::lattice::BondHistory::Kind &history = state.history.kinds[kind];
   if (const auto *memory = std::get_if<latcon::lattice::MaxwellMemory>(&shell.memory))
     for (std::size_t i = 0; i < memory->branches().size(); ++i)
     {
+      const latcon::lattice::BondHistory::Kind &history = state.history.kinds[kind];
       const auto &[modulus, time] = memory->branches()[i];
       branches.push_back({history.variables[i][place] + modulus * (stretch - history.stretch[place]), modulus, time});
     }
@@ -58,7 +58,7 @@ inline double memory_dissipation(const latcon::lattice::State &state, const latc
 inline ReferenceForces
 reference_forces(const latcon::lattice::State &state, const latcon::lattice::TriangularLattice &sheet,
                  const latcon::lattice::Material &material,
-                 const std::array<double, latcon::lattice::n_bond_kinds> &retraction_stretch = {})
+                 const std::vector<double> &retraction_stretch = std::vector<double>(latcon::lattice::n_bond_kinds))
 {
   using Eigen::Vector2d;
   const latcon::lattice::Field zero(sheet.n_places(), 0.);

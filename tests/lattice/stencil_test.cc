@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "lattice/bonds/bond_law.h"
+#include "lattice/triangular_lattice.h"
 #include "support/largest_error.h"
 
 namespace lattice_stencil_test
