@@ -156,7 +156,7 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
   for (const std::size_t place : places)
   {
     state.removed[place] = 1;
-    state.held[place] = 0;
+    state.held[place] = state.rollers[place] = 0;
     state.inverse_mass[place] = 0.;
     state.vx[place] = state.vy[place] = state.ax[place] = state.ay[place] = 0.;
   }

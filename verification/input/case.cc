@@ -279,6 +279,7 @@ void Case::declare(Parameters &p)
         "eps_y: engineering strain along y; the stretch is 1 + eps_y", Presence::required);
 
   p.add("Loading", "shear", shear, Between{-1000., 1000.}, "1", "F_xy: displacement along x over undeformed y");
+  history.declare(p);
 
   p.add("Lattice", "solution", solution, {{"relaxed", Solution::relaxed}, {"motion", Solution::motion}},
         "what `latcon lattice` computes: static equilibrium, or the motion until the end time");
@@ -381,6 +382,7 @@ void Case::check(Parameters &p)
     if (has_shell(number))
       shell(number).check(p, shell_sections[number], longest_stretch());
   disorder.check(p);
+  history.check(p);
 
   check_size(*this, p);
   check_cutout(*this, p);
@@ -451,7 +453,10 @@ double Case::longest_stretch() const
     return *breaking_stretch * disorder.strength.distribution().largest() *
            (toughening == Toughening::none ? 1. : toughening_factor);
   constexpr double margin = 1.2;
-  return margin * std::max(1., support::singular_values(deformation())(0));
+  double longest = 1.;
+  for (const Eigen::Matrix2d &F : history.deformations(deformation()))
+    longest = std::max(longest, support::singular_values(F)(0));
+  return margin * longest;
 }
 
 Eigen::Matrix2d Case::deformation() const

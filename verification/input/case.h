@@ -11,6 +11,7 @@
 #include "lattice/time_step.h"
 #include "verification/input/continuum_case.h"
 #include "verification/input/disorder_case.h"
+#include "verification/input/loading_history.h"
 #include "verification/input/parameters.h"
 #include "verification/input/user_law.h"
 
@@ -102,6 +103,7 @@ struct Case
   double strain_x = 0.; ///< eps_x [-]
   double strain_y = 0.; ///< eps_y [-]
   double shear = 0.;    ///< F_xy [-]
+  LoadingHistory history;
 
   // Lattice
   enum class Solution
