@@ -52,7 +52,7 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
   if (fracture_)
     fracture_->configure(state_, forces_);
   forces_.set_shortness_threshold(watched_stretch(time_stepping, lattice_, material_,
-                                                  state_.toughened_stretch * material_.disorder.strength.largest()));
+                                                  fracture_ ? fracture_->largest_limit() : unbreakable));
   forces_.update_memory(state_);
   reinitialize_forces();
   initial_energy_ = stored_energy() + kinetic_energy(state_, band_);

@@ -104,6 +104,11 @@ public:
   const Forces &forces() const { return forces_; }
   double time_step() const { return time_stepping_.step; } ///< of a whole step [s]
   std::optional<std::size_t> tip() const;
+  /// See Fracture::nearest_to_breaking(), of state(), which must be complete; none if bonds do not break.
+  std::optional<StretchedBond> nearest_to_breaking() const
+  {
+    return fracture_ ? fracture_->nearest_to_breaking(state_) : std::nullopt;
+  }
   std::size_t n_broken() const { return n_broken_; } ///< bonds broken since the start, the seed's not counted
   std::size_t n_divided_steps() const { return n_divided_steps_; } ///< time steps made in parts since the start
   EnergyBalance energies() const;

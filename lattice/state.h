@@ -41,7 +41,7 @@ struct State
   BondStates bonds;                       ///< by the place where they start
   BondHistory history;                    ///< of bonds with a memory; see relax_memory()
   BondFactors stiffness;                  ///< of cross-sections, hence of all forces of bonds; from homogeneous_state()
-  double breaking_stretch = unbreakable;  ///< lam_f [-], beyond which a bond breaks; set by Fracture::configure()
+  double breaking_stretch = unbreakable;  ///< [-], below which no bond breaks; set by Fracture::configure()
   double toughened_stretch = unbreakable; ///< that of toughened bonds [-]; set likewise
   BondFactors strength;                   ///< of both, bond by bond; set likewise
   Field inverse_mass;                     ///< h / m [m/kg]; 0 at held and removed sites and in the margin
@@ -75,7 +75,7 @@ std::vector<std::size_t> sites_at(const TriangularLattice &lattice, const Materi
 /// which stretch they break.
 State homogeneous_state(const RowPartition &band, const Material &material, const Eigen::Matrix2d &F, Edges edges);
 
-/// Stretch beyond which a bond that is present breaks [-].
+/// Stretch beyond which a bond that is present may break [-]; see BreakingRule::smallest_limit().
 inline double breaking_stretch_of(const State &state, const Bond &bond)
 {
   return (state.bonds.toughened(bond.near, bond.kind) ? state.toughened_stretch : state.breaking_stretch) *

@@ -9,6 +9,7 @@
 #include "lattice/fracture.h"
 #include "lattice/material.h"
 #include "lattice/time_step.h"
+#include "verification/input/breaking_case.h"
 #include "verification/input/continuum_case.h"
 #include "verification/input/disorder_case.h"
 #include "verification/input/loading_history.h"
@@ -117,6 +118,7 @@ struct Case
 
   // Fracture
   std::optional<double> breaking_stretch; ///< lam_f [-]
+  BreakingCase breaking;
   enum class Toughening
   {
     none,
@@ -209,6 +211,11 @@ struct Case
   /// F = [1 + eps_x, F_xy; 0, 1 + eps_y] of the loaded sheet [-].
   Eigen::Matrix2d deformation() const;
   lattice::Toughening toughening_rule() const;
+  /// Rule by which bonds break, if there is a breaking stretch.
+  std::shared_ptr<const lattice::BreakingRule> breaking_rule() const
+  {
+    return breaking.make(material(), *breaking_stretch);
+  }
   /// Indices of the sites that the seed crack removes, by increasing X. @throws std::invalid_argument if there are none
   std::vector<std::size_t> seed(const lattice::TriangularLattice &sheet) const;
   lattice::ContactLaw contact_law() const;

@@ -32,7 +32,7 @@ std::unique_ptr<lattice::Simulation> cracked_sheet(const Case &input, const latt
   lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
   auto simulation = std::make_unique<lattice::Simulation>(
     band, material, std::move(state), input.fracture_time_stepping(),
-    lattice::Fracture(band, material, *input.breaking_stretch, input.toughening_rule(), input.deformation()));
+    lattice::Fracture(band, material, input.breaking_rule(), input.toughening_rule(), input.deformation()));
   for (const lattice::Constraint &constraint : constraints)
     simulation->constrain(constraint);
   if (!edges.left || !edges.right)
