@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "lattice/breaking/critical_stretch.h"
+#include "lattice/critical_stretch.h"
 #include "lattice/energy.h"
 #include "lattice/integrator.h"
 

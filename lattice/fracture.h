@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lattice/archive_rows.h"
-#include "lattice/breaking/breaking_rule.h"
+#include "lattice/breaking_rule.h"
 #include "lattice/crack_tip.h"
 #include "lattice/forces.h"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <string>
 
-#include "lattice/breaking/bond_energy.h"
-#include "lattice/breaking/critical_stretch.h"
-#include "lattice/breaking/rate_stretch.h"
+#include "lattice/bond_energy.h"
+#include "lattice/critical_stretch.h"
+#include "lattice/rate_stretch.h"
 #include "verification/input/case.h"
 
 namespace latcon::input
@@ -59,19 +59,23 @@ double BreakingCase::largest_factor() const
   return largest;
 }
 
-std::shared_ptr<const lattice::BreakingRule> BreakingCase::make(const lattice::Material &material, double stretch) const
+std::shared_ptr<const lattice::BreakingRule> BreakingCase::make(const Case &input) const
 {
+  const double stretch = *input.breaking_stretch;
   if (rule == Rule::rate_stretch)
     return std::make_shared<lattice::RateStretch>(stretch, rate_factor, rate_time);
   if (rule == Rule::bond_energy)
+  {
+    const lattice::Material material = input.material();
     return std::make_shared<lattice::BondEnergy>(material, lattice::energy(material.nearest.law, stretch));
+  }
   std::array<double, lattice::n_shells> of_shells{};
   of_shells.fill(stretch);
   for (std::size_t shell = 0; shell < std::min(shell_factors.size(), lattice::n_shells); ++shell)
     of_shells[shell] *= shell_factors[shell];
   // Shells that the sheet lacks do not lower the smallest limit.
   for (std::size_t shell = 0; shell < lattice::n_shells; ++shell)
-    if (material.in_shell(shell) == nullptr)
+    if (!input.has_shell(shell))
       of_shells[shell] = of_shells[0];
   return std::make_shared<lattice::CriticalStretch>(of_shells);
 }

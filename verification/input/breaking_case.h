@@ -3,8 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "lattice/breaking/breaking_rule.h"
-#include "lattice/material.h"
+#include "lattice/breaking_rule.h"
 
 namespace latcon::input
 {
@@ -31,8 +30,8 @@ struct BreakingCase
   void check(const Case &input, Parameters &parameters) const;
   /// Largest limit of a bond that has not toughened over lam_f, for rules that do not ask for the law of the bonds.
   double largest_factor() const;
-  /// @param stretch lam_f [-]
-  std::shared_ptr<const lattice::BreakingRule> make(const lattice::Material &material, double stretch) const;
+  /// The rule. @param input with a breaking stretch; bond-energy needs its material
+  std::shared_ptr<const lattice::BreakingRule> make(const Case &input) const;
 };
 
 } // namespace latcon::input

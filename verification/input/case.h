@@ -212,10 +212,7 @@ struct Case
   Eigen::Matrix2d deformation() const;
   lattice::Toughening toughening_rule() const;
   /// Rule by which bonds break, if there is a breaking stretch.
-  std::shared_ptr<const lattice::BreakingRule> breaking_rule() const
-  {
-    return breaking.make(material(), *breaking_stretch);
-  }
+  std::shared_ptr<const lattice::BreakingRule> breaking_rule() const { return breaking.make(*this); }
   /// Indices of the sites that the seed crack removes, by increasing X. @throws std::invalid_argument if there are none
   std::vector<std::size_t> seed(const lattice::TriangularLattice &sheet) const;
   lattice::ContactLaw contact_law() const;

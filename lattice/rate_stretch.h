@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "lattice/breaking/breaking_rule.h"
+#include "lattice/breaking_rule.h"
 
 namespace latcon::lattice
 {

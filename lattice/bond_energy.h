@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lattice/breaking/breaking_rule.h"
+#include "lattice/breaking_rule.h"
 #include "lattice/material.h"
 
 namespace latcon::lattice

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "lattice/breaking/breaking_rule.h"
+#include "lattice/breaking_rule.h"
 #include "lattice/material.h"
 
 namespace latcon::lattice

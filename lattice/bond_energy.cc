@@ -1,4 +1,4 @@
-#include "lattice/breaking/bond_energy.h"
+#include "lattice/bond_energy.h"
 
 #include <algorithm>
 #include <limits>
@@ -10,7 +10,7 @@ namespace
 {
 
 // Beyond it no law is evaluated.
-constexpr double longest = 1e6;
+constexpr double longest_searched = 1e6;
 
 } // namespace
 
@@ -27,9 +27,9 @@ double BondEnergy::stretch_at(std::size_t shell, double energy) const
   if (!(energy > 0.))
     return 1.;
   double low = 1., high = 2.;
-  for (; high < longest && stored(high) < energy; high *= 2.)
+  for (; high < longest_searched && stored(high) < energy; high *= 2.)
     low = high;
-  if (high >= longest)
+  if (high >= longest_searched)
     return std::numeric_limits<double>::infinity();
   while (high - low > 4e-16 * high)
   {
