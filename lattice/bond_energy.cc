@@ -44,7 +44,8 @@ double BondEnergy::limit(const Bond &bond) const
   return stretch_at(bond.shell, energy_ * bond.toughening * bond.strength / bond.stiffness);
 }
 
-// The energy grows faster than the stretch beyond 1, so that the strongest bond has the smallest limit over its strength.
+// The energy grows faster than the stretch beyond 1, so that the strongest bond has the smallest limit over its
+// strength.
 double BondEnergy::smallest_limit(double toughening) const
 {
   const double strongest = material_.disorder.strength.largest();

@@ -8,8 +8,8 @@ namespace latcon::lattice
 
 /// When a bond breaks: the stretch beyond which it does, which may depend on the bond and its motion.
 ///
-/// Loops over rows only screen: they flag rows with a bond beyond smallest_limit(). The rule is asked about the bonds of
-/// these rows alone, one by one.
+/// Loops over rows only screen: they flag rows with a bond beyond smallest_limit(). The rule is asked about the bonds
+/// of these rows alone, one by one.
 class BreakingRule
 {
 public:

@@ -101,7 +101,8 @@ void PrescribedMotion::for_each_known(const State &state, const Visitor &visit) 
 
 bool PrescribedMotion::prescribe(State &state, double from, double to)
 {
-  const AffineVelocity velocity = constraint_.motion && released_ == 0 ? constraint_.motion(from, to) : AffineVelocity{};
+  const AffineVelocity velocity =
+    constraint_.motion && released_ == 0 ? constraint_.motion(from, to) : AffineVelocity{};
   if (released_ != 0 || velocity == velocity_)
     return false;
   velocity_ = velocity;
@@ -126,7 +127,8 @@ void PrescribedMotion::append_rollers(const State &state, std::vector<RollerVelo
                  {
                    const Eigen::Vector2d v = velocity_.at(band_.lattice().reference(place));
                    for (const unsigned int component : {0u, 1u})
-                     if (band_.owns(place) && state.held[place] == 0 && (components(constraint_) >> component & 1u) != 0)
+                     if (band_.owns(place) && state.held[place] == 0 &&
+                         (components(constraint_) >> component & 1u) != 0)
                        rollers.push_back({place, component, v[component]});
                  });
 }

@@ -103,8 +103,8 @@ Fracture::Event Fracture::event(const State &state, const Bond &bond, const Fiel
 {
   const auto [near, kind, far] = bond;
   const Eigen::Vector2d along(state.x[far] - state.x[near], state.y[far] - state.y[near]);
-  const double rate = along.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near])) /
-                      (along.norm() * lattice_.rest_length(kind));
+  const double rate =
+    along.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near])) / (along.norm() * lattice_.rest_length(kind));
   const double longest = limit(state, bond, rate);
   const double shortest = state.bonds.toughened(near, kind) ? 0. : retraction_stretch_[kind];
   const auto among = [](double value, double from, double to) {

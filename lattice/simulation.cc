@@ -51,8 +51,8 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
     throw std::invalid_argument("the stiffness of the bonds does not have the disorder of the material");
   if (fracture_)
     fracture_->configure(state_, forces_);
-  forces_.set_shortness_threshold(watched_stretch(time_stepping, lattice_, material_,
-                                                  fracture_ ? fracture_->largest_limit() : unbreakable));
+  forces_.set_shortness_threshold(
+    watched_stretch(time_stepping, lattice_, material_, fracture_ ? fracture_->largest_limit() : unbreakable));
   forces_.update_memory(state_);
   reinitialize_forces();
   initial_energy_ = stored_energy() + kinetic_energy(state_, band_);
@@ -379,8 +379,9 @@ EnergyBalance Simulation::energies() const
   double boundary = band_.sum(work_.boundary);
   for (const std::vector<double> &work : work_.constraints)
     boundary += band_.sum(work);
-  return {stored_energy(),          kinetic_energy(state_, band_), band_.sum(work_.viscous), broken_,
-          band_.sum(work_.contact), boundary,                      initial_energy_};
+  return {stored_energy(), kinetic_energy(state_, band_), band_.sum(work_.viscous),
+          broken_,         band_.sum(work_.contact),      boundary,
+          initial_energy_};
 }
 
 std::vector<MechanismEnergy> Simulation::mechanism_energies() const

@@ -123,11 +123,11 @@ private:
   /// Powers per sheet thickness [W/m], and what they have added up to [J/m]; one a row of the sheet.
   struct Ledger
   {
-    std::vector<double> viscous;                 // dissipated by dashpots
-    std::vector<double> contact;                 // from the sheet into contacts
-    std::vector<double> boundary;                // into the sheet from forces on its sites
+    std::vector<double> viscous;                  // dissipated by dashpots
+    std::vector<double> contact;                  // from the sheet into contacts
+    std::vector<double> boundary;                 // into the sheet from forces on its sites
     std::vector<std::vector<double>> constraints; // into the sheet from each constraint
-    std::vector<std::vector<double>> mechanisms; // dissipated by each mechanism of the memories; a part of `viscous`
+    std::vector<std::vector<double>> mechanisms;  // dissipated by each mechanism of the memories; a part of `viscous`
     Ledger(std::size_t rows, std::size_t n_mechanisms)
       : viscous(rows, 0.), contact(rows, 0.), boundary(rows, 0.), mechanisms(n_mechanisms, viscous)
     {

@@ -82,9 +82,9 @@ inline double breaking_stretch_of(const State &state, const Bond &bond)
          state.strength.of(bond.near, bond.kind);
 }
 
-/// Moves every site in the rows that `band` knows, where it is free, by a random displacement, uniform in [-amplitude, amplitude]
-/// along x and y. The displacement of a site depends on (seed, place) alone, so it is the same on every machine and in
-/// any order.
+/// Moves every site in the rows that `band` knows, where it is free, by a random displacement, uniform in [-amplitude,
+/// amplitude] along x and y. The displacement of a site depends on (seed, place) alone, so it is the same on every
+/// machine and in any order.
 /// @param amplitude [m], >= 0
 void add_noise(State &state, const RowPartition &band, double amplitude, std::uint64_t seed);
 

@@ -55,12 +55,14 @@ TEST(BreakingRule, OfRateToughensBondsThatStretchFast)
   EXPECT_NEAR(rule.limit({1, 2., 1., 1., 1e12}), 9., 1e-6);
 }
 
-// In a sheet at one stretch in motion, the bonds that break are those beyond their own limit, with long steps and short.
+// In a sheet at one stretch in motion, the bonds that break are those beyond their own limit, with long steps and
+// short.
 TEST(Fracture, AsksTheRuleAboutEachBond)
 {
   const TriangularLattice sheet = sheets::square(12);
   const Eigen::Matrix2d F = sheets::stretched(1.5, 1.5), L = sheets::stretched(100., 100.);
-  const auto broken = [&](const TimeStepping &how, std::shared_ptr<const BreakingRule> rule, const Eigen::Matrix2d &rate)
+  const auto broken =
+    [&](const TimeStepping &how, std::shared_ptr<const BreakingRule> rule, const Eigen::Matrix2d &rate)
   {
     Simulation simulation(sheet, rubber, homogeneous_state(sheet, rubber, F, Edges::held), how,
                           Fracture(sheet, rubber, std::move(rule), NoToughening{}, F));
@@ -81,8 +83,10 @@ TEST(Fracture, AsksTheRuleAboutEachBond)
   const Eigen::Matrix2d still = Eigen::Matrix2d::Zero();
   for (const TimeStepping how : {TimeStepping{1e-9}, TimeStepping{1e-8, 3}})
   {
-    EXPECT_EQ(broken(how, std::make_shared<CriticalStretch>(std::array<double, n_shells>{2., 1.4, 2.}), still).first, 0u);
-    EXPECT_GT(broken(how, std::make_shared<CriticalStretch>(std::array<double, n_shells>{2., 1.4, 2.}), still).second, 0u);
+    EXPECT_EQ(broken(how, std::make_shared<CriticalStretch>(std::array<double, n_shells>{2., 1.4, 2.}), still).first,
+              0u);
+    EXPECT_GT(broken(how, std::make_shared<CriticalStretch>(std::array<double, n_shells>{2., 1.4, 2.}), still).second,
+              0u);
     EXPECT_GT(broken(how, std::make_shared<RateStretch>(1.4, 1.2, 1.), still).first, 0u);
     EXPECT_EQ(broken(how, std::make_shared<RateStretch>(1.4, 1.2, 1.), L).first, 0u);
     EXPECT_GT(broken(how, std::make_shared<BondEnergy>(rubber, energy(rubber.nearest.law, 1.45)), still).first, 0u);

@@ -14,7 +14,6 @@ using namespace latcon::lattice;
 
 const Eigen::Matrix2d start = sheets::stretched(1.2, 1.4), low = sheets::stretched(1.2, 1.25);
 
-
 class Constraints : public testing::TestWithParam<bool>
 {
 protected:

@@ -126,7 +126,8 @@ private:
     }
   }
 
-  // The input has been checked, so the computed state is wrong. The last valid one is shown, and the records until then.
+  // The input has been checked, so the computed state is wrong. The last valid one is shown, and the records until
+  // then.
   [[noreturn]] void fail(const std::string &cause, const std::size_t number)
   {
     std::string records = "crack.json is of what the crack did until then";
@@ -202,8 +203,9 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
                      {"Fracture/shell factors"});
   for (const std::size_t id : {2, 3})
     if (input.continuum.edges[id].is_roller())
-      parameters.error(input.continuum.edges[id].name + "/condition",
-                       "a crack of the finite elements has no rollers; give displacement = loading for both components");
+      parameters.error(
+        input.continuum.edges[id].name + "/condition",
+        "a crack of the finite elements has no rollers; give displacement = loading for both components");
   const bridge::DamagedSheet sheet = bridge::damaged_sheet(input, parameters);
   resources::check_steps(input, sheet.step, parameters);
   parameters.finish();

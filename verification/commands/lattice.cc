@@ -3,8 +3,8 @@
 
 #include "lattice/relaxation.h"
 #include "verification/bridge/bloch.h"
-#include "verification/bridge/small_strain.h"
 #include "verification/bridge/lattice_sheet.h"
+#include "verification/bridge/small_strain.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
 #include "verification/commands/dry_run.h"

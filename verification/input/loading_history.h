@@ -11,8 +11,8 @@ namespace latcon::input
 struct Case;
 class Parameters;
 
-/// Entries of a case for strains of its edges that change during a motion of the lattice: piecewise linear in time, from
-/// the loading at the start through the strains of each instant, and constant from the last one on.
+/// Entries of a case for strains of its edges that change during a motion of the lattice: piecewise linear in time,
+/// from the loading at the start through the strains of each instant, and constant from the last one on.
 struct LoadingHistory
 {
   std::vector<double> times;    ///< [s]
