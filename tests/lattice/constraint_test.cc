@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/largest_error.h"
 #include "tests/lattice/sheets.h"
 
 namespace constraint_test
@@ -71,7 +72,8 @@ TEST_P(Constraints, RollersSlideAlongOneAxis)
   for (const std::size_t place : rolling)
   {
     EXPECT_NEAR(moved.state().y[place], low(1, 1) * sheet.reference(place).y(), 1e-12 * sheet.length());
-    slid = std::max(slid, std::abs(moved.state().x[place] - start(0, 0) * sheet.reference(place).x()));
+    slid =
+      latcon::support::largest_of({slid, std::abs(moved.state().x[place] - start(0, 0) * sheet.reference(place).x())});
   }
   EXPECT_GT(slid, 1e-2 * sheet.spacing());
   expect_closed_ledger(moved);
@@ -86,7 +88,8 @@ TEST_P(Constraints, LetSitesGoWithTheirMotion)
     moved.step();
   double off = 0.;
   for (const std::size_t place : grip)
-    off = std::max(off, std::abs(moved.state().y[place] - start(1, 1) * sheet.reference(place).y()));
+    off =
+      latcon::support::largest_of({off, std::abs(moved.state().y[place] - start(1, 1) * sheet.reference(place).y())});
   EXPECT_GT(off, sheet.spacing());
   EXPECT_EQ(moved.state().held[grip[grip.size() / 2]], 0);
   expect_closed_ledger(moved);
