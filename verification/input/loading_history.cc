@@ -41,9 +41,9 @@ void LoadingHistory::check(Parameters &p) const
 std::vector<Eigen::Matrix2d> LoadingHistory::deformations(const Eigen::Matrix2d &start) const
 {
   std::vector<Eigen::Matrix2d> found(times.size() + 1, start);
-  for (std::size_t i = 0; i < strain_x.size(); ++i)
+  for (std::size_t i = 0; i < std::min(strain_x.size(), times.size()); ++i)
     found[i + 1](0, 0) = 1. + strain_x[i];
-  for (std::size_t i = 0; i < strain_y.size(); ++i)
+  for (std::size_t i = 0; i < std::min(strain_y.size(), times.size()); ++i)
     found[i + 1](1, 1) = 1. + strain_y[i];
   return found;
 }

@@ -22,7 +22,7 @@ struct LoadingHistory
   bool empty() const { return times.empty(); }
   void declare(Parameters &parameters);
   void check(Parameters &parameters) const;
-  /// Deformations F at the start and at each instant.
+  /// Deformations F at the start and at each instant; surplus strains, which check() refuses, are left out.
   std::vector<Eigen::Matrix2d> deformations(const Eigen::Matrix2d &start) const;
 };
 
