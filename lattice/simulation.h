@@ -53,8 +53,9 @@ public:
   /// @throws std::logic_error without fracture rules; std::invalid_argument for what is no bond of a site
   void cut_bonds(const std::vector<std::pair<std::size_t, std::size_t>> &bonds);
 
-  /// Prescribes the motion of sites from the next step on; those that move in the wanted components already bring
-  /// their kinetic energy to the initial one. @return number of the constraint
+  /// Stops sites, and prescribes their motion from the next step on. Kinetic energy that they had leaves the initial
+  /// one.
+  /// @return number of the constraint
   /// @throws std::invalid_argument for what is no site; std::logic_error where another constraint holds a component
   std::size_t constrain(const Constraint &constraint);
   /// Gives a constraint another motion from the next step on.
