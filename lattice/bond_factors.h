@@ -17,7 +17,7 @@ struct BondFactors
   std::vector<Field> kinds; ///< empty: all 1, or no such bonds [-]
 
   /// Factor of a bond [-].
-  double of(std::size_t place, std::size_t kind) const 
+  double of(std::size_t place, std::size_t kind) const
   {
     return kinds.empty() || kinds[kind].empty() ? 1. : kinds[kind][place];
   }

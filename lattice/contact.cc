@@ -192,8 +192,7 @@ bool Contact::may_touch(const State &state, std::size_t first, std::size_t secon
     for (std::size_t kind = 0; kind < state.bonds.n_kinds(); ++kind)
       if (lattice_.bond(near, kind).far == far)
         return !state.bonds.present(near, kind);
-  return lattice_.is_triangular() ||
-         (lattice_.reference(second) - lattice_.reference(first)).norm() >= law_.distance;
+  return lattice_.is_triangular() || (lattice_.reference(second) - lattice_.reference(first)).norm() >= law_.distance;
 }
 
 // Returns whether the sites of a pair are of two ranks of which one does not know the other's site.

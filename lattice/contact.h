@@ -21,9 +21,9 @@ struct ContactLaw
   double viscosity; ///< c per sheet thickness [Pa s], >= 0
 };
 
-/// A contact at `distance` [m] whose spring is `stiffness` times that of a nearest-neighbour bond of the lattice at rest,
-/// A0 psi''(1) / l, and whose dashpot is `viscosity` times the bond's A0 eta / l. Both times the square of the area of a
-/// site over that of the lattice, so that flanks repel each other alike on grids of any spacing.
+/// A contact at `distance` [m] whose spring is `stiffness` times that of a nearest-neighbour bond of the lattice at
+/// rest, A0 psi''(1) / l, and whose dashpot is `viscosity` times the bond's A0 eta / l. Both times the square of the
+/// area of a site over that of the lattice, so that flanks repel each other alike on grids of any spacing.
 ContactLaw contact_like_nearest_bond(const TriangularLattice &lattice, const Material &material, double distance,
                                      double stiffness, double viscosity);
 
@@ -31,9 +31,10 @@ ContactLaw contact_like_nearest_bond(const TriangularLattice &lattice, const Mat
 ///
 /// Candidates are the sites that have lost at least one bond and were not cut out; held ones may be among them. Two of
 /// them touch when they are close and no bond joins them. Each candidate has a Verlet list of the candidates that are
-/// closer than distance + skin where both were listed. Sites of a grid finer than the lattice that never had a bond with
-/// each other touch only if they are at least the distance apart in the reference configuration. A candidate that has moved half the skin since is listed again,
-/// alone, with link cells. Pairs that touch are summed one after the other, by increasing places.
+/// closer than distance + skin where both were listed. Sites of a grid finer than the lattice that never had a bond
+/// with each other touch only if they are at least the distance apart in the reference configuration. A candidate that
+/// has moved half the skin since is listed again, alone, with link cells. Pairs that touch are summed one after the
+/// other, by increasing places.
 ///
 /// Ranks that share a sheet all follow where all candidates were listed, which their owners tell the others. Each rank
 /// lists the pairs that have a site in its rows and computes the forces on these. Positions and velocities between

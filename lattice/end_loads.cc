@@ -29,8 +29,8 @@ Eigen::Matrix2d fast_tangent_along_x(const TriangularLattice &lattice, const Mat
     if (const Shell *shell = material.shell(lattice, kind); shell && n_variables(shell->memory) > 0)
     {
       const Eigen::Vector2d N = lattice.bond_vector(kind) / lattice.rest_length(kind), n = (F * N).normalized();
-      tangent += cross_section(*shell, lattice, kind) * lattice.rest_length(kind) / lattice.site_area() * N.x() * N.x() *
-                 largest_stiffness(shell->memory) * n * n.transpose();
+      tangent += cross_section(*shell, lattice, kind) * lattice.rest_length(kind) / lattice.site_area() * N.x() *
+                 N.x() * largest_stiffness(shell->memory) * n * n.transpose();
     }
   return tangent;
 }

@@ -52,7 +52,8 @@ void for_each_mechanism(const State &state, const TriangularLattice &lattice, co
     return;
   const BondHistory::Kind &history = state.history.kinds[kind];
   const Shell &shell = *material.shell(lattice, kind);
-  const double volume = state.stiffness.of(place, kind) * (cross_section(shell, lattice, kind) * lattice.rest_length(kind));
+  const double volume =
+    state.stiffness.of(place, kind) * (cross_section(shell, lattice, kind) * lattice.rest_length(kind));
   std::array<double, max_history_variables> variables{};
   state.history.variables_of(place, kind, variables.data());
   for (std::size_t m = 0; m < n_mechanisms(shell.memory); ++m)

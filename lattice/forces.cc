@@ -152,8 +152,8 @@ void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrd
     if (work.fields != nullptr && row + 2 * reach_ + 1 < end)
       for (const Field *field : *work.fields)
         scratch.ahead.push_back(&(*field)[lattice_.index(index + lattice_.reach() + 1, 0)]);
-    const kernels::RowSums sums = lattice_.is_triangular() ? bonds_of_row(motion, index, row, scratch)
-                                                           : scatter_row(motion, index, begin, scratch);
+    const kernels::RowSums sums =
+      lattice_.is_triangular() ? bonds_of_row(motion, index, row, scratch) : scatter_row(motion, index, begin, scratch);
     row_viscous_power_[index] = sums.viscous_power;
     for (std::size_t m = 0; m < row_mechanism_power_.size(); ++m)
       row_mechanism_power_[m][index] = scratch.mechanism_power[m];
@@ -357,8 +357,9 @@ void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, c
 
 kernels::Overstress Forces::overstress(const State &state, const Bond &bond, double stretch) const
 {
-  kernels::Overstress over = kernels::overstress(memory_steps_[lattice_.shell(bond.kind)], constants_[bond.kind], stretch, bond.near,
-                                                 remembered_from<const double *>(state.history.kinds[bond.kind], 0));
+  kernels::Overstress over =
+    kernels::overstress(memory_steps_[lattice_.shell(bond.kind)], constants_[bond.kind], stretch, bond.near,
+                        remembered_from<const double *>(state.history.kinds[bond.kind], 0));
   const double factor = state.stiffness.of(bond.near, bond.kind);
   over.axial *= factor;
   for (double &power : over.dissipation)

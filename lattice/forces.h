@@ -19,8 +19,8 @@ namespace latcon::lattice
 /// with the overstress A0 q of its memory (eq. (L.27)) if the state has a history. Every thread takes some of the rows
 /// from its lower to its upper end. It computes the bonds that start in a row, keeps those of the last three rows, and
 /// lets the sites of the row gather their bonds while these are in cache. Bonds that reach into these from below
-/// are computed once more there. The order of a gather is symmetric under both mirrors of the triangular lattice, so the
-/// bits of a result depend neither on the number of threads nor on which side of a symmetry line a site stands.
+/// are computed once more there. The order of a gather is symmetric under both mirrors of the triangular lattice, so
+/// the bits of a result depend neither on the number of threads nor on which side of a symmetry line a site stands.
 ///
 /// Other stencils have too many half-bonds to keep: each adds to the sums of the sites at its ends, half-bond by
 /// half-bond of the rows from the lowest up, which does not depend on the number of threads either.
@@ -132,7 +132,8 @@ private:
   {
   public:
     SiteSums(const TriangularLattice &lattice, std::size_t n_rows)
-      : stride_(lattice.stride()), column_(lattice.index(0, 0) % stride_), n_rows_(n_rows), values_(2 * n_rows * stride_)
+      : stride_(lattice.stride()), column_(lattice.index(0, 0) % stride_), n_rows_(n_rows),
+        values_(2 * n_rows * stride_)
     {
     }
     /// Sums along x (0) or y (1) in a row >= 0: column 0.

@@ -122,9 +122,9 @@ Fracture::Event Fracture::event(const State &state, const Bond &bond, const Fiel
 double Fracture::bond_energy(const State &state, const Bond &bond) const
 {
   const Shell &shell = *material_.shell(lattice_, bond.kind);
-  const double elastic =
-    state.stiffness.of(bond.near, bond.kind) * (cross_section(shell, lattice_, bond.kind) * lattice_.rest_length(bond.kind) *
-                                                energy(shell.law, stretch(state, lattice_, bond)));
+  const double elastic = state.stiffness.of(bond.near, bond.kind) *
+                         (cross_section(shell, lattice_, bond.kind) * lattice_.rest_length(bond.kind) *
+                          energy(shell.law, stretch(state, lattice_, bond)));
   return elastic + memory_energy(state, lattice_, material_, bond);
 }
 

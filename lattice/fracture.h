@@ -184,8 +184,8 @@ private:
   Toughening toughening_;
   double toughening_factor_;
   double breaking_stretch_, toughened_stretch_; // smallest limits
-  std::vector<double> retraction_stretch_; // by kind; none: not watched
-  double lookahead_ = 0.; // [s]
+  std::vector<double> retraction_stretch_;      // by kind; none: not watched
+  double lookahead_ = 0.;                       // [s]
   unsigned int tip_losses_;
   CrackTip tip_;
   double toughened_to_ = -std::numeric_limits<double>::infinity(); // X [m] behind which all bonds are toughened

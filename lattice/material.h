@@ -80,7 +80,8 @@ double cross_section(const Shell &shell, const TriangularLattice &lattice);
 /// A0 / h = s V / D [m] of the bonds of a kind; see TriangularLattice::section_length.
 double cross_section(const Shell &shell, const TriangularLattice &lattice, std::size_t kind);
 
-/// m / h = rho V [kg/m], (sqrt3 / 2) d^2 rho on the triangular lattice: mass of a site per sheet thickness (theory.md, eq. (L.1)).
+/// m / h = rho V [kg/m], (sqrt3 / 2) d^2 rho on the triangular lattice: mass of a site per sheet thickness (theory.md,
+/// eq. (L.1)).
 double site_mass(const Material &material, const TriangularLattice &lattice);
 
 } // namespace latcon::lattice

@@ -31,8 +31,8 @@ using SitesOfRanks = std::vector<std::vector<std::size_t>>;
 ///
 /// Every rank has a band of rows that follow each other, the lowest rank the lowest rows, none at all if there are more
 /// ranks than rows. Bonds reach some rows up and down, so besides its own a rank keeps the rows of a halo up to date,
-/// as many on either side, across a periodic edge as well. Own rows and halo are the rows that it knows. Places are those
-/// of the whole sheet on every rank.
+/// as many on either side, across a periodic edge as well. Own rows and halo are the rows that it knows. Places are
+/// those of the whole sheet on every rank.
 ///
 /// A lattice converts to the band of all its rows, for which nothing is communicated and MPI need not be running. Where
 /// a function is said to be collective, all ranks must call it.

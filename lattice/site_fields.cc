@@ -38,8 +38,8 @@ SiteEvaluator::SiteEvaluator(const TriangularLattice &lattice, const Material &m
     const Shell *shell = material.shell(lattice, kind);
     const Eigen::Vector2d R = lattice.bond_vector(kind);
     kinds_.push_back({R, R * R.transpose(), lattice.rest_length(kind),
-                    shell != nullptr ? cross_section(*shell, lattice, kind) : 0.,
-                    memory_step(shell != nullptr ? shell->memory : NoMemory(), 0.)});
+                      shell != nullptr ? cross_section(*shell, lattice, kind) : 0.,
+                      memory_step(shell != nullptr ? shell->memory : NoMemory(), 0.)});
   }
 }
 

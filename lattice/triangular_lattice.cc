@@ -97,7 +97,7 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
 Periodic TriangularLattice::periodic() const
 {
   return orientation() == Orientation::rows_along_crack ? Periodic{periodic_along_, periodic_across_}
-                                                       : Periodic{periodic_across_, periodic_along_};
+                                                        : Periodic{periodic_across_, periodic_along_};
 }
 
 double TriangularLattice::length() const

@@ -40,11 +40,12 @@ struct Bond
 
 /// A rectangular sheet in its reference configuration: sites of a grid, joined by the half-bonds of a stencil.
 ///
-/// The stencil is that of the triangular lattice (theory.md, section "The lattice"), or of rings of bonds on a triangular
-/// or square grid that is not rotated. Sites of a triangular grid stand in rows, spacing h along a row, row pitch
-/// (sqrt3 / 2) h, every second row shifted by h / 2 and one site shorter. The sheet is its own mirror image about the line y = 0, to the last bit of its coordinates. About the
-/// centre line along y it is, to round-off, if the number of rows is odd, as it always is with rows along x; not if it
-/// is even, since the first row then has a site more than the last. With rows along x:
+/// The stencil is that of the triangular lattice (theory.md, section "The lattice"), or of rings of bonds on a
+/// triangular or square grid that is not rotated. Sites of a triangular grid stand in rows, spacing h along a row, row
+/// pitch (sqrt3 / 2) h, every second row shifted by h / 2 and one site shorter. The sheet is its own mirror image about
+/// the line y = 0, to the last bit of its coordinates. About the centre line along y it is, to round-off, if the number
+/// of rows is odd, as it always is with rows along x; not if it is even, since the first row then has a site more than
+/// the last. With rows along x:
 ///
 ///     row 2   o     o     o     o        even rows: `columns()` sites
 ///     row 1      o     o     o           odd rows:  one site fewer
@@ -75,7 +76,7 @@ public:
   static constexpr std::size_t most_kinds = 127; ///< half-bonds: those that a site has lost are counted in a byte
 
   double spacing() const { return grid_.spacing; } ///< h [m], distance of nearest sites; d of the triangular lattice
-  double lattice_spacing() const { return d_; }      ///< d [m], of the lattice whose shells the rings are, or its own
+  double lattice_spacing() const { return d_; }    ///< d [m], of the lattice whose shells the rings are, or its own
   Orientation orientation() const { return grid_.orientation; }
   const Grid &grid() const { return grid_; }
   Periodic periodic() const;
@@ -179,8 +180,8 @@ private:
   bool is_triangular_;
   std::size_t reach_ = 0, column_reach_ = 0;
   std::size_t first_column_; // place of column 0 in its row
-  bool periodic_along_;  // the rows
-  bool periodic_across_; // the rows
+  bool periodic_along_;      // the rows
+  bool periodic_across_;     // the rows
   std::size_t rows_;
   std::size_t columns_;
   std::size_t stride_;

@@ -82,16 +82,15 @@ void run(const Options &options)
   // Stretches down to these are as in the cases of latcon.
   const TimeStepping stepping = chebyshev_time_stepping(chebyshev_step(sheet, material, 0.45, contact),
                                                         time_step_limits(sheet, material, 0.3, contact), 0);
-  Simulation simulation(sheet, material, std::move(state), stepping,
-                        Fracture(sheet, material, options["breaking-stretch"],
-                                 BehindTipToughening{8.5e-3, options["toughening"]}, F));
+  Simulation simulation(
+    sheet, material, std::move(state), stepping,
+    Fracture(sheet, material, options["breaking-stretch"], BehindTipToughening{8.5e-3, options["toughening"]}, F));
   if (options["contact"] > 0.)
     simulation.enable_contact(contact);
   // Between rows, whatever the grid.
-  simulation.cut_bonds(
-    bonds_across(sheet, length / 15., length / 7.5, options["offset"] + 0.25 * grid.spacing));
-  std::printf("# %zu points, %zu half-bonds, %u stages a step of %.3g s\nt,X,Y\n", sheet.n_sites(),
-              sheet.n_kinds(), stepping.stages, stepping.step);
+  simulation.cut_bonds(bonds_across(sheet, length / 15., length / 7.5, options["offset"] + 0.25 * grid.spacing));
+  std::printf("# %zu points, %zu half-bonds, %u stages a step of %.3g s\nt,X,Y\n", sheet.n_sites(), sheet.n_kinds(),
+              stepping.stages, stepping.step);
 
   const double from = length / 3., to = 0.9 * length;
   std::vector<Eigen::Vector3d> path; // t, X, Y

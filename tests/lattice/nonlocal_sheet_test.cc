@@ -136,9 +136,8 @@ TEST_P(NonlocalSheet, ClosesItsLedger)
   const double span = 8. * chebyshev_step(lattice, material, 0.45);
   const auto relative_imbalance = [&](int steps)
   {
-    Simulation moving(
-      lattice, material, Crack::noisy(lattice, material),
-      chebyshev_time_stepping(span / steps, time_step_limits(lattice, material, 0.3), 0));
+    Simulation moving(lattice, material, Crack::noisy(lattice, material),
+                      chebyshev_time_stepping(span / steps, time_step_limits(lattice, material, 0.3), 0));
     for (int step = 0; step < steps; ++step)
       moving.step();
     const EnergyBalance energies = moving.energies();
