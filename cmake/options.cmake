@@ -19,6 +19,10 @@ target_compile_features(latcon_options INTERFACE cxx_std_17)
 # Contraction to fused multiply-add would make results depend on the instruction set. This includes a user's laws, and inline
 # functions compiled into a user's program.
 target_compile_options(latcon_options INTERFACE -ffp-contract=off)
+# Libraries are part of the program and of the modules that it and Python load. Their functions are not replaced by others of the
+# same name, so that they cost no more for it.
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+add_compile_options(-fno-semantic-interposition)
 
 if(LATCON_SANITIZE)
   target_compile_options(latcon_options INTERFACE -fsanitize=${LATCON_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)

@@ -8,19 +8,19 @@ namespace
 {
 
 // Lengths are compared with some room, so that a radius or notch of whole spacings means the same on every machine.
-constexpr double round_off = 1e-9;
+constexpr double relative_margin = 1e-9;
 
 class Shape
 {
 public:
   Shape(const TriangularLattice &lattice, const RoundHole &hole)
-    : centre_(0.5 * lattice.length(), 0.), radius_(hole.radius - round_off * lattice.spacing()), notch_(-1.),
+    : centre_(0.5 * lattice.length(), 0.), radius_(hole.radius - relative_margin * lattice.spacing()), notch_(-1.),
       nearby_(0.)
   {
   }
   Shape(const TriangularLattice &lattice, const Notch &notch)
-    : centre_(Eigen::Vector2d::Zero()), radius_(-1.), notch_(notch.length + round_off * lattice.spacing()),
-      nearby_(round_off * lattice.spacing())
+    : centre_(Eigen::Vector2d::Zero()), radius_(-1.), notch_(notch.length + relative_margin * lattice.spacing()),
+      nearby_(relative_margin * lattice.spacing())
   {
   }
 
@@ -53,7 +53,7 @@ void cut_out(State &state, const TriangularLattice &lattice, const Cutout &cutou
     if (lattice.is_occupied(place) && shape.contains(lattice.reference(lattice.canonical_place(place))))
     {
       state.removed[place] = 1;
-      state.held[place] = 0;
+      state.held[place] = state.rollers[place] = 0;
       state.inverse_mass[place] = 0.;
     }
   for_each_bond(state, lattice,

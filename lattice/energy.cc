@@ -112,29 +112,16 @@ double kinetic_energy(const State &state, const RowPartition &band)
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
-      if (state.inverse_mass[place] > 0.)
-        sum +=
-          0.5 / state.inverse_mass[place] * (state.vx[place] * state.vx[place] + state.vy[place] * state.vy[place]);
+      if (!(state.inverse_mass[place] > 0.))
+        continue;
+      const double vx = (state.rollers[place] & 1) == 0 ? state.vx[place] : 0.;
+      const double vy = (state.rollers[place] & 2) == 0 ? state.vy[place] : 0.;
+      sum += 0.5 / state.inverse_mass[place] * (vx * vx + vy * vy);
     }
     of_rows[row] = sum;
   };
   for_each_row(lattice, band.rows(), of_row);
   return band.sum(of_rows);
-}
-
-double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces, const Field &vx,
-                      const Field &vy, std::size_t row)
-{
-  double power = 0.;
-  for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
-  {
-    const std::size_t place = lattice.index(row, column);
-    if (state.held[place] == 0)
-      continue;
-    const Eigen::Vector2d force = forces.on_site(state, vx, vy, place);
-    power -= force.x() * state.vx[place] + force.y() * state.vy[place];
-  }
-  return power;
 }
 
 } // namespace latcon::lattice

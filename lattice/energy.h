@@ -21,14 +21,8 @@ std::vector<double> memory_energies(const State &state, const RowPartition &band
 /// Energy in the memory of one bond.
 double memory_energy(const State &state, const TriangularLattice &lattice, const Material &material, const Bond &bond);
 
-/// Kinetic energy of all free sites, per sheet thickness [J/m]. Collective.
+/// Kinetic energy of all sites in the components that are free, per sheet thickness [J/m]. Collective.
 double kinetic_energy(const State &state, const RowPartition &band);
-
-/// Power the held sites of a row put into the sheet, -sum f . v over them, f being the force of the bonds on a site
-/// [W/m].
-/// @param vx,vy velocities that the dashpots see [m/s]
-double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces, const Field &vx,
-                      const Field &vy, std::size_t row);
 
 /// Energy of one mechanism of the memories of bonds, such as the Maxwell branches of one relaxation time, per sheet
 /// thickness [J/m]; parts of EnergyBalance::elastic and viscous.
@@ -46,7 +40,7 @@ struct EnergyBalance
   double viscous;       ///< dissipated by the dashpots, those in the memory of bonds included, since the start
   double broken;        ///< elastic energy of bonds when they broke or were cut, kinetic energy of sites when cut out
   double contact;       ///< that contacts took from the motion since the start: stored in them or dissipated by them
-  double boundary_work; ///< done on the sheet by held sites and by loads on its ends since the start
+  double boundary_work; ///< done on the sheet by constraints and by loads on its ends since the start
   double initial;       ///< elastic + kinetic before the seed was cut
 
   /// elastic + kinetic + viscous + broken + contact - initial - boundary_work; zero up to the error of the time

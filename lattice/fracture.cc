@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "lattice/critical_stretch.h"
 #include "lattice/energy.h"
 #include "lattice/integrator.h"
 
@@ -29,15 +30,29 @@ double factor(const Rule &rule)
   return rule.factor;
 }
 
+std::shared_ptr<const BreakingRule> critical_stretch(double breaking_stretch)
+{
+  require(breaking_stretch > 0., "the breaking stretch must be positive");
+  std::array<double, n_shells> of_shells{};
+  of_shells.fill(breaking_stretch);
+  return std::make_shared<CriticalStretch>(of_shells);
+}
+
 } // namespace
 
 Fracture::Fracture(const RowPartition &band, const Material &material, double breaking_stretch, Toughening toughening,
                    const Eigen::Matrix2d &deformation)
-  : band_(band), lattice_(band.lattice()), material_(material), breaking_stretch_(breaking_stretch),
-    toughened_stretch_(breaking_stretch * std::visit([](const auto &rule) { return factor(rule); }, toughening)),
-    toughening_(toughening), tip_losses_((material.coordination() + 3) / 4)
+  : Fracture(band, material, critical_stretch(breaking_stretch), toughening, deformation)
 {
-  require(breaking_stretch > 0., "the breaking stretch must be positive");
+}
+
+Fracture::Fracture(const RowPartition &band, const Material &material, std::shared_ptr<const BreakingRule> rule,
+                   Toughening toughening, const Eigen::Matrix2d &deformation)
+  : band_(band), lattice_(band.lattice()), material_(material), rule_(std::move(rule)), toughening_(toughening),
+    toughening_factor_(std::visit([](const auto &how) { return factor(how); }, toughening)),
+    breaking_stretch_(rule_->smallest_limit(1.)), toughened_stretch_(rule_->smallest_limit(toughening_factor_)),
+    tip_losses_((material.coordination() + 3) / 4)
+{
   require(lattice_.images().empty(), "a periodic sheet does not break: a crack has no tip there");
   if (const auto *given = std::get_if<GivenToughening>(&toughening_))
     require(given->factor >= 1., "toughening of given bonds needs a factor >= 1");
@@ -76,11 +91,21 @@ std::vector<std::uint8_t> Fracture::rows_with_events_ahead(const State &state, c
   return rows;
 }
 
-// With the expressions of the loops over a row: one that they do not flag has no event, one that they flag has one.
-Fracture::Event Fracture::event(const State &state, const Bond &bond) const
+double Fracture::limit(const State &state, const Bond &bond, double rate) const
 {
   const auto [near, kind, far] = bond;
-  const double longest = breaking_stretch_of(state, bond);
+  return rule_->limit({shell_of(kind), state.bonds.toughened(near, kind) ? toughening_factor_ : 1.,
+                       state.strength.of(near, kind), state.stiffness.of(near, kind), rate});
+}
+
+// With the expressions of the loops over a row: one that they do not flag has no event.
+Fracture::Event Fracture::event(const State &state, const Bond &bond, const Field &vx, const Field &vy) const
+{
+  const auto [near, kind, far] = bond;
+  const Eigen::Vector2d along(state.x[far] - state.x[near], state.y[far] - state.y[near]);
+  const double rate =
+    along.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near])) / (along.norm() * lattice_.rest_length(kind));
+  const double longest = limit(state, bond, rate);
   const double shortest = state.bonds.toughened(near, kind) ? 0. : retraction_stretch_[kind];
   const auto among = [](double value, double from, double to) {
     return value > to ? Event::broken : value < from ? Event::retracted : Event::none;
@@ -156,7 +181,7 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
   for (const std::size_t place : places)
   {
     state.removed[place] = 1;
-    state.held[place] = 0;
+    state.held[place] = state.rollers[place] = 0;
     state.inverse_mass[place] = 0.;
     state.vx[place] = state.vy[place] = state.ax[place] = state.ay[place] = 0.;
   }
@@ -180,7 +205,7 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
     for_each_bond(state, lattice_, {row, row + 1},
                   [&](const Bond &bond)
                   {
-                    const Event now = event(state, bond);
+                    const Event now = event(state, bond, evaluated_vx, evaluated_vy);
                     if (now == Event::broken)
                       own.push_back(loss(state, bond));
                     else if (now == Event::retracted)
@@ -260,13 +285,13 @@ std::pair<Rows, Rows> Fracture::strip_around(double from, double to) const
   return along ? std::pair(own, cut(columns)) : std::pair(cut(own), columns);
 }
 
-std::optional<StretchedBond> nearest_to_breaking(const State &state, const TriangularLattice &lattice)
+std::optional<StretchedBond> Fracture::nearest_to_breaking(const State &state) const
 {
   std::optional<StretchedBond> nearest;
-  for_each_bond(state, lattice,
+  for_each_bond(state, lattice_,
                 [&](const Bond &bond)
                 {
-                  const StretchedBond one{bond, stretch(state, lattice, bond), breaking_stretch_of(state, bond)};
+                  const StretchedBond one{bond, stretch(state, lattice_, bond), limit(state, bond, 0.)};
                   if (!nearest || one.stretch / one.limit > nearest->stretch / nearest->limit)
                     nearest = one;
                 });

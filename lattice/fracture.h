@@ -1,12 +1,14 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "lattice/archive_rows.h"
+#include "lattice/breaking_rule.h"
 #include "lattice/crack_tip.h"
 #include "lattice/forces.h"
 
@@ -64,9 +66,16 @@ struct BrokenBond : Bond
   }
 };
 
-/// Permanent breaking at lam_f, toughening, and the crack tip (theory.md, section "Fracture").
+/// A bond that is present.
+struct StretchedBond : Bond
+{
+  double stretch; ///< [-]
+  double limit;   ///< stretch beyond which it breaks [-]
+};
+
+/// Permanent breaking by a rule, toughening, and the crack tip (theory.md, section "Fracture").
 ///
-/// With disorder of the strength each bond has its own lam_f, toughened or not: lam_f times its factor.
+/// Disorder of the strength multiplies the limit of each bond, toughened or not, by its factor.
 ///
 /// The tip is the right-most site (reference X) that has lost at least a quarter of its bonds, rounded up: 3 of 12 as
 /// in the source paper, 2 of 6 where there are nearest neighbours alone. Held and removed sites do not count. Among
@@ -78,15 +87,24 @@ class Fracture
 {
 public:
   /// @param band rows whose bonds may break, that of the simulation
-  /// @param breaking_stretch lam_f [-], > 0, of a bond that has not toughened
+  /// @param rule limit of a bond that has not toughened
   /// @param deformation F of the loaded, unbroken sheet: the stretch that retraction is measured against
   /// @throws std::invalid_argument for a rule out of its range
+  Fracture(const RowPartition &band, const Material &material, std::shared_ptr<const BreakingRule> rule,
+           Toughening toughening, const Eigen::Matrix2d &deformation);
+  /// All bonds break beyond lam_f > 0. @throws std::invalid_argument for any other
   Fracture(const RowPartition &band, const Material &material, double breaking_stretch, Toughening toughening,
            const Eigen::Matrix2d &deformation);
 
-  /// Sets the breaking stretches of virgin and of toughened bonds in `state`, and enables retraction events in
+  /// Sets the smallest limits of virgin and of toughened bonds in `state`, and enables retraction events in
   /// `forces`. To be called before apply(); a Simulation does.
   void configure(State &state, Forces &forces) const;
+
+  /// A stretch that no bond exceeds for longer than a step [-].
+  double largest_limit() const
+  {
+    return rule_->largest_limit(toughening_factor_) * material_.disorder.strength.largest();
+  }
 
   /// Makes a bond break, or toughen, in the evaluation after which it will reach its limit within `duration` [s], >= 0,
   /// at the velocities of its ends; default 0: once it is past its limit. Half a time step makes it the end of a step
@@ -118,6 +136,10 @@ public:
   /// Place of the tip; none before anything was cut or broken.
   std::optional<std::size_t> tip() const { return tip_.place; }
 
+  /// The bond present whose stretch over its limit at rest is largest, the one stored first of several: why a crack
+  /// stopped. None in a sheet without bonds. @param state of the whole sheet
+  std::optional<StretchedBond> nearest_to_breaking(const State &state) const;
+
   /// Saves or loads what changes while a crack runs, besides the state; see Simulation.
   /// @throws std::invalid_argument for a tip that is none of the sheet
   template <class Archive>
@@ -145,7 +167,8 @@ private:
     broken,   // past the limit
     retracted // to be toughened
   };
-  Event event(const State &state, const Bond &bond) const;
+  Event event(const State &state, const Bond &bond, const Field &vx, const Field &vy) const;
+  double limit(const State &state, const Bond &bond, double rate) const;
   struct Loss;
   Loss loss(const State &state, const Bond &bond) const;
   std::vector<BrokenBond> lose_bonds(State &state, const std::vector<Loss> &own, int *number) const;
@@ -157,9 +180,10 @@ private:
   RowPartition band_;
   const TriangularLattice &lattice_;
   Material material_;
-  double breaking_stretch_;
-  double toughened_stretch_;
+  std::shared_ptr<const BreakingRule> rule_;
   Toughening toughening_;
+  double toughening_factor_;
+  double breaking_stretch_, toughened_stretch_; // smallest limits
   std::array<double, n_bond_kinds> retraction_stretch_{};
   double lookahead_ = 0.; // [s]
   unsigned int tip_losses_;
@@ -167,16 +191,5 @@ private:
   double toughened_to_ = -std::numeric_limits<double>::infinity(); // X [m] behind which all bonds are toughened
   std::vector<BrokenBond> broken_;
 };
-
-/// A bond that is present.
-struct StretchedBond : Bond
-{
-  double stretch; ///< [-]
-  double limit;   ///< stretch beyond which it breaks [-]
-};
-
-/// The bond present whose stretch over its limit is largest, the one stored first of several: why a crack stopped. None
-/// in a sheet without bonds. @param state of the whole sheet
-std::optional<StretchedBond> nearest_to_breaking(const State &state, const TriangularLattice &lattice);
 
 } // namespace latcon::lattice

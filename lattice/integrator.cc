@@ -10,9 +10,6 @@ namespace latcon::lattice
 namespace
 {
 
-// Sites, each with its up to eighteen bonds one by one, below which one thread is faster.
-constexpr std::size_t min_sites_for_threads = 64;
-
 // Calls visit(place, acceleration) for every site force.
 template <class Visitor>
 void for_each_acceleration(const State &state, const std::vector<SiteForces *> &site_forces, const Visitor &visit)
@@ -85,6 +82,8 @@ void Integrator::accelerate_sites(State &state) const
                           state.ax[place] += acceleration.x();
                           state.ay[place] += acceleration.y();
                         });
+  for (const RollerVelocity &roller : rollers_)
+    (roller.component == 0 ? state.ax : state.ay)[roller.place] = 0.;
 }
 
 void Integrator::kick_sites(State &state, double duration) const
@@ -95,6 +94,8 @@ void Integrator::kick_sites(State &state, double duration) const
                           state.vx[place] += duration * acceleration.x();
                           state.vy[place] += duration * acceleration.y();
                         });
+  for (const RollerVelocity &roller : rollers_)
+    (roller.component == 0 ? state.vx : state.vy)[roller.place] = roller.velocity;
 }
 
 void Integrator::update_accelerations(State &state, const std::vector<std::size_t> &places) const

@@ -1,10 +1,21 @@
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "lattice/forces.h"
 #include "lattice/site_forces.h"
 
 namespace latcon::lattice
 {
+
+/// A component of the velocity of a site that is prescribed while the other one is free.
+struct RollerVelocity
+{
+  std::size_t place;
+  unsigned int component; ///< 0: x, 1: y
+  double velocity;        ///< [m/s]
+};
 
 /// Advances the rows of a band in time, step by step. The forces at the end of a step are those the next one starts
 /// with; in between bonds can be taken out of them.
@@ -26,6 +37,9 @@ public:
 
   /// Adds forces to those of the bonds, at the same positions and velocities; they must outlive this object.
   void add(SiteForces &forces) { site_forces_.push_back(&forces); }
+
+  /// Sets the components of own sites that keep a velocity while the other one follows the forces.
+  void set_rollers(std::vector<RollerVelocity> rollers) { rollers_ = std::move(rollers); }
 
   /// Computes the accelerations a state starts with; needed once, and again after a change from outside. Collective.
   virtual void initialise(State &state) = 0;
@@ -54,7 +68,7 @@ protected:
   void kick(State &state, std::size_t row, const double *fx, const double *fy, double duration) const;
   /// Forces of bonds and of all that was added, at the present positions and velocities, as accelerations.
   void accelerate(State &state);
-  /// Adds the accelerations by site forces to those of a state.
+  /// Adds the accelerations by site forces to those of a state; along a roller's fixed component there is none.
   void accelerate_sites(State &state) const;
   /// Adds to the velocities what site forces change of them in `duration` [s].
   void kick_sites(State &state, double duration) const;
@@ -67,6 +81,7 @@ protected:
 private:
   double time_step_;
   std::vector<SiteForces *> site_forces_;
+  std::vector<RollerVelocity> rollers_;
 };
 
 } // namespace latcon::lattice

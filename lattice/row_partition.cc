@@ -9,7 +9,7 @@ namespace latcon::lattice
 namespace
 {
 
-constexpr auto reach = static_cast<std::ptrdiff_t>(TriangularLattice::reach);
+constexpr auto reach_of_rows = static_cast<std::ptrdiff_t>(TriangularLattice::reach);
 
 // Tag of messages between two ranks, which arrive in the order in which they are sent.
 constexpr int tag = 0;
@@ -71,9 +71,9 @@ std::vector<std::size_t> RowPartition::halo_of(std::size_t rank) const
     if (row && owner(*row) != rank)
       halo.push_back(*row);
   };
-  for (std::ptrdiff_t distance = 0; distance < reach; ++distance)
+  for (std::ptrdiff_t distance = 0; distance < reach_of_rows; ++distance)
   {
-    add(begin - reach + distance);
+    add(begin - reach_of_rows + distance);
     add(end + distance);
   }
   std::sort(halo.begin(), halo.end());
@@ -86,10 +86,10 @@ bool RowPartition::is_relevant_to(std::size_t rank, std::size_t place) const
   const auto begin = static_cast<std::ptrdiff_t>(first_rows_[rank]);
   const auto end = static_cast<std::ptrdiff_t>(first_rows_[rank + 1]);
   const auto n_rows = static_cast<std::ptrdiff_t>(lattice_->rows());
-  std::ptrdiff_t row = static_cast<std::ptrdiff_t>(lattice_->row_of(place)) - (begin - reach);
+  std::ptrdiff_t row = static_cast<std::ptrdiff_t>(lattice_->row_of(place)) - (begin - reach_of_rows);
   if (rows_repeat())
     row = (row + n_rows) % n_rows;
-  return begin < end && row >= 0 && row < end - begin + 2 * reach;
+  return begin < end && row >= 0 && row < end - begin + 2 * reach_of_rows;
 }
 
 double RowPartition::sum(std::vector<double> values) const

@@ -12,7 +12,7 @@ namespace
 {
 
 // Lengths are compared with some room, so that whole spacings mean the same on every machine.
-constexpr double round_off = 1e-9;
+constexpr double relative_room = 1e-9;
 
 struct Site
 {
@@ -64,7 +64,7 @@ std::vector<Site> sites_in(const Box &box, const TriangularLattice &lattice)
       if (box.contains(X))
         sites.push_back({place, X});
     }
-  const double room = round_off * lattice.spacing();
+  const double room = relative_room * lattice.spacing();
   std::sort(sites.begin(), sites.end(),
             [room](const Site &a, const Site &b)
             { return std::abs(a.X.x() - b.X.x()) > room ? a.X.x() < b.X.x() : a.X.y() < b.X.y(); });
@@ -87,7 +87,7 @@ std::vector<double> lines_of_sites(const TriangularLattice &lattice)
 
 std::vector<Site> sites_of(const SeedSlit &slit, const TriangularLattice &lattice)
 {
-  const double room = round_off * lattice.spacing();
+  const double room = relative_room * lattice.spacing();
   return sites_in({{slit.position - room, slit.offset - 0.5 * slit.height - room},
                    {slit.position + slit.length + room, slit.offset + 0.5 * slit.height + room}},
                   lattice);
@@ -95,7 +95,7 @@ std::vector<Site> sites_of(const SeedSlit &slit, const TriangularLattice &lattic
 
 std::vector<Site> sites_of(const SeedLine &line, const TriangularLattice &lattice)
 {
-  const double room = round_off * lattice.spacing();
+  const double room = relative_room * lattice.spacing();
   // Of two equally near ones the larger is taken.
   double nearest_y = 0., smallest = -1.;
   for (const double y : lines_of_sites(lattice))

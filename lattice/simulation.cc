@@ -51,8 +51,8 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
     throw std::invalid_argument("the stiffness of the bonds does not have the disorder of the material");
   if (fracture_)
     fracture_->configure(state_, forces_);
-  forces_.set_shortness_threshold(watched_stretch(time_stepping, lattice_, material_,
-                                                  state_.toughened_stretch * material_.disorder.strength.largest()));
+  forces_.set_shortness_threshold(
+    watched_stretch(time_stepping, lattice_, material_, fracture_ ? fracture_->largest_limit() : unbreakable));
   forces_.update_memory(state_);
   reinitialize_forces();
   initial_energy_ = stored_energy() + kinetic_energy(state_, band_);
@@ -127,23 +127,23 @@ void Simulation::update_powers()
     for (std::size_t m = 0; m < powers_.mechanisms.size(); ++m)
       powers_.mechanisms[m][row] = forces_.mechanism_power(m, row);
     powers_.contact[row] = 0.;
-    powers_.boundary[row] = edges_move_ ? boundary_power(state_, lattice_, forces_, integrator_->evaluated_vx(state_),
-                                                         integrator_->evaluated_vy(state_), row)
-                                        : 0.;
+    powers_.boundary[row] = 0.;
   }
   const auto power = [this](const SiteForce &on)
   { return on.force.dot(Eigen::Vector2d(state_.vx[on.place], state_.vy[on.place])); };
   if (contact_)
     for (const SiteForce &on : contact_->last())
-    {
       powers_.contact[lattice_.row_of(on.place)] -= power(on);
-      // A held site that moves pushes with what the contact pushes it.
-      if (state_.held[on.place] != 0)
-        powers_.boundary[lattice_.row_of(on.place)] -= power(on);
-    }
-  if (end_loads_)
-    for (const SiteForce &on : end_loads_->last())
+  std::vector<const SiteForces *> site_forces{contact_ ? &*contact_ : nullptr};
+  for (const std::unique_ptr<SiteForces> &added : added_forces_)
+  {
+    for (const SiteForce &on : added->last())
       powers_.boundary[lattice_.row_of(on.place)] += power(on);
+    site_forces.push_back(added.get());
+  }
+  for (std::size_t c = 0; c < constraints_.size(); ++c)
+    constraints_[c].power(state_, forces_, integrator_->evaluated_vx(state_), integrator_->evaluated_vy(state_),
+                          site_forces, powers_.constraints[c]);
 }
 
 // Trapezoidal rule over a time step, or a part of one.
@@ -155,6 +155,8 @@ void Simulation::add_work(const Ledger &before, double duration)
     work_.viscous[row] += half * (before.viscous[row] + powers_.viscous[row]);
     work_.contact[row] += half * (before.contact[row] + powers_.contact[row]);
     work_.boundary[row] += half * (before.boundary[row] + powers_.boundary[row]);
+    for (std::size_t c = 0; c < work_.constraints.size(); ++c)
+      work_.constraints[c][row] += half * (before.constraints[c][row] + powers_.constraints[c][row]);
     for (std::size_t m = 0; m < work_.mechanisms.size(); ++m)
       work_.mechanisms[m][row] += half * (before.mechanisms[m][row] + powers_.mechanisms[m][row]);
   }
@@ -172,12 +174,18 @@ void Simulation::enable_contact(const ContactLaw &law)
 
 void Simulation::load_ends(const Eigen::Matrix2d &F, EndLoads::End left, EndLoads::End right)
 {
-  if (end_loads_)
+  if (has_end_loads_)
     throw std::logic_error("the ends of this sheet are loaded already");
   if (std::any_of(state_.lost_bonds.begin(), state_.lost_bonds.end(), [](std::uint8_t lost) { return lost > 0; }))
     throw std::logic_error("the ends of a sheet must be loaded before any of its bonds is cut or broken");
-  end_loads_.emplace(band_, material_, state_, F, left, right);
-  integrator_->add(*end_loads_);
+  add(std::make_unique<EndLoads>(band_, material_, state_, F, left, right));
+  has_end_loads_ = true;
+}
+
+void Simulation::add(std::unique_ptr<SiteForces> forces)
+{
+  integrator_->add(*forces);
+  added_forces_.push_back(std::move(forces));
   reinitialize_forces();
 }
 
@@ -188,6 +196,7 @@ void Simulation::cut(const std::vector<std::size_t> &places)
   const double kinetic = kinetic_energy(state_, band_);
   broken_ += fracture_->remove_sites(state_, places);
   broken_ += kinetic - kinetic_energy(state_, band_);
+  update_rollers();
   fracture_->locate_tip(state_);
   reinitialize_forces();
 }
@@ -212,21 +221,6 @@ void Simulation::for_each_known_site(const Visitor &visit) const
       visit(lattice_.index(row, column));
 }
 
-void Simulation::move_edges(const Eigen::Matrix2d &velocity_gradient)
-{
-  for_each_known_site(
-    [&](std::size_t place)
-    {
-      if (state_.held[place] == 0)
-        return;
-      const Eigen::Vector2d velocity = velocity_gradient * lattice_.reference(place);
-      state_.vx[place] = velocity.x();
-      state_.vy[place] = velocity.y();
-    });
-  edges_move_ = true;
-  reinitialize_forces();
-}
-
 void Simulation::set_velocities(const Field &vx, const Field &vy)
 {
   const double before = kinetic_energy(state_, band_);
@@ -235,8 +229,10 @@ void Simulation::set_velocities(const Field &vx, const Field &vy)
     {
       if (!(state_.inverse_mass[place] > 0.))
         return;
-      state_.vx[place] = vx[place];
-      state_.vy[place] = vy[place];
+      if ((state_.rollers[place] & 1) == 0)
+        state_.vx[place] = vx[place];
+      if ((state_.rollers[place] & 2) == 0)
+        state_.vy[place] = vy[place];
     });
   initial_energy_ += kinetic_energy(state_, band_) - before;
   reinitialize_forces();
@@ -263,6 +259,7 @@ const std::vector<BrokenBond> &Simulation::step()
 
 const std::vector<BrokenBond> &Simulation::advance(double duration)
 {
+  prescribe_motion(duration);
   integrator_->set_time_step(duration);
   integrator_->step(state_);
 
@@ -379,8 +376,12 @@ double Simulation::stored_energy() const
 
 EnergyBalance Simulation::energies() const
 {
-  return {stored_energy(),          kinetic_energy(state_, band_), band_.sum(work_.viscous), broken_,
-          band_.sum(work_.contact), band_.sum(work_.boundary),     initial_energy_};
+  double boundary = band_.sum(work_.boundary);
+  for (const std::vector<double> &work : work_.constraints)
+    boundary += band_.sum(work);
+  return {stored_energy(), kinetic_energy(state_, band_), band_.sum(work_.viscous),
+          broken_,         band_.sum(work_.contact),      boundary,
+          initial_energy_};
 }
 
 std::vector<MechanismEnergy> Simulation::mechanism_energies() const

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lattice/archive_rows.h"
+#include "lattice/constraint.h"
 #include "lattice/contact.h"
 #include "lattice/end_loads.h"
 #include "lattice/energy.h"
@@ -52,8 +53,19 @@ public:
   /// @throws std::logic_error without fracture rules; std::invalid_argument for what is no bond of a site
   void cut_bonds(const std::vector<std::pair<std::size_t, std::size_t>> &bonds);
 
-  /// Prescribes the velocity v = L X of the held sites, L [1/s] in the reference configuration.
-  void move_edges(const Eigen::Matrix2d &velocity_gradient);
+  /// Stops sites, and prescribes their motion from the next step on. Kinetic energy that they had leaves the initial
+  /// one.
+  /// @return number of the constraint
+  /// @throws std::invalid_argument for what is no site; std::logic_error where another constraint holds a component
+  std::size_t constrain(const Constraint &constraint);
+  /// Gives a constraint another motion from the next step on.
+  void set_motion(std::size_t constraint, Constraint::Motion motion);
+  /// Work that a constraint has done on the sheet [J/m]; a part of EnergyBalance::boundary_work. Collective.
+  double constraint_work(std::size_t constraint) const { return band_.sum(work_.constraints.at(constraint)); }
+
+  /// Adds forces on sites, whose work counts as boundary work. They must be functions of time, positions and
+  /// velocities, and are evaluated on each rank for its own sites.
+  void add(std::unique_ptr<SiteForces> forces);
 
   /// Sets the velocities of the free sites, of which initial waves and tests consist; the change of kinetic energy
   /// counts as initial energy. One (vx, vy) per place [m/s].
@@ -93,6 +105,11 @@ public:
   const Forces &forces() const { return forces_; }
   double time_step() const { return time_stepping_.step; } ///< of a whole step [s]
   std::optional<std::size_t> tip() const;
+  /// See Fracture::nearest_to_breaking(), of state(), which must be complete; none if bonds do not break.
+  std::optional<StretchedBond> nearest_to_breaking() const
+  {
+    return fracture_ ? fracture_->nearest_to_breaking(state_) : std::nullopt;
+  }
   std::size_t n_broken() const { return n_broken_; } ///< bonds broken since the start, the seed's not counted
   std::size_t n_divided_steps() const { return n_divided_steps_; } ///< time steps made in parts since the start
   EnergyBalance energies() const;
@@ -107,10 +124,11 @@ private:
   /// Powers per sheet thickness [W/m], and what they have added up to [J/m]; one a row of the sheet.
   struct Ledger
   {
-    std::vector<double> viscous;                 // dissipated by dashpots
-    std::vector<double> contact;                 // from the sheet into contacts
-    std::vector<double> boundary;                // into the sheet from its edges
-    std::vector<std::vector<double>> mechanisms; // dissipated by each mechanism of the memories; a part of `viscous`
+    std::vector<double> viscous;                  // dissipated by dashpots
+    std::vector<double> contact;                  // from the sheet into contacts
+    std::vector<double> boundary;                 // into the sheet from forces on its sites
+    std::vector<std::vector<double>> constraints; // into the sheet from each constraint
+    std::vector<std::vector<double>> mechanisms;  // dissipated by each mechanism of the memories; a part of `viscous`
     Ledger(std::size_t rows, std::size_t n_mechanisms)
       : viscous(rows, 0.), contact(rows, 0.), boundary(rows, 0.), mechanisms(n_mechanisms, viscous)
     {
@@ -121,6 +139,8 @@ private:
   void for_each_known_site(const Visitor &visit) const;
   double stored_energy() const; // in bonds and their memory [J/m]
   void reinitialize_forces();
+  void prescribe_motion(double duration);
+  void update_rollers();
   void update_powers();
   void add_work(const Ledger &before, double duration);
   const std::vector<BrokenBond> &advance(double duration);
@@ -139,11 +159,12 @@ private:
   std::optional<Fracture> fracture_;
   std::optional<ContactLaw> contact_law_;
   std::optional<Contact> contact_;
-  std::optional<EndLoads> end_loads_;
+  std::vector<std::unique_ptr<SiteForces>> added_forces_;
+  bool has_end_loads_ = false;
+  std::vector<PrescribedMotion> constraints_;
   std::vector<BrokenBond> no_bonds_;
   std::vector<BrokenBond> broken_in_parts_;
 
-  bool edges_move_ = false;
   int parts_ = 1; // that the next step needs, a power of two: the same on all ranks
   std::size_t n_divided_steps_ = 0;
   std::size_t n_broken_ = 0;
@@ -186,6 +207,8 @@ void Simulation::archive(Archive &archive)
     archive_rows(archive, name + "_viscous", ledger->viscous, band_);
     archive_rows(archive, name + "_contact", ledger->contact, band_);
     archive_rows(archive, name + "_boundary", ledger->boundary, band_);
+    for (std::size_t c = 0; c < ledger->constraints.size(); ++c)
+      archive_rows(archive, name + "_constraint_" + std::to_string(c), ledger->constraints[c], band_);
     for (std::size_t m = 0; m < ledger->mechanisms.size(); ++m)
       archive_rows(archive, name + "_mechanism_" + std::to_string(m), ledger->mechanisms[m], band_);
   }
@@ -194,6 +217,8 @@ void Simulation::archive(Archive &archive)
   archive("n_broken", n_broken_);
   archive("initial_energy", initial_energy_);
   archive("broken_energy", broken_);
+  for (std::size_t c = 0; c < constraints_.size(); ++c)
+    archive("constraint_" + std::to_string(c), constraints_[c]);
   if (fracture_)
     archive("fracture", *fracture_);
   if constexpr (is_checked)
@@ -201,6 +226,9 @@ void Simulation::archive(Archive &archive)
   if constexpr (Archive::loads)
   {
     update_images(state_, band_);
+    for (const PrescribedMotion &constraint : constraints_)
+      constraint.free_if_released(state_, material_);
+    update_rollers();
     // The candidate pairs of contacts follow from the state.
     if (contact_)
       contact_->find_candidates(state_);

@@ -65,6 +65,17 @@ void update_images(State &state, const RowPartition &band)
   }
 }
 
+std::vector<std::size_t> sites_at(const TriangularLattice &lattice, const Material &material, const Edges &edges)
+{
+  std::vector<std::size_t> sites;
+  for (std::size_t row = 0; row < lattice.rows(); ++row)
+    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
+      if (const std::size_t place = lattice.index(row, column);
+          !is_interior(lattice, row, column) && reaches_beyond(lattice, material, place, edges))
+        sites.push_back(place);
+  return sites;
+}
+
 State homogeneous_state(const RowPartition &band, const Material &material, const Eigen::Matrix2d &F, Edges edges)
 {
   const TriangularLattice &lattice = band.lattice();
@@ -72,7 +83,7 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
   State state;
   for (Field *field : {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &state.inverse_mass})
     *field = Field(n);
-  for (SiteFlags *marks : {&state.held, &state.removed, &state.lost_bonds})
+  for (SiteFlags *marks : {&state.held, &state.rollers, &state.removed, &state.lost_bonds})
     *marks = SiteFlags(n);
   state.bonds.clear(n, material.n_kinds());
 
@@ -126,8 +137,10 @@ void add_noise(State &state, const RowPartition &band, double amplitude, std::ui
       const std::size_t place = lattice.index(row, column);
       if (state.held[place] != 0)
         continue;
-      state.x[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number(row, column)));
-      state.y[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number(row, column) + 1));
+      if ((state.rollers[place] & 1) == 0)
+        state.x[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number(row, column)));
+      if ((state.rollers[place] & 2) == 0)
+        state.y[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number(row, column) + 1));
     }
   update_images(state, band);
 }

@@ -20,6 +20,9 @@ namespace latcon::lattice
 /// the same bits either way.
 inline constexpr std::size_t min_places_for_threads = 4096;
 
+/// The same for lists of sites, each with its up to eighteen bonds one by one.
+inline constexpr std::size_t min_sites_for_threads = 64;
+
 /// A breaking stretch that no bond reaches.
 inline constexpr double unbreakable = std::numeric_limits<double>::infinity();
 
@@ -38,11 +41,12 @@ struct State
   BondStates bonds;                       ///< by the place where they start
   BondHistory history;                    ///< of bonds with a memory; see relax_memory()
   BondFactors stiffness;                  ///< of cross-sections, hence of all forces of bonds; from homogeneous_state()
-  double breaking_stretch = unbreakable;  ///< lam_f [-], beyond which a bond breaks; set by Fracture::configure()
+  double breaking_stretch = unbreakable;  ///< [-], below which no bond breaks; set by Fracture::configure()
   double toughened_stretch = unbreakable; ///< that of toughened bonds [-]; set likewise
   BondFactors strength;                   ///< of both, bond by bond; set likewise
   Field inverse_mass;                     ///< h / m [m/kg]; 0 at held and removed sites and in the margin
   SiteFlags held;                         ///< 1 at sites whose motion is prescribed, 0 at removed ones
+  SiteFlags rollers;                      ///< components prescribed at sites that are not held, 1: x, 2: y
   SiteFlags removed;                      ///< 1 at sites cut out as seed crack
   SiteFlags lost_bonds;                   ///< bonds a site has lost, to breaking or to removed neighbours
   Eigen::Matrix2d periods = Eigen::Matrix2d::Identity(); ///< F that takes reference periods to current ones [-]
@@ -63,21 +67,24 @@ struct Edges
 inline constexpr Edges Edges::held{true, true, true, true};
 inline constexpr Edges Edges::free{false, false, false, false};
 
+/// Sites of which a bond, in either sense, would end beyond one of these edges: those that homogeneous_state() holds.
+std::vector<std::size_t> sites_at(const TriangularLattice &lattice, const Material &material, const Edges &edges);
+
 /// The unbroken sheet at the homogeneous deformation x = F X, at rest, in the rows that `band` knows. Edges across
 /// which the sheet is periodic do not exist, whatever `edges` says of them. Bonds are unbreakable; a Fracture sets at
 /// which stretch they break.
 State homogeneous_state(const RowPartition &band, const Material &material, const Eigen::Matrix2d &F, Edges edges);
 
-/// Stretch beyond which a bond that is present breaks [-].
+/// Stretch beyond which a bond that is present may break [-]; see BreakingRule::smallest_limit().
 inline double breaking_stretch_of(const State &state, const Bond &bond)
 {
   return (state.bonds.toughened(bond.near, bond.kind) ? state.toughened_stretch : state.breaking_stretch) *
          state.strength.of(bond.near, bond.kind);
 }
 
-/// Moves every free site in the rows that `band` knows by a random displacement, uniform in [-amplitude, amplitude]
-/// along x and y. The displacement of a site depends on (seed, place) alone, so it is the same on every machine and in
-/// any order.
+/// Moves every site in the rows that `band` knows, where it is free, by a random displacement, uniform in [-amplitude,
+/// amplitude] along x and y. The displacement of a site depends on (seed, place) alone, so it is the same on every
+/// machine and in any order.
 /// @param amplitude [m], >= 0
 void add_noise(State &state, const RowPartition &band, double amplitude, std::uint64_t seed);
 

@@ -13,13 +13,13 @@ namespace latcon::continuum
 {
 namespace
 {
-constexpr std::size_t chunk = 32; // nodes that are evaluated together
+constexpr std::size_t node_chunk = 32; // nodes that are evaluated together
 
 // Deformation gradient (xX, xY, yX, yY) and its gradient (xXX, xXY, xYY, yXX, yXY, yYY), stress and double stress at
 // the nodes of a chunk. The double stress of XY belongs to both orders of the derivatives.
-struct Chunk
+struct NodeChunk
 {
-  alignas(64) double F[4][chunk], G[6][chunk], P[4][chunk], Q[6][chunk], energy[chunk];
+  alignas(64) double F[4][node_chunk], G[6][node_chunk], P[4][node_chunk], Q[6][node_chunk], energy[node_chunk];
 };
 
 // Stiffness h(a, a) = across |a|^2 + coupling (f.a)^2 of a bond and its derivatives by s = |f|^2/2, eqs. (C.24),
@@ -56,7 +56,7 @@ struct BondState
   Stiffness h;
 };
 
-inline __attribute__((always_inline)) BondState bond_state(const Chunk &c, const GradientForces::Bond &k,
+inline __attribute__((always_inline)) BondState bond_state(const NodeChunk &c, const GradientForces::Bond &k,
                                                            const std::size_t i)
 {
   const double XX = k.X * k.X, YY = k.Y * k.Y, XY = k.X * k.Y;
@@ -70,11 +70,11 @@ inline __attribute__((always_inline)) BondState bond_state(const Chunk &c, const
   return {x, y, tx, ty, nx, ny, ft, fn, h};
 }
 
-LATCON_INSTRUCTION_SETS void add_stress(Chunk &c, const GradientForces::Bond &k)
+LATCON_INSTRUCTION_SETS void add_stress(NodeChunk &c, const GradientForces::Bond &k)
 {
   const double XX = k.X * k.X, YY = k.Y * k.Y, XY = k.X * k.Y;
 #pragma omp simd
-  for (std::size_t i = 0; i < chunk; ++i)
+  for (std::size_t i = 0; i < node_chunk; ++i)
   {
     const auto [x, y, tx, ty, nx, ny, ft, fn, h] = bond_state(c, k, i);
     const double radial = 0.5 * (k.across * (h.across_s * (tx * tx + ty * ty) + h.coupling_s * ft * ft) +
@@ -96,10 +96,10 @@ LATCON_INSTRUCTION_SETS void add_stress(Chunk &c, const GradientForces::Bond &k)
   }
 }
 
-LATCON_INSTRUCTION_SETS void add_energy(Chunk &c, const GradientForces::Bond &k)
+LATCON_INSTRUCTION_SETS void add_energy(NodeChunk &c, const GradientForces::Bond &k)
 {
 #pragma omp simd
-  for (std::size_t i = 0; i < chunk; ++i)
+  for (std::size_t i = 0; i < node_chunk; ++i)
   {
     const auto [x, y, tx, ty, nx, ny, ft, fn, h] = bond_state(c, k, i);
     c.energy[i] += 0.5 * (k.across * (h.across * (tx * tx + ty * ty) + h.coupling * ft * ft) +
@@ -182,10 +182,10 @@ void GradientForces::visit(const Row<is_force> &row) const
 {
   const std::size_t columns = grid_.columns();
   const double area = grid_.area(), rx = 1. / grid_.size_x, ry = 1. / grid_.size_y;
-  Chunk c{};
-  for (std::size_t first = 1; first < grid_.cells_x; first += chunk)
+  NodeChunk c{};
+  for (std::size_t first = 1; first < grid_.cells_x; first += node_chunk)
   {
-    const std::size_t n = std::min(chunk, grid_.cells_x - first);
+    const std::size_t n = std::min(node_chunk, grid_.cells_x - first);
     const std::size_t node = row.j * columns + first;
     for (unsigned int d = 0; d < 2; ++d)
     {
@@ -200,7 +200,7 @@ void GradientForces::visit(const Row<is_force> &row) const
                              (low[i + 1] - low[static_cast<std::ptrdiff_t>(i) - 1]));
         c.G[3 * d + 2][i] = ry * ry * ((high[i] - here[i]) - (here[i] - low[i]));
       }
-      for (std::size_t i = n; i < chunk; ++i)
+      for (std::size_t i = n; i < node_chunk; ++i)
       {
         c.F[2 * d][i] = loading_[d][0];
         c.F[2 * d + 1][i] = loading_[d][1];
@@ -209,8 +209,8 @@ void GradientForces::visit(const Row<is_force> &row) const
     }
     if constexpr (is_force)
     {
-      std::fill(&c.P[0][0], &c.P[0][0] + 4 * chunk, 0.);
-      std::fill(&c.Q[0][0], &c.Q[0][0] + 6 * chunk, 0.);
+      std::fill(&c.P[0][0], &c.P[0][0] + 4 * node_chunk, 0.);
+      std::fill(&c.Q[0][0], &c.Q[0][0] + 6 * node_chunk, 0.);
       for (const Bond &k : bonds_)
         add_stress(c, k);
       for (unsigned int d = 0; d < 2; ++d)
@@ -237,7 +237,7 @@ void GradientForces::visit(const Row<is_force> &row) const
     }
     else
     {
-      std::fill(c.energy, c.energy + chunk, 0.);
+      std::fill(c.energy, c.energy + node_chunk, 0.);
       for (const Bond &k : bonds_)
         add_energy(c, k);
       for (std::size_t i = 0; i < n; ++i)

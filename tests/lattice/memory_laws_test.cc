@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "support/largest_error.h"
+#include "tests/lattice/sheets.h"
 
 namespace memory_laws_test
 {

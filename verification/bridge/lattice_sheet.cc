@@ -10,12 +10,13 @@ namespace
 
 using Condition = input::EdgeCase::Condition;
 
-void check_edge(const input::EdgeCase &edge, input::Parameters &p, const std::string &command)
+void check_edge(const input::EdgeCase &edge, input::Parameters &p, const std::string &command, bool may_roll)
 {
-  if (edge.condition == Condition::held && (edge.displacement_x != "loading" || edge.displacement_y != "loading"))
+  if (edge.condition == Condition::held && !(may_roll && edge.is_roller()) &&
+      (edge.displacement_x != "loading" || edge.displacement_y != "loading"))
     p.error(edge.name + (edge.displacement_x != "loading" ? "/displacement x" : "/displacement y"),
-            command + " supports held edges only at the homogeneous loading; give displacement = loading for both "
-                      "components, or condition = free",
+            command + " supports held edges only at the homogeneous loading; give displacement = loading for " +
+              (may_roll ? "one or both" : "both") + " components, or condition = free",
             {edge.name + "/condition"});
   if (!edge.traction.is_zero())
     p.error(edge.name + "/traction " + edge.traction.given(), command + " does not support tractions; give 0");
@@ -47,8 +48,13 @@ void check_period(const input::Case &input, input::Parameters &p, const std::str
 void require_lattice_sheet(const input::Case &input, input::Parameters &p, const std::string &command)
 {
   const input::ContinuumCase &c = input.continuum;
+  const bool moves = input.solution == input::Case::Solution::motion;
   for (const input::EdgeCase &edge : c.edges)
-    check_edge(edge, p, command);
+    check_edge(edge, p, command, moves);
+  if (!moves)
+    input::require_constant_loading(input, p, "static equilibrium has one loading");
+  else if (input.has_sheet() && (input.lattice().periodic().x || input.lattice().periodic().y))
+    input::require_constant_loading(input, p, command + " keeps the period of a sheet");
   if (input.has_inner_edge() && c.edges[4].condition == Condition::held)
     p.error("Inner edge/condition", command + " leaves the rim of a hole or notch free; give free");
   if (!c.mesh_file.empty())
@@ -86,8 +92,8 @@ void require_whole_held_sheet(const input::Case &input, input::Parameters &p, co
     if (input.continuum.edges[id].condition != Condition::held)
       p.error(input.continuum.edges[id].name + "/condition",
               command + " needs every edge of the sheet held; give held");
-  for (const input::EdgeCase &edge : input.continuum.edges)
-    check_edge(edge, p, command);
+  for (std::size_t id = 0; id < 5; ++id)
+    check_edge(input.continuum.edges[id], p, command, id == 2 || id == 3);
 }
 
 void require_fracture_case(const input::Case &input, input::Parameters &p)
@@ -97,6 +103,16 @@ void require_fracture_case(const input::Case &input, input::Parameters &p)
     p.error("Fracture/breaking stretch", "fracture needs a breaking stretch");
   if (!(input.end_time > 0.))
     p.error("Time/end", "fracture needs an end time larger than 0");
+  const bool held_ends = input.left_end == input::Case::End::held && input.right_end == input::Case::End::held;
+  const char *const end = input.left_end != input::Case::End::held ? "Fracture/left end" : "Fracture/right end";
+  if (!held_ends)
+    for (const std::size_t id : {2, 3})
+      if (input.continuum.edges[id].is_roller())
+        p.error(end, "the loads of an end are those of a sheet with held edges; give held",
+                {input.continuum.edges[id].name + "/condition"});
+  if (!held_ends && !input.history.empty())
+    p.error(end, "the loads of an end are those of the loading at the start; with a history, give held",
+            {"Loading/history times"});
   const bool absorbs = input.left_end == input::Case::End::absorbing || input.right_end == input::Case::End::absorbing;
   if (p.good() && absorbs && !lattice::waves_run_along_x(input.lattice(), input.material(), input.deformation()))
     p.error(input.left_end == input::Case::End::absorbing ? "Fracture/left end" : "Fracture/right end",
@@ -107,7 +123,8 @@ void require_fracture_case(const input::Case &input, input::Parameters &p)
 
 lattice::State lattice_state(const input::Case &input, const lattice::RowPartition &band)
 {
-  const auto held = [&](std::size_t id) { return input.continuum.edges[id].condition == Condition::held; };
+  const auto held = [&](std::size_t id)
+  { return input.continuum.edges[id].condition == Condition::held && !input.continuum.edges[id].is_roller(); };
   lattice::State state =
     lattice::homogeneous_state(band, input.material(), input.deformation(), {held(0), held(1), held(2), held(3)});
   if (input.hole_radius > 0.)

@@ -27,7 +27,10 @@ constexpr std::array entries_of_shell{
 };
 
 // Entries of which the largest stretch of a bond follows, up to which a law of the user must have values.
-constexpr std::array entries_of_user_law{"Fracture/breaking stretch", "Fracture/toughening", "Fracture/factor"};
+constexpr std::array entries_of_user_law{
+  "Fracture/breaking stretch", "Fracture/toughening",   "Fracture/factor",          "Fracture/shell factors",
+  "Fracture/rate factor",      "Loading/history times", "Loading/history strain x", "Loading/history strain y",
+};
 
 bool has_user_law(const input::Case &input)
 {

@@ -393,6 +393,7 @@ support::ExitCode run_continuum(const input::Options &options)
                   input.continuum.residual_stiffness != input::ContinuumCase().residual_stiffness)})
     if (is_given)
       parameters.error(name, "`latcon continuum` does not support damage, `latcon verify damage` does; omit the entry");
+  input::require_constant_loading(input, parameters, "the finite elements have one loading");
   if (moves && !(input.end_time > 0.))
     parameters.error("Time/end", "motion needs an end time larger than 0", {"Continuum/solution"});
   if (moves && input.continuum.time_step && parameters.good())

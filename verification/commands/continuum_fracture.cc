@@ -136,6 +136,15 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
   input::Parameters parameters;
   read_case(options, input, parameters);
   bridge::require_fracture_case(input, parameters);
+  input::require_constant_loading(input, parameters, "a crack of the finite elements has one loading");
+  if (input.breaking.rule != input::BreakingCase::Rule::critical_stretch || !input.breaking.shell_factors.empty())
+    parameters.error("Fracture/rule", "the damage of the finite elements knows one stretch; give critical-stretch",
+                     {"Fracture/shell factors"});
+  for (const std::size_t id : {2, 3})
+    if (input.continuum.edges[id].is_roller())
+      parameters.error(
+        input.continuum.edges[id].name + "/condition",
+        "a crack of the finite elements has no rollers; give displacement = loading for both components");
   const bridge::DamagedSheet sheet = bridge::damaged_sheet(input, parameters);
   resources::check_steps(input, sheet.step, parameters);
   parameters.finish();

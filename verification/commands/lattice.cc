@@ -3,8 +3,8 @@
 
 #include "lattice/relaxation.h"
 #include "verification/bridge/bloch.h"
-#include "verification/bridge/small_strain.h"
 #include "verification/bridge/lattice_sheet.h"
+#include "verification/bridge/small_strain.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
 #include "verification/commands/dry_run.h"
@@ -90,7 +90,10 @@ output::Results moved(const input::Case &input, const lattice::RowPartition &ban
   lattice::TimeStepping stepping = input.lattice_time_stepping();
   if (!input.time_step)
     stepping.step = input.end_time / std::ceil(input.end_time / stepping.step); // so that the last step ends at the end
+  const std::vector<lattice::Constraint> constraints = input::edge_constraints(input, state, band.lattice());
   lattice::Simulation simulation(band, material, std::move(state), stepping);
+  for (const lattice::Constraint &constraint : constraints)
+    simulation.constrain(constraint);
   FreeMotion motion(input, simulation, checkpoints, run);
   motion.go("motion");
   run.info().add("divided_steps", static_cast<std::uint64_t>(simulation.n_divided_steps()));
@@ -150,6 +153,8 @@ support::ExitCode run_lattice(const input::Options &options)
   const auto state_of = [&](const lattice::RowPartition &band)
   {
     lattice::State state = bridge::lattice_state(input, band);
+    for (const lattice::Constraint &constraint : input::edge_constraints(input, state, band.lattice()))
+      lattice::constrain(state, band, constraint);
     lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
     return state;
   };

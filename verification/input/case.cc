@@ -80,7 +80,10 @@ void check_cutout(const Case &input, Parameters &p)
 // Reports a breaking stretch at which the loading alone would break bonds.
 void check_breaking_stretch(const Case &input, Parameters &p, const lattice::TriangularLattice &sheet)
 {
-  double longest = 0.;
+  if (input.breaking.rule == BreakingCase::Rule::bond_energy && !p.good())
+    return; // bonds may have no energy
+  const std::shared_ptr<const lattice::BreakingRule> rule = input.breaking_rule();
+  double longest = 0., over_limit = 0.;
   std::size_t of_kind = 0;
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
   {
@@ -88,14 +91,16 @@ void check_breaking_stretch(const Case &input, Parameters &p, const lattice::Tri
       continue;
     const Eigen::Vector2d R = sheet.bond_vector(kind);
     const double stretch = (input.deformation() * R).norm() / R.norm();
-    // Equal stretches differ by rounding.
-    if (stretch > longest * (1. + 1e-12))
+    const double ratio = stretch / rule->limit({lattice::shell_of(kind)});
+    // Equal ratios differ by rounding.
+    if (ratio > over_limit * (1. + 1e-12))
     {
       longest = stretch;
+      over_limit = ratio;
       of_kind = kind;
     }
   }
-  if (longest < *input.breaking_stretch)
+  if (over_limit < 1.)
     return;
   const Eigen::Vector2d R = sheet.bond_vector(of_kind);
   p.error("Fracture/breaking stretch",
@@ -281,6 +286,7 @@ void Case::declare(Parameters &p)
         "eps_y: engineering strain along y; the stretch is 1 + eps_y", Presence::required);
 
   p.add("Loading", "shear", shear, Between{-1000., 1000.}, "1", "F_xy: displacement along x over undeformed y");
+  history.declare(p);
 
   p.add("Lattice", "solution", solution, {{"relaxed", Solution::relaxed}, {"motion", Solution::motion}},
         "what `latcon lattice` computes: static equilibrium, or the motion until the end time");
@@ -290,6 +296,7 @@ void Case::declare(Parameters &p)
 
   p.add("Fracture", "breaking stretch", breaking_stretch, Range({1., false}, {1e6, true}), "1",
         "lam_f: bonds break irreversibly above this stretch; required by `latcon fracture`");
+  breaking.declare(p);
   p.add("Fracture", "toughening", toughening,
         {{"none", Toughening::none}, {"behind-tip", Toughening::behind_tip}, {"retraction", Toughening::retraction}},
         "bonds whose lam_f is multiplied by the factor: none, bonds behind the tip, or bonds that have retracted");
@@ -383,6 +390,8 @@ void Case::check(Parameters &p)
     if (has_shell(number))
       shell(number).check(p, shell_sections[number], longest_stretch());
   disorder.check(p);
+  history.check(p);
+  breaking.check(*this, p);
 
   check_size(*this, p);
   check_cutout(*this, p);
@@ -450,10 +459,13 @@ lattice::Material Case::material() const
 double Case::longest_stretch() const
 {
   if (breaking_stretch)
-    return *breaking_stretch * disorder.strength.distribution().largest() *
+    return *breaking_stretch * breaking.largest_factor() * disorder.strength.distribution().largest() *
            (toughening == Toughening::none ? 1. : toughening_factor);
   constexpr double margin = 1.2;
-  return margin * std::max(1., support::singular_values(deformation())(0));
+  double longest = 1.;
+  for (const Eigen::Matrix2d &F : history.deformations(deformation()))
+    longest = std::max(longest, support::singular_values(F)(0));
+  return margin * longest;
 }
 
 Eigen::Matrix2d Case::deformation() const

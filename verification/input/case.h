@@ -9,8 +9,10 @@
 #include "lattice/fracture.h"
 #include "lattice/material.h"
 #include "lattice/time_step.h"
+#include "verification/input/breaking_case.h"
 #include "verification/input/continuum_case.h"
 #include "verification/input/disorder_case.h"
+#include "verification/input/loading_history.h"
 #include "verification/input/parameters.h"
 #include "verification/input/user_law.h"
 
@@ -104,6 +106,7 @@ struct Case
   double strain_x = 0.; ///< eps_x [-]
   double strain_y = 0.; ///< eps_y [-]
   double shear = 0.;    ///< F_xy [-]
+  LoadingHistory history;
 
   // Lattice
   enum class Solution
@@ -117,6 +120,7 @@ struct Case
 
   // Fracture
   std::optional<double> breaking_stretch; ///< lam_f [-]
+  BreakingCase breaking;
   enum class Toughening
   {
     none,
@@ -209,6 +213,8 @@ struct Case
   /// F = [1 + eps_x, F_xy; 0, 1 + eps_y] of the loaded sheet [-].
   Eigen::Matrix2d deformation() const;
   lattice::Toughening toughening_rule() const;
+  /// Rule by which bonds break, if there is a breaking stretch.
+  std::shared_ptr<const lattice::BreakingRule> breaking_rule() const { return breaking.make(*this); }
   /// Indices of the sites that the seed crack removes, by increasing X. @throws std::invalid_argument if there are none
   std::vector<std::size_t> seed(const lattice::TriangularLattice &sheet) const;
   lattice::ContactLaw contact_law() const;

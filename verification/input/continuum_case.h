@@ -79,6 +79,12 @@ struct EdgeCase
 
   void declare(Parameters &parameters, bool can_be_periodic);
   void check(Parameters &parameters) const;
+  /// Returns whether the edge is held at the loading in one component and free in the other one.
+  bool is_roller() const
+  {
+    return condition == Condition::held && ((displacement_x == "free" && displacement_y == "loading") ||
+                                            (displacement_x == "loading" && displacement_y == "free"));
+  }
 };
 
 /// Entries of a case for the finite element side alone.

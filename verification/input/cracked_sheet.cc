@@ -23,12 +23,18 @@ lattice::EndLoads::End end_load(Case::End end)
 std::unique_ptr<lattice::Simulation> cracked_sheet(const Case &input, const lattice::RowPartition &band)
 {
   const lattice::Material material = input.material();
-  const lattice::Edges edges{input.left_end == Case::End::held, input.right_end == Case::End::held, true, true};
+  const lattice::Edges edges{input.left_end == Case::End::held, input.right_end == Case::End::held,
+                             !input.continuum.edges[2].is_roller(), !input.continuum.edges[3].is_roller()};
   lattice::State state = lattice::homogeneous_state(band, material, input.deformation(), edges);
+  const std::vector<lattice::Constraint> constraints = edge_constraints(input, state, band.lattice());
+  for (const lattice::Constraint &constraint : constraints)
+    lattice::constrain(state, band, constraint);
   lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
   auto simulation = std::make_unique<lattice::Simulation>(
     band, material, std::move(state), input.fracture_time_stepping(),
-    lattice::Fracture(band, material, *input.breaking_stretch, input.toughening_rule(), input.deformation()));
+    lattice::Fracture(band, material, input.breaking_rule(), input.toughening_rule(), input.deformation()));
+  for (const lattice::Constraint &constraint : constraints)
+    simulation->constrain(constraint);
   if (!edges.left || !edges.right)
     simulation->load_ends(input.deformation(), end_load(input.left_end), end_load(input.right_end));
   if (input.has_contact)

@@ -183,7 +183,7 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   json["detached_fragments"] = fragments.sizes.size();
   json["largest_fragment"] = fragments.sizes.empty() ? 0 : fragments.sizes.front();
   json["overstretched_bonds"] = analysis::n_overstretched_bonds(state, simulation_.lattice(), breaking_stretch);
-  if (const auto bond = lattice::nearest_to_breaking(state, simulation_.lattice()))
+  if (const auto bond = simulation_.nearest_to_breaking())
   {
     const lattice::TriangularLattice &sheet = simulation_.lattice();
     const Eigen::Vector2d X = sheet.reference(bond->near) + 0.5 * sheet.bond_vector(bond->kind);

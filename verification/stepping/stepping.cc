@@ -101,6 +101,15 @@ public:
     lattice_ = std::make_unique<lattice::TriangularLattice>(input_.lattice());
     band_ = std::make_unique<lattice::RowPartition>(*lattice_);
     simulation_ = input::cracked_sheet(input_, *band_);
+    if (input_.history.empty())
+      edges_ = simulation_->constrain({lattice::held_sites(simulation_->state(), *lattice_)});
+  }
+
+  void move_edges(const Eigen::Matrix2d &velocity_gradient)
+  {
+    if (!edges_)
+      throw std::invalid_argument("the edges move by the history of the case");
+    simulation_->set_motion(*edges_, lattice::steady(velocity_gradient));
   }
 
   // Bonds that broke: (time, site, other site, X, Y, stretch).
@@ -198,6 +207,7 @@ private:
   std::unique_ptr<lattice::TriangularLattice> lattice_;
   std::unique_ptr<lattice::RowPartition> band_;
   std::unique_ptr<lattice::Simulation> simulation_;
+  std::optional<std::size_t> edges_; // constraint that the caller moves
 };
 
 // View of a field, which cannot be written.
@@ -231,7 +241,7 @@ PYBIND11_MODULE(latcon_stepping, module)
     .def(py::init<const std::string &>())
     .def("step", &Sheet::step, without_lock)
     .def("kick", &Sheet::kick)
-    .def("move_edges", [](Sheet &sheet, const Eigen::Matrix2d &L) { sheet.simulation().move_edges(L); })
+    .def("move_edges", &Sheet::move_edges)
     .def("save",
          [](Sheet &sheet)
          {

@@ -116,6 +116,10 @@ TEST(LatticeSheet, RefusesWhatTheLatticeCannotDo)
   const std::string motion = "Lattice/solution=motion";
   EXPECT_TRUE(problems({free[0], free[1], free[2], motion}).empty());
   expect_refused("Initial state/velocity x", {motion, "Initial state/velocity x=1"});
+  const Lines roller = {"Top edge/displacement x=free", motion};
+  EXPECT_TRUE(problems(roller).empty());
+  EXPECT_TRUE(problems({"Loading/history times=1", "Loading/history strain y=2", motion}).empty());
+  expect_refused("Top edge/displacement x", {"Top edge/displacement x=free", "Top edge/displacement y=0", motion});
   expect_refused("Initial state/base", {motion, "Initial state/base=undeformed"});
 }
 

@@ -1,0 +1,60 @@
+#include "lattice/bond_energy.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+namespace latcon::lattice
+{
+namespace
+{
+
+// Beyond it no law is evaluated.
+constexpr double longest_searched = 1e6;
+
+} // namespace
+
+BondEnergy::BondEnergy(const Material &material, double energy) : material_(material), energy_(energy)
+{
+  if (!(energy > 0.))
+    throw std::invalid_argument("the critical energy of bonds must be positive");
+}
+
+double BondEnergy::stretch_at(std::size_t shell, double energy) const
+{
+  const BondLaw &law = material_.in_shell(shell)->law;
+  const auto stored = [&](double stretch) { return lattice::energy(law, stretch) - lattice::energy(law, 1.); };
+  if (!(energy > 0.))
+    return 1.;
+  double low = 1., high = 2.;
+  for (; high < longest_searched && stored(high) < energy; high *= 2.)
+    low = high;
+  if (high >= longest_searched)
+    return std::numeric_limits<double>::infinity();
+  while (high - low > 4e-16 * high)
+  {
+    const double middle = 0.5 * (low + high);
+    (stored(middle) < energy ? low : high) = middle;
+  }
+  return high;
+}
+
+double BondEnergy::limit(const Bond &bond) const
+{
+  return stretch_at(bond.shell, energy_ * bond.toughening * bond.strength / bond.stiffness);
+}
+
+// The energy grows faster than the stretch beyond 1, so that the strongest bond has the smallest limit over its
+// strength.
+double BondEnergy::smallest_limit(double toughening) const
+{
+  const double strongest = material_.disorder.strength.largest();
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t shell = 0; shell < n_shells; ++shell)
+    if (material_.in_shell(shell) != nullptr)
+      smallest = std::min(smallest,
+                          stretch_at(shell, energy_ * toughening * strongest / material_.disorder.stiffness.largest()));
+  return smallest / strongest;
+}
+
+} // namespace latcon::lattice

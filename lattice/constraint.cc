@@ -1,0 +1,208 @@
+#include "lattice/constraint.h"
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <stdexcept>
+
+namespace latcon::lattice
+{
+namespace
+{
+
+std::uint8_t components(const Constraint &constraint)
+{
+  return static_cast<std::uint8_t>((constraint.along_x ? 1 : 0) | (constraint.along_y ? 2 : 0));
+}
+
+} // namespace
+
+std::vector<std::size_t> held_sites(const State &state, const TriangularLattice &lattice)
+{
+  std::vector<std::size_t> sites;
+  for (std::size_t place = 0; place < lattice.n_places(); ++place)
+    if (state.held[place] != 0 && lattice.is_site(place))
+      sites.push_back(place);
+  return sites;
+}
+
+Constraint::Motion steady(const Eigen::Matrix2d &velocity_gradient)
+{
+  return [velocity_gradient](double, double) { return AffineVelocity{Eigen::Vector2d::Zero(), velocity_gradient}; };
+}
+
+Constraint::Motion piecewise_linear(std::vector<double> times, std::vector<Eigen::Matrix2d> deformations)
+{
+  if (times.size() != deformations.size() || !std::is_sorted(times.begin(), times.end(), std::less_equal<>()))
+    throw std::invalid_argument("a piecewise linear motion needs increasing times, and a deformation for each");
+  return [times = std::move(times), deformations = std::move(deformations)](double from, double to)
+  {
+    // The rate itself within one piece, so that it is the same number in every step; otherwise the mean.
+    Eigen::Matrix2d change = Eigen::Matrix2d::Zero();
+    for (std::size_t i = 1; i < times.size(); ++i)
+    {
+      const double overlap = std::min(to, times[i]) - std::max(from, times[i - 1]);
+      if (!(overlap > 0.))
+        continue;
+      const Eigen::Matrix2d rate = (deformations[i] - deformations[i - 1]) / (times[i] - times[i - 1]);
+      if (from >= times[i - 1] && to <= times[i])
+        return AffineVelocity{Eigen::Vector2d::Zero(), rate};
+      change += overlap * rate;
+    }
+    return AffineVelocity{Eigen::Vector2d::Zero(), change / (to - from)};
+  };
+}
+
+void constrain(State &state, const RowPartition &band, const Constraint &constraint)
+{
+  const TriangularLattice &lattice = band.lattice();
+  for (const std::size_t place : constraint.sites)
+  {
+    if (!lattice.is_site(place))
+      throw std::invalid_argument("only a site can be constrained");
+    if (state.removed[place] != 0 || state.held[place] != 0)
+      continue;
+    const bool is_whole = components(constraint) == 3;
+    (is_whole ? state.held : state.rollers)[place] |= is_whole ? 1 : components(constraint);
+    if (!band.is_relevant(place))
+      continue;
+    if (is_whole)
+      state.inverse_mass[place] = 0.;
+    if (constraint.along_x)
+      state.vx[place] = 0.;
+    if (constraint.along_y)
+      state.vy[place] = 0.;
+  }
+}
+
+PrescribedMotion::PrescribedMotion(const RowPartition &band, Constraint constraint)
+  : band_(band), constraint_(std::move(constraint))
+{
+  std::sort(constraint_.sites.begin(), constraint_.sites.end());
+}
+
+bool PrescribedMotion::overlaps(const PrescribedMotion &other) const
+{
+  if ((components(constraint_) & components(other.constraint_)) == 0)
+    return false;
+  std::vector<std::size_t> both;
+  std::set_intersection(constraint_.sites.begin(), constraint_.sites.end(), other.constraint_.sites.begin(),
+                        other.constraint_.sites.end(), std::back_inserter(both));
+  return !both.empty();
+}
+
+template <class Visitor>
+void PrescribedMotion::for_each_known(const State &state, const Visitor &visit) const
+{
+  for (const std::size_t place : constraint_.sites)
+    if (band_.is_relevant(place) && state.removed[place] == 0)
+      visit(place);
+}
+
+bool PrescribedMotion::prescribe(State &state, double from, double to)
+{
+  const AffineVelocity velocity =
+    constraint_.motion && released_ == 0 ? constraint_.motion(from, to) : AffineVelocity{};
+  if (released_ != 0 || velocity == velocity_)
+    return false;
+  velocity_ = velocity;
+  for_each_known(state,
+                 [&](std::size_t place)
+                 {
+                   const Eigen::Vector2d v = velocity.at(band_.lattice().reference(place));
+                   if (constraint_.along_x)
+                     state.vx[place] = v.x();
+                   if (constraint_.along_y)
+                     state.vy[place] = v.y();
+                 });
+  return true;
+}
+
+void PrescribedMotion::append_rollers(const State &state, std::vector<RollerVelocity> &rollers) const
+{
+  if (released_ != 0 || components(constraint_) == 3)
+    return;
+  for_each_known(state,
+                 [&](std::size_t place)
+                 {
+                   const Eigen::Vector2d v = velocity_.at(band_.lattice().reference(place));
+                   for (const unsigned int component : {0u, 1u})
+                     if (band_.owns(place) && state.held[place] == 0 &&
+                         (components(constraint_) >> component & 1u) != 0)
+                       rollers.push_back({place, component, v[component]});
+                 });
+}
+
+void PrescribedMotion::power(const State &state, const Forces &forces, const Field &vx, const Field &vy,
+                             const std::vector<const SiteForces *> &site_forces, std::vector<double> &of_rows) const
+{
+  const TriangularLattice &lattice = band_.lattice();
+  std::fill(of_rows.begin(), of_rows.end(), 0.);
+  if (released_ != 0 || velocity_.is_zero())
+    return;
+  const auto power_of = [&](std::size_t place, const Eigen::Vector2d &force)
+  {
+    return (constraint_.along_x ? force.x() * state.vx[place] : 0.) +
+           (constraint_.along_y ? force.y() * state.vy[place] : 0.);
+  };
+  std::vector<std::size_t> own;
+  for_each_known(state,
+                 [&](std::size_t place)
+                 {
+                   if (band_.owns(place))
+                     own.push_back(place);
+                 });
+  std::vector<double> powers(own.size());
+  const auto n = static_cast<std::ptrdiff_t>(own.size());
+#pragma omp parallel for schedule(static) if (own.size() >= min_sites_for_threads)
+  for (std::ptrdiff_t i = 0; i < n; ++i)
+  {
+    const std::size_t place = own[static_cast<std::size_t>(i)];
+    powers[static_cast<std::size_t>(i)] = power_of(place, forces.on_site(state, vx, vy, place));
+  }
+  for (std::size_t i = 0; i < own.size(); ++i)
+    of_rows[lattice.row_of(own[i])] -= powers[i];
+  for (const SiteForces *others : site_forces)
+    if (others != nullptr)
+      for (const SiteForce &on : others->last())
+        if (std::binary_search(own.begin(), own.end(), on.place))
+          of_rows[lattice.row_of(on.place)] -= power_of(on.place, on.force);
+}
+
+void PrescribedMotion::set_free(State &state, const Material &material) const
+{
+  const double inverse_mass = 1. / site_mass(material, band_.lattice());
+  for (const std::size_t place : constraint_.sites)
+  {
+    state.rollers[place] &= static_cast<std::uint8_t>(~components(constraint_));
+    if (state.removed[place] != 0 || components(constraint_) != 3)
+      continue;
+    state.held[place] = 0;
+    if (band_.is_relevant(place))
+      state.inverse_mass[place] = inverse_mass;
+  }
+}
+
+void PrescribedMotion::release(State &state, const Material &material, std::vector<double> &work)
+{
+  released_ = 1;
+  set_free(state, material);
+  const double half_mass = 0.5 * site_mass(material, band_.lattice());
+  for_each_known(state,
+                 [&](std::size_t place)
+                 {
+                   if (!band_.owns(place))
+                     return;
+                   const double vx = constraint_.along_x ? state.vx[place] : 0.;
+                   const double vy = constraint_.along_y ? state.vy[place] : 0.;
+                   work[band_.lattice().row_of(place)] += half_mass * (vx * vx + vy * vy);
+                 });
+}
+
+void PrescribedMotion::free_if_released(State &state, const Material &material) const
+{
+  if (released_ != 0)
+    set_free(state, material);
+}
+
+} // namespace latcon::lattice

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "lattice/archive_rows.h"
+#include "lattice/integrator.h"
+
+namespace latcon::lattice
+{
+
+/// Velocity v0 + L X of sites at X in the undeformed sheet.
+struct AffineVelocity
+{
+  Eigen::Vector2d translation = Eigen::Vector2d::Zero(); ///< v0 [m/s]
+  Eigen::Matrix2d gradient = Eigen::Matrix2d::Zero();    ///< L [1/s]
+
+  Eigen::Vector2d at(const Eigen::Vector2d &X) const { return translation + gradient * X; }
+  bool is_zero() const { return translation.isZero(0.) && gradient.isZero(0.); }
+  bool operator==(const AffineVelocity &other) const
+  {
+    return translation == other.translation && gradient == other.gradient;
+  }
+};
+
+/// Sites whose motion is prescribed along x, along y or both: edges that move, rollers, grips.
+struct Constraint
+{
+  /// Mean velocity of a time interval [s].
+  using Motion = std::function<AffineVelocity(double from, double to)>;
+
+  std::vector<std::size_t> sites; ///< the same on all ranks
+  bool along_x = true, along_y = true;
+  /// Sites keep the velocity during a time step, so that they are in place at its end; null: they stand.
+  Motion motion = {};
+  double until = std::numeric_limits<double>::infinity(); ///< time from which on the sites are free [s]
+};
+
+/// All held sites.
+std::vector<std::size_t> held_sites(const State &state, const TriangularLattice &lattice);
+
+/// A velocity that does not change.
+Constraint::Motion steady(const Eigen::Matrix2d &velocity_gradient);
+
+/// The motion x = F(t) X, F piecewise linear in time; before the first instant and after the last one it stands.
+/// @param times [s], increasing @param deformations F at these times, as many
+/// @throws std::invalid_argument for other times
+Constraint::Motion piecewise_linear(std::vector<double> times, std::vector<Eigen::Matrix2d> deformations);
+
+/// Marks sites as constrained in the rows that `band` knows, as a Simulation does; before add_noise(), so that they
+/// stay in place. @throws std::invalid_argument for what is no site
+void constrain(State &state, const RowPartition &band, const Constraint &constraint);
+
+/// A constraint of a sheet in motion. Removed sites are left out.
+class PrescribedMotion
+{
+public:
+  PrescribedMotion(const RowPartition &band, Constraint constraint);
+
+  /// Returns whether a component of a site would be prescribed twice.
+  bool overlaps(const PrescribedMotion &other) const;
+
+  void set_motion(Constraint::Motion motion) { constraint_.motion = std::move(motion); }
+
+  /// Returns whether the sites are to be let go at `time` [s].
+  bool ends(double time) const { return released_ == 0 && time >= constraint_.until; }
+  /// Lets the sites go with the velocity that they have. @param work their kinetic energy is added to that of each row
+  /// [J/m]
+  void release(State &state, const Material &material, std::vector<double> &work);
+
+  /// Gives the sites their velocity of a time interval [s]. @return whether it differs from the one before: the same on
+  /// all ranks
+  bool prescribe(State &state, double from, double to);
+
+  /// Appends the single components of own sites that are prescribed while the other one is free.
+  void append_rollers(const State &state, std::vector<RollerVelocity> &rollers) const;
+
+  /// Power of the constraint on the sheet, -f . v over the components prescribed, f being all forces on a site [W/m].
+  /// @param site_forces beside those of the bonds; null ones are skipped @param of_rows one per row; own ones are set
+  void power(const State &state, const Forces &forces, const Field &vx, const Field &vy,
+             const std::vector<const SiteForces *> &site_forces, std::vector<double> &of_rows) const;
+
+  /// Saves or loads what changes, besides the state; see Simulation.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    std::vector<double> velocity{velocity_.translation(0), velocity_.translation(1), velocity_.gradient(0, 0),
+                                 velocity_.gradient(0, 1), velocity_.gradient(1, 0), velocity_.gradient(1, 1)};
+    archive("velocity", velocity);
+    archive("released", released_);
+    if constexpr (Archive::loads)
+    {
+      require_archived(velocity.size() == 6, "`velocity` of a constraint has six numbers");
+      velocity_.translation << velocity[0], velocity[1];
+      velocity_.gradient << velocity[2], velocity[3], velocity[4], velocity[5];
+    }
+  }
+  /// After loading: frees the sites in a state that was set up with them constrained.
+  void free_if_released(State &state, const Material &material) const;
+
+private:
+  template <class Visitor>
+  void for_each_known(const State &state, const Visitor &visit) const;
+  void set_free(State &state, const Material &material) const;
+
+  RowPartition band_;
+  Constraint constraint_;
+  AffineVelocity velocity_;
+  int released_ = 0; // 1: yes
+};
+
+} // namespace latcon::lattice
