@@ -237,7 +237,7 @@ class Study(TemporaryFolder):
         base.write_text(base.read_text().replace("strain y = 1.8", "strain y = 1.4"))
         process.wait(120)
         cases = [(runs / f"base-{seed}" / "case.prm").read_text() for seed in (1, 2, 3)]
-        self.assertEqual([re.search("strain y = (.*)", case).group(1) for case in cases], ["1.8"] * 3)
+        self.assertEqual([re.search("set strain y *= (.*)", case).group(1) for case in cases], ["1.8"] * 3)
         for seed, case in zip((1, 2, 3), cases):
             self.assertEqual((self.out / "cases" / f"base-{seed}.prm").read_text(), case)
 
