@@ -52,7 +52,7 @@ LIBRARIES = {
 HEADERS = [
     ("verification/", "deal.II/", ("verification/bridge/affine_displacement.h", "verification/bridge/field_function.h",
                                    "verification/claims/wave_sheet.h")),
-    ("", "vtk", ("verification/compare/frame.h", "verification/compare/quiet_vtk.h", "verification/output/field_units.h")),
+    ("", "vtk", ("verification/compare/frame.h", "verification/compare/quiet_vtk.h", "verification/output/point_data.h")),
     ("", "nlohmann/json.hpp", ()),
     *[("", f"Eigen/{part}", ()) for part in ("Cholesky", "Dense", "Eigen", "LU", "QR", "SVD")],
 ]

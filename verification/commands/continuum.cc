@@ -10,7 +10,6 @@
 #include "continuum/dynamic_solver.h"
 #include "continuum/errors.h"
 #include "continuum/field_writer.h"
-#include "support/full_precision.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/continuum_model.h"
 #include "verification/bridge/field_function.h"
@@ -18,11 +17,10 @@
 #include "verification/commands/command.h"
 #include "verification/commands/continuum_commands.h"
 #include "verification/commands/cost.h"
+#include "verification/commands/motion.h"
 #include "verification/commands/signals.h"
-#include "verification/output/checkpoints.h"
 #include "verification/output/continuum_record.h"
 #include "verification/output/mechanism_names.h"
-#include "verification/output/progress.h"
 #include "verification/resources/continuum_resources.h"
 #include "verification/resources/resources.h"
 
@@ -190,8 +188,8 @@ continuum::DynamicSettings dynamic_settings(const input::Case &input, bridge::Co
   return settings;
 }
 
-// Motion before its first step, whose input is valid.
-struct Motion
+// Sheet that moves, before its first step, whose input is valid.
+struct MovingSheet
 {
   continuum::DynamicSettings settings;
   std::unique_ptr<continuum::Viscosity> viscosity;
@@ -200,7 +198,7 @@ struct Motion
   continuum::Sheet::Vector added, velocity; // nodal fields that are added to the base state
 
   // @throws InputError, continuum::InvalidInput for what start() would refuse
-  Motion(const input::Case &input, bridge::ContinuumModel &model)
+  MovingSheet(const input::Case &input, bridge::ContinuumModel &model)
     : settings(dynamic_settings(input, model)),
       viscosity(bridge::homogenised_viscosity(input.lattice(), model.subject().material)),
       memory(bridge::homogenised_memory(input.lattice(), model.subject().material)),
@@ -275,147 +273,109 @@ output::Results motion_results(const continuum::DynamicSolver &solver, const out
   return results;
 }
 
-output::Results move(const input::Case &input, const bridge::ContinuumModel &model, Motion &motion,
-                     output::Checkpoints &checkpoints, Run &run)
+// Motion of the finite elements until the end time.
+class ElementMotion : public Motion
 {
-  const continuum::DynamicSettings &settings = motion.settings;
-  continuum::DynamicSolver &solver = motion.solver;
-  output::ContinuumRecord record(output::mechanism_names(model.subject().material));
-  continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
-  double next_frame = input.frame_interval;
-  std::size_t step = 0;                     // done
-  std::uint64_t n_newton = 0, n_linear = 0; // iterations of this run, without those before a checkpoint
-  const auto n_steps = static_cast<std::size_t>(std::ceil(input.end_time / settings.time_step * (1. - 1e-12)));
-  const auto parts = [&](auto &archive)
+public:
+  ElementMotion(const input::Case &input, const bridge::ContinuumModel &model, MovingSheet &sheet,
+                output::Checkpoints &checkpoints, Run &run)
+    : Motion(input, checkpoints, run), model_(model), sheet_(sheet),
+      record_(output::mechanism_names(model.subject().material)), frames_(MPI_COMM_WORLD, run.directory()),
+      n_steps_(static_cast<std::size_t>(std::ceil(input.end_time / sheet.settings.time_step * (1. - 1e-12))))
   {
-    archive("solver", solver);
-    archive("record", record);
-    archive("frames", fields);
-    archive("next_frame", next_frame);
-    archive("step", step);
-    if constexpr (std::decay_t<decltype(archive)>::loads)
-    {
-      const double done = static_cast<double>(step), frames_so_far = static_cast<double>(fields.n_frames());
-      constexpr double epsilon = std::numeric_limits<double>::epsilon();
-      output::require_matching_time(*checkpoints.found(), step, solver.time(), done * settings.time_step,
-                                    4. * epsilon * solver.time());
-      const bool has_series = input.frame_interval > 0.;
-      if (step > n_steps || !(record.last_time() <= solver.time() && fields.last_time() <= solver.time()))
-        throw support::InputError("what was recorded is of later times");
-      if (has_series &&
-          !(frames_so_far >= 1. && frames_so_far <= done + 1. &&
-            std::abs(next_frame - frames_so_far * input.frame_interval) <= frames_so_far * epsilon * next_frame))
-        throw support::InputError("`next_frame` does not follow the frames that there are");
-    }
-  };
-  const auto write_frame = [&]
-  {
-    const auto phase = run.info().stopwatch().phase("output");
-    fields.add_frame(solver);
-  };
-  const auto write_tables = [&]
-  {
-    if (run.is_root())
-      record.write(run.directory());
-  };
-  const bool resumed = checkpoints.resume(parts);
-  if (!resumed)
-    motion.start(input, model, run);
-  const SignalDeferral deferral;
-  if (resumed)
-  {
-    // Removes what was written after the checkpoint.
-    write_tables();
-    fields.write_collection();
   }
-  else
+
+  // Moves the sheet. @return results at the end, or where the motion was interrupted
+  output::Results results()
   {
-    write_frame();
-    record.motion(solver);
-    record.check(solver);
+    go("motion");
+    run_.info().add("divided_steps", static_cast<std::uint64_t>(solver_.n_divided_steps()));
+    run_.info().add("newton_iterations", n_newton_);
+    run_.info().add("linear_iterations", n_linear_);
+    return motion_results(solver_, record_.ledger(), sheet_.settings.time_step);
   }
-  // Writes the present state, wherever the motion ends.
-  const auto write_last_state = [&]
+
+private:
+  double time() const override { return solver_.time(); }
+  double time_of_step() const override { return static_cast<double>(step()) * sheet_.settings.time_step; }
+  bool is_complete() const override { return step() >= n_steps_; }
+  std::size_t n_frames() const override { return frames_.n_frames(); }
+  std::pair<std::string, double> progress() const override
   {
-    record.motion(solver);
-    write_tables();
-    if (solver.time() > fields.last_time())
-      write_frame();
-  };
-  output::Progress progress(run.is_verbose());
-  try
-  {
-    const auto phase = run.info().stopwatch().phase("motion");
-    while (step < n_steps)
-    {
-      // A step takes far longer than this communication.
-      const bool is_stopped = any_rank_interrupted();
-      if (is_stopped || checkpoints.due(step))
-        checkpoints.write(step, solver.time(), parts);
-      if (is_stopped)
-        break;
-      solver.step();
-      ++step;
-      record.check(solver);
-      for (const continuum::NewtonIteration &iteration : solver.last_report().iterations)
-      {
-        n_newton += iteration.iteration > 0 ? 1 : 0;
-        n_linear += iteration.linear_iterations;
-      }
-      if (step % input.energy_interval == 0)
-        record.motion(solver);
-      if (input.frame_interval > 0. && solver.time() >= next_frame && step < n_steps)
-      {
-        write_frame();
-        next_frame += input.frame_interval;
-      }
-      if (progress.due())
-        progress.show("step " + std::to_string(step) + "/" + std::to_string(n_steps),
-                      static_cast<double>(step) / n_steps);
-    }
+    return {"/" + std::to_string(n_steps_), static_cast<double>(step()) / static_cast<double>(n_steps_)};
   }
-  catch (const continuum::SolverFailed &failure)
+  void start() override
   {
-    std::string message = failure.what();
+    sheet_.start(input_, model_, run_);
+    record_.motion(solver_);
+    record_.check(solver_);
+  }
+  void advance() override
+  {
     try
     {
-      write_last_state();
+      solver_.step();
     }
-    catch (const std::exception &other)
+    catch (const continuum::SolverFailed &failure)
     {
-      message += std::string("\nthe state before it could not be written: ") + other.what();
+      throw support::SolverError(failure.what());
     }
-    throw support::SolverError(message);
+    record_.check(solver_);
+    for (const continuum::NewtonIteration &iteration : solver_.last_report().iterations)
+    {
+      n_newton_ += iteration.iteration > 0 ? 1 : 0;
+      n_linear_ += iteration.linear_iterations;
+    }
   }
-  write_last_state();
-  run.info().add("divided_steps", static_cast<std::uint64_t>(solver.n_divided_steps()));
-  run.info().add("newton_iterations", n_newton);
-  run.info().add("linear_iterations", n_linear);
-  return motion_results(solver, record.ledger(), settings.time_step);
-}
+  void record_energies() override { record_.motion(solver_); }
+  void write() override
+  {
+    const auto phase = run_.info().stopwatch().phase("output");
+    if (solver_.time() > frames_.last_time())
+      frames_.add_frame(solver_);
+    if (run_.is_root())
+      record_.write(run_.directory());
+  }
+  void write_failed() override
+  {
+    record_energies();
+    write();
+  }
+  void write_resumed() override
+  {
+    if (run_.is_root())
+      record_.write(run_.directory());
+    frames_.write_collection();
+  }
+  void archive(output::CheckpointReader &archive) override { parts(archive); }
+  void archive(output::CheckpointWriter &archive) override { parts(archive); }
+  template <class Archive>
+  void parts(Archive &archive)
+  {
+    archive("solver", solver_);
+    archive("record", record_);
+    archive("frames", frames_);
+    if (Archive::loads && !(frames_.last_time() <= solver_.time()))
+      throw support::InputError("the last frame is of a later time");
+  }
+
+  const bridge::ContinuumModel &model_;
+  MovingSheet &sheet_;
+  continuum::DynamicSolver &solver_ = sheet_.solver;
+  output::ContinuumRecord record_;
+  continuum::FieldWriter frames_;
+  std::size_t n_steps_;
+  std::uint64_t n_newton_ = 0, n_linear_ = 0; // iterations of this run, without those before a checkpoint
+};
 
 // Reports a step that makes too many of them, or is longer than a relaxation time.
 void check_time_step(const input::Case &input, double step, input::Parameters &parameters)
 {
   resources::check_steps(input, step, parameters);
-  const auto check_branches = [&](const input::ShellCase &shell, const std::string &section)
-  {
-    const auto time = std::find_if(shell.relaxation_times.begin(), shell.relaxation_times.end(),
-                                   [step](double tau) { return tau < step; });
-    if (time == shell.relaxation_times.end())
-      return;
-    const double modulus = shell.branch_moduli[time - shell.relaxation_times.begin()];
-    parameters.error(section + "/relaxation times",
-                     "a branch with " + support::full_precision(*time) + " s relaxes within one time step, " +
-                       support::full_precision(step) +
-                       " s, and acts as a dashpot; omit it and add its modulus times its relaxation time, " +
-                       support::full_precision(modulus * *time) +
-                       " Pa s, to the viscosity, or give a smaller Continuum/time step",
-                     {section + "/branch moduli", section + "/viscosity", "Continuum/time step"});
-  };
   for (std::size_t number = 0; number < lattice::n_shells; ++number)
     if (input.has_shell(number))
-      check_branches(input.shell(number), input::Case::shell_sections[number]);
+      input.shell(number).check_relaxation_times(parameters, input::Case::shell_sections[number], step,
+                                                 {"Continuum/time step"});
 }
 
 } // namespace
@@ -451,9 +411,9 @@ support::ExitCode run_continuum(const input::Options &options)
     check_time_step(input, motion_time_step(input, model), parameters);
     parameters.finish();
   }
-  std::optional<Motion> motion;
+  std::optional<MovingSheet> sheet_in_motion;
   if (moves)
-    motion.emplace(input, model);
+    sheet_in_motion.emplace(input, model);
   const double steps = moves ? std::ceil(input.end_time / motion_time_step(input, model)) : 0.;
   const double frames =
     2. + (moves && input.frame_interval > 0. ? std::floor(input.end_time / input.frame_interval) : 0.);
@@ -482,7 +442,8 @@ support::ExitCode run_continuum(const input::Options &options)
   try
   {
     const output::Results results =
-      moves ? move(input, model, *motion, checkpoints, run) : equilibrium(input, model, checkpoints, run);
+      moves ? ElementMotion(input, model, *sheet_in_motion, checkpoints, run).results()
+            : equilibrium(input, model, checkpoints, run);
     return interrupted() ? run.interrupted(results) : run.finish(results);
   }
   catch (const output::UnusableCheckpoint &)

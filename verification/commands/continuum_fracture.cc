@@ -3,7 +3,6 @@
 
 #include <omp.h>
 
-#include "lattice/archive_rows.h"
 #include "support/ranks.h"
 #include "verification/bridge/damaged_sheet.h"
 #include "verification/bridge/lattice_sheet.h"
@@ -12,11 +11,9 @@
 #include "verification/commands/continuum_commands.h"
 #include "verification/commands/cost.h"
 #include "verification/commands/crack_run.h"
-#include "verification/commands/signals.h"
-#include "verification/output/checkpoints.h"
+#include "verification/commands/motion.h"
 #include "verification/output/damage_record.h"
 #include "verification/output/damage_writer.h"
-#include "verification/output/progress.h"
 
 namespace latcon::commands
 {
@@ -26,167 +23,109 @@ namespace
 // Energy of the sheet, over the one supplied, at which a run has blown up, as on the lattice.
 constexpr double blown_up = 2.;
 
-using analysis::CrackMeasurement;
-
-// A crack of the continuum between steps: frames, tables, checkpoints, signals, progress.
-class DamageRun
+// Motion until the crack reaches the stop position or the time ends. All ranks have the whole sheet and the same
+// records; the root rank writes.
+class DamageCrack : public Motion
 {
 public:
-  DamageRun(const input::Case &input, continuum::DamageMotion &motion, bool skip_verification,
-            output::Checkpoints &checkpoints, Run &run)
-    : input_(input), motion_(motion), skip_verification_(skip_verification), checkpoints_(checkpoints), run_(run),
-      seed_tip_(bridge::seed_segment(input, motion.grid()).right), record_(input, motion, seed_tip_),
-      frames_(run.directory(), bridge::to_continuum(input.deformation())), next_frame_(input.frame_interval)
+  DamageCrack(const input::Case &input, continuum::DamageMotion &motion, bool skip_verification,
+              output::Checkpoints &checkpoints, Run &run)
+    : Motion(input, checkpoints, run), motion_(motion), skip_verification_(skip_verification),
+      seed_tip_(bridge::seed_segment(input, motion.grid()).right), stop_(input.stop_position * input.length),
+      record_(input, motion, seed_tip_), frames_(run.directory(), bridge::to_continuum(input.deformation()))
   {
-  }
-
-  // Moves the sheet until the crack reaches the stop position, the time ends or a signal comes.
-  void go()
-  {
-    const bool resumed = checkpoints_.resume([this](auto &archive) { parts(archive); });
-    const SignalDeferral deferral;
-    if (resumed)
-    {
-      // Removes what was written after the checkpoint.
-      write_tables();
-      if (run_.is_root())
-        frames_.series().write_collection();
-    }
-    else
-    {
-      record_.step();
-      record_.energies();
-      add_frame();
-    }
-    output::Progress progress(run_.is_verbose());
-    const auto phase = run_.info().stopwatch().phase("fracture");
-    const double stop = input_.stop_position * input_.length;
-    while (motion_.time() < input_.end_time && record_.tip_X() < stop)
-    {
-      const bool is_stopped = any_rank_interrupted(); // a step takes far longer
-      if (is_stopped || checkpoints_.due(motion_.n_steps()))
-        checkpoints_.write(motion_.n_steps(), motion_.time(), [this](auto &archive) { parts(archive); });
-      if (is_stopped)
-        break;
-      step();
-      if (progress.due())
-        progress.show(progress_text(),
-                      std::max((record_.tip_X() - seed_tip_) / (stop - seed_tip_), motion_.time() / input_.end_time));
-    }
-    record_.energies();
-    add_frame();
-    write_tables();
   }
 
   const output::DamageRecord &record() const { return record_; }
 
-private:
-  // All ranks have the whole sheet and the same records; the root rank writes.
-  void add_frame()
+  void write_measurement(const analysis::CrackMeasurement &measurement) const
   {
     if (run_.is_root())
-      frames_.add_frame(motion_);
-  }
-  void write_tables() const
-  {
-    if (run_.is_root())
-      record_.write_tables(run_.directory());
+      record_.write_measurement(run_.directory(), measurement, skip_verification_);
   }
 
-  void step()
+private:
+  double time() const override { return motion_.time(); }
+  double time_of_step() const override { return step() == motion_.n_steps() ? motion_.time() : -1.; }
+  bool is_complete() const override { return !(time() < input_.end_time && record_.tip().X() < stop_); }
+  std::size_t n_frames() const override { return frames_.series().n_frames(); }
+  std::pair<std::string, double> progress() const override
   {
-    const std::size_t number = motion_.n_steps() + 1;
+    return {crack_progress(time(), record_.tip()),
+            std::max((record_.tip().X() - seed_tip_) / (stop_ - seed_tip_), time() / input_.end_time)};
+  }
+  void start() override
+  {
+    record_.step();
+    record_.energies();
+  }
+  void advance() override
+  {
     try
     {
       motion_.advance();
     }
     catch (const continuum::NonPhysicalState &failure)
     {
-      fail(failure.what(), number);
+      fail(failure.what(), step() + 1);
     }
     catch (const continuum::LinearSolverFailed &failure)
     {
-      fail(failure.what(), number);
+      fail(failure.what(), step() + 1);
     }
     record_.step();
-    if (motion_.n_steps() % input_.energy_interval == 0)
-    {
-      record_.energies();
-      const continuum::DamageMotionLedger &e = motion_.ledger();
-      const double held = e.elastic + e.kinetic + e.gradient;
-      if (!(held <= blown_up * (held + e.viscous + e.fracture + e.shed + e.imbalance)))
-        fail("the energy of the sheet is more than twice the energy supplied", number);
-    }
-    if (input_.frame_interval > 0. && motion_.time() >= next_frame_)
-    {
-      // All results so far are on disk from here on.
-      add_frame();
-      write_tables();
-      next_frame_ += input_.frame_interval;
-    }
   }
-
-  // The input has been checked, so the computed state is wrong. The last valid one is shown, and the records until
-  // then.
-  [[noreturn]] void fail(const std::string &cause, const std::size_t number)
+  void record_energies() override
   {
-    std::string records = "crack.json is of what the crack did until then";
-    try
-    {
-      add_frame();
-      write_tables();
-      if (run_.is_root())
-        record_.write_measurement(run_.directory(), record_.measure(), skip_verification_);
-    }
-    catch (const std::exception &error) // the cause is the message that matters
-    {
-      records = std::string("what the crack did until then is not on disk: ") + error.what();
-    }
-    MPI_Barrier(MPI_COMM_WORLD); // the exception of another rank would end the one that writes
-    throw support::SolverError(cause + ", in step " + std::to_string(number) + "; " + records +
-                               "; try a smaller Continuum/time step, or more viscosity if the flanks of the crack "
-                               "collapse against the held edges");
+    record_.energies();
+    const continuum::DamageMotionLedger &e = motion_.ledger();
+    const double held = e.elastic + e.kinetic + e.gradient;
+    if (!(held <= blown_up * (held + e.viscous + e.fracture + e.shed + e.imbalance)))
+      fail("the energy of the sheet is more than twice the energy supplied", step());
   }
-
-  std::string progress_text() const
+  void write() override
   {
-    std::ostringstream text;
-    text.precision(3);
-    text << "step " << motion_.n_steps() << ", t " << 1e3 * motion_.time() << " ms, tip " << 100. * record_.tip_X()
-         << " cm, speed " << record_.speed() << " m/s";
-    return text.str();
+    if (!run_.is_root())
+      return;
+    frames_.add_frame(motion_);
+    record_.write_tables(run_.directory());
   }
-
+  void write_failed() override
+  {
+    write();
+    write_measurement(record_.measure());
+  }
+  void write_resumed() override
+  {
+    if (!run_.is_root())
+      return;
+    record_.write_tables(run_.directory());
+    frames_.series().write_collection();
+  }
+  void archive(output::CheckpointReader &archive) override { parts(archive); }
+  void archive(output::CheckpointWriter &archive) override { parts(archive); }
   template <class Archive>
   void parts(Archive &archive)
   {
-    std::size_t step = motion_.n_steps();
     archive("motion", motion_);
     archive("record", record_);
     archive("frames", frames_);
-    archive("next_frame", next_frame_);
-    archive("step", step);
-    if constexpr (Archive::loads)
-    {
-      output::require_matching_time(*checkpoints_.found(), step, motion_.time(), motion_.time(), 0.);
-      lattice::require_archived(step == motion_.n_steps(), "`step` is not that of the motion");
-      const double frames = static_cast<double>(frames_.series().n_frames());
-      lattice::require_archived(input_.frame_interval == 0. ||
-                                  std::abs(next_frame_ - frames * input_.frame_interval) <=
-                                    frames * std::numeric_limits<double>::epsilon() * next_frame_,
-                                "`next_frame` does not follow the frames that there are");
-    }
   }
 
-  const input::Case &input_;
+  // The input has been checked, so the computed state is wrong.
+  [[noreturn]] static void fail(const std::string &cause, const std::size_t number)
+  {
+    throw support::SolverError(cause + ", in step " + std::to_string(number) +
+                               "; the last frame and crack.json are of the last valid state; try a smaller "
+                               "Continuum/time step, or more viscosity if the flanks of the crack collapse against the "
+                               "held edges");
+  }
+
   continuum::DamageMotion &motion_;
   bool skip_verification_;
-  output::Checkpoints &checkpoints_;
-  Run &run_;
-  double seed_tip_; // [m]
+  double seed_tip_, stop_; // [m]
   output::DamageRecord record_;
   output::DamageWriter frames_;
-  double next_frame_; // [s]
 };
 
 } // namespace
@@ -255,11 +194,10 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
   if (!options.skip_verification)
     results = passed_or_reported(input, claims_before_continuum_fracture(sheet.subject.material),
                                  bridge::laws_of(input), options, run);
-  DamageRun crack(input, motion, options.skip_verification, checkpoints, run);
-  crack.go();
-  const CrackMeasurement measurement = crack.record().measure();
-  if (run.is_root())
-    crack.record().write_measurement(run.directory(), measurement, options.skip_verification);
+  DamageCrack crack(input, motion, options.skip_verification, checkpoints, run);
+  crack.go("fracture");
+  const analysis::CrackMeasurement measurement = crack.record().measure();
+  crack.write_measurement(measurement);
   results.add(measured_results(
     input, measurement, Side::continuum, crack.record().imbalance(),
     output::allowed_imbalance_of_damage(crack.record().mean_speed() * sheet.automatic_step / sheet.law.length,

@@ -2,6 +2,7 @@
 
 #include <iostream>
 #include <limits>
+#include <sstream>
 
 #include "support/largest_error.h"
 #include "verification/commands/crack_summary.h"
@@ -32,6 +33,14 @@ support::ExitCode draw_page(Run &run)
 }
 
 } // namespace
+
+std::string crack_progress(const double time, const output::TipHistory &tip)
+{
+  std::ostringstream text;
+  text.precision(3);
+  text << ", t " << 1e3 * time << " ms, tip " << 100. * tip.X() << " cm, speed " << tip.speed() << " m/s";
+  return text.str();
+}
 
 output::Results measured_results(const input::Case &input, const analysis::CrackMeasurement &crack, const Side side,
                                  const double imbalance, const output::Tolerance &allowed)

@@ -5,6 +5,7 @@
 #include "verification/analysis/crack_measurement.h"
 #include "verification/claims/claim.h"
 #include "verification/commands/command.h"
+#include "verification/output/histories.h"
 
 namespace latcon::commands
 {
@@ -17,6 +18,9 @@ enum class Side
   lattice,
   continuum
 };
+
+/// Returns time, position and speed of a crack for its progress line.
+std::string crack_progress(double time, const output::TipHistory &tip);
 
 /// Returns the rows `fracture` of a crack: its measured quantities beside the published ones, and its energies.
 /// @param imbalance output::LedgerCheck::imbalance() [-] @param allowed with which it holds

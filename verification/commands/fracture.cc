@@ -1,4 +1,5 @@
-#include <sstream>
+#include <algorithm>
+#include <string>
 
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/claims/claim_inputs.h"
@@ -7,7 +8,7 @@
 #include "verification/commands/cost.h"
 #include "verification/commands/crack_run.h"
 #include "verification/commands/dry_run.h"
-#include "verification/commands/lattice_motion.h"
+#include "verification/commands/motion.h"
 #include "verification/input/cracked_sheet.h"
 #include "verification/output/crack_film.h"
 #include "verification/output/near_tip_record.h"
@@ -17,14 +18,57 @@ namespace latcon::commands
 namespace
 {
 
-std::string progress_text(const lattice::Simulation &simulation, const output::CrackRecord &record)
+// Motion until the crack reaches the stop position or the time ends.
+class CrackMotion : public LatticeMotion
 {
-  std::ostringstream text;
-  text.precision(3);
-  text << ", t " << 1e3 * simulation.state().time << " ms, tip " << 100. * record.tip_X() << " cm, speed "
-       << record.speed() << " m/s, " << simulation.n_broken() << " bonds broken";
-  return text.str();
-}
+public:
+  CrackMotion(const input::Case &input, lattice::Simulation &simulation, double seed_tip,
+              output::Checkpoints &checkpoints, Run &run)
+    : LatticeMotion(input, simulation, checkpoints, run), seed_tip_(seed_tip),
+      stop_(input.stop_position * simulation.lattice().length()), near_tip_(input, simulation, seed_tip),
+      film_(input, simulation, record_, seed_tip, run.directory(), writing_)
+  {
+  }
+  output::NearTipRecord &near_tip() { return near_tip_; }
+  output::CrackFilm &film() { return film_; }
+
+private:
+  bool is_complete() const override { return !(time() < input_.end_time && record_.tip().X() < stop_); }
+  std::pair<std::string, double> progress() const override
+  {
+    return {crack_progress(time(), record_.tip()) + ", " + std::to_string(simulation_.n_broken()) + " bonds broken",
+            std::max((record_.tip().X() - seed_tip_) / (stop_ - seed_tip_), time() / input_.end_time)};
+  }
+  void start() override
+  {
+    LatticeMotion::start();
+    film_.begin(false);
+  }
+  void write_resumed() override
+  {
+    LatticeMotion::write_resumed();
+    film_.begin(true);
+  }
+  void after_step(const std::vector<lattice::BrokenBond> &broken) override
+  {
+    record_.step(broken);
+    near_tip_.step();
+    film_.step();
+  }
+  void archive(output::CheckpointReader &archive) override { parts(archive); }
+  void archive(output::CheckpointWriter &archive) override { parts(archive); }
+  template <class Archive>
+  void parts(Archive &archive)
+  {
+    LatticeMotion::archive(archive);
+    archive("near_tip", near_tip_);
+    archive("film", film_);
+  }
+
+  double seed_tip_, stop_; // [m]
+  output::NearTipRecord near_tip_;
+  output::CrackFilm film_;
+};
 
 struct Crack
 {
@@ -41,36 +85,16 @@ Crack run_crack(const input::Case &input, const lattice::TriangularLattice &shee
   const std::unique_ptr<lattice::Simulation> cracked = input::cracked_sheet(input, band);
   lattice::Simulation &simulation = *cracked;
 
-  LatticeMotion motion(input, simulation, checkpoints, run);
-  output::CrackRecord &record = motion.record();
-  const double stop = input.stop_position * sheet.length();
   const double seed_tip = sheet.reference(input.seed(sheet).back()).x();
-  output::NearTipRecord near_tip(input, simulation, seed_tip);
-  output::CrackFilm film(input, simulation, record, seed_tip, run.directory(), motion.writing());
-  motion.go({"fracture", [&] { return simulation.state().time < input.end_time && record.tip_X() < stop; },
-             [&](const std::vector<lattice::BrokenBond> &broken)
-             {
-               record.step(broken);
-               near_tip.step();
-               film.step();
-             },
-             [&]
-             {
-               return std::pair(
-                 progress_text(simulation, record),
-                 std::max((record.tip_X() - seed_tip) / (stop - seed_tip), simulation.state().time / input.end_time));
-             },
-             [&](bool resumed) { film.begin(resumed); }},
-            [&](auto &archive)
-            {
-              archive("near_tip", near_tip);
-              archive("film", film);
-            });
-  film.end();
+  CrackMotion motion(input, simulation, seed_tip, checkpoints, run);
+  motion.go("fracture");
+  run.info().add("divided_steps", static_cast<std::uint64_t>(simulation.n_divided_steps()));
+  motion.film().end();
+  output::CrackRecord &record = motion.record();
   const analysis::CrackMeasurement crack = record.measure(seed_tip);
   record.write_measurement(run.directory(), crack, seed_tip, *input.breaking_stretch, skip_verification);
   if (run.is_root())
-    near_tip.write(run.directory(), crack);
+    motion.near_tip().write(run.directory(), crack);
   return {crack, measured_results(
                    input, crack, Side::lattice, record.imbalance(),
                    output::allowed_imbalance_of_crack(

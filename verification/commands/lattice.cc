@@ -8,7 +8,7 @@
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
 #include "verification/commands/dry_run.h"
-#include "verification/commands/lattice_motion.h"
+#include "verification/commands/motion.h"
 #include "verification/commands/signals.h"
 #include "verification/output/field_writer.h"
 
@@ -63,6 +63,26 @@ double exchange_steps(const input::Case &input, double time)
   return rate == 0. ? time / step : -std::expm1(-rate * time) / (rate * step);
 }
 
+// Motion until the end time.
+class FreeMotion : public LatticeMotion
+{
+public:
+  FreeMotion(const input::Case &input, lattice::Simulation &simulation, output::Checkpoints &checkpoints, Run &run)
+    : LatticeMotion(input, simulation, checkpoints, run),
+      n_steps_(static_cast<std::size_t>(std::ceil(input.end_time / simulation.time_step() * (1. - 1e-12))))
+  {
+  }
+
+private:
+  bool is_complete() const override { return step() >= n_steps_; }
+  std::pair<std::string, double> progress() const override
+  {
+    return {"/" + std::to_string(n_steps_), static_cast<double>(step()) / static_cast<double>(n_steps_)};
+  }
+
+  std::size_t n_steps_;
+};
+
 // Moves the sheet until the end time. Collective, with the same results on every rank.
 output::Results moved(const input::Case &input, const lattice::RowPartition &band, const lattice::Material &material,
                       lattice::State state, output::Checkpoints &checkpoints, Run &run)
@@ -74,11 +94,9 @@ output::Results moved(const input::Case &input, const lattice::RowPartition &ban
   lattice::Simulation simulation(band, material, std::move(state), stepping);
   for (const lattice::Constraint &constraint : constraints)
     simulation.constrain(constraint);
-  LatticeMotion motion(input, simulation, checkpoints, run);
-  const auto steps = static_cast<std::size_t>(std::ceil(input.end_time / stepping.step * (1. - 1e-12)));
-  motion.go({"motion", [&] { return motion.step() < steps; }, [](const auto &) {},
-             [&] { return std::pair("/" + std::to_string(steps), static_cast<double>(motion.step()) / steps); }},
-            [](auto &) {});
+  FreeMotion motion(input, simulation, checkpoints, run);
+  motion.go("motion");
+  run.info().add("divided_steps", static_cast<std::uint64_t>(simulation.n_divided_steps()));
   output::Results results;
   const lattice::EnergyBalance energies = simulation.energies();
   results.add({"lattice", "elastic energy per thickness", "J/m", energies.elastic, {}, {}, {}, {}});

@@ -178,7 +178,9 @@ void check_relaxation_times(const Case &input, Parameters &p)
   if (input.breaking_stretch) // sites that touch require shorter steps, if they are automatic
     step = std::max(step, input.fracture_time_stepping().step);
   for (const std::size_t number : with_branches)
-    input.shell(number).check_relaxation_times(p, Case::shell_sections[number], step);
+    input.shell(number).check_relaxation_times(
+      p, Case::shell_sections[number], step,
+      {"Time/step", "Time/integrator", "Time/stages", "Time/safety factor", "Sheet/spacing"});
 }
 
 // Returns whether all shells that the case has fulfil a condition.

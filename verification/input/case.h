@@ -49,8 +49,10 @@ struct ShellCase
   /// @param longest largest stretch of an unbroken bond [-]
   void check(Parameters &parameters, const std::string &section, double longest);
   /// Reports the first branch that relaxes within a time step: its overstress would lag behind the motion by half a
-  /// step. Branches must be valid. @param step [s]
-  void check_relaxation_times(Parameters &parameters, const std::string &section, double step) const;
+  /// step. Branches must be valid. @param step [s] @param step_entries entries that the step follows from; messages
+  /// name the first
+  void check_relaxation_times(Parameters &parameters, const std::string &section, double step,
+                              std::vector<std::string> step_entries) const;
   /// Returns whether the bonds have stiffness, as shell() requires.
   bool has_stiffness() const { return has_user_law() ? user_law.is_usable : law == Law::linear || a + b > 0.; }
   bool has_user_law() const { return law == Law::expression || law == Law::library; }

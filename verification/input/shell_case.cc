@@ -68,19 +68,21 @@ void ShellCase::check_branches(Parameters &parameters, const std::string &sectio
                      {times});
 }
 
-void ShellCase::check_relaxation_times(Parameters &parameters, const std::string &section, const double step) const
+void ShellCase::check_relaxation_times(Parameters &parameters, const std::string &section, const double step,
+                                       std::vector<std::string> step_entries) const
 {
   for (std::size_t i = 0; i < relaxation_times.size(); ++i)
     if (relaxation_times[i] < step)
     {
+      const std::string longest = step_entries.front();
+      step_entries.insert(step_entries.end(), {section + "/branch moduli", section + "/viscosity"});
       parameters.error(section + "/relaxation times",
                        "a branch with " + support::full_precision(relaxation_times[i]) +
                          " s relaxes within one time step, " + support::full_precision(step) +
                          " s, and acts as a dashpot; omit it and add its modulus times its relaxation time, " +
                          support::full_precision(branch_moduli[i] * relaxation_times[i]) +
-                         " Pa s, to the viscosity, or give a smaller Time/step",
-                       {section + "/branch moduli", section + "/viscosity", "Time/step", "Time/integrator",
-                        "Time/stages", "Time/safety factor", "Sheet/spacing"});
+                         " Pa s, to the viscosity, or give a smaller " + longest,
+                       step_entries);
       return;
     }
 }

@@ -1,12 +1,10 @@
 #include "verification/output/continuum_record.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
-#include <ostream>
-#include <stdexcept>
 
-#include "support/full_precision.h"
 #include "support/largest_error.h"
 #include "verification/output/output_file.h"
 
@@ -24,18 +22,22 @@ double largest(const std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>> 
   return sizes.largest();
 }
 
-void print_names(std::ostream &out, const std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>> &reactions)
+// Writes rows of numbers, each followed by the reactions of all edges. @param numbers_of row
+template <class Rows, class NumbersOf>
+void write_reactions(const std::string &path, std::vector<std::string> columns, const Rows &rows,
+                     const NumbersOf &numbers_of)
 {
-  for (const auto &[id, force] : reactions)
-    out << "," << edge_name(id) << "_x," << edge_name(id) << "_y";
-  out << "\n";
-}
-
-void print(std::ostream &out, const std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>> &reactions)
-{
-  for (const auto &[id, force] : reactions)
-    out << "," << support::full_precision(force[0]) << "," << support::full_precision(force[1]);
-  out << "\n";
+  for (const auto &[id, force] : rows.front().reactions)
+    columns.insert(columns.end(), {edge_name(id) + "_x", edge_name(id) + "_y"});
+  Table table(std::move(columns));
+  for (const auto &row : rows)
+  {
+    std::vector<Table::Cell> cells = numbers_of(row);
+    for (const auto &[id, force] : row.reactions)
+      cells.insert(cells.end(), {force[0], force[1]});
+    table.add(std::move(cells));
+  }
+  write_file(path, table.csv());
 }
 
 } // namespace
@@ -67,33 +69,13 @@ void ContinuumRecord::newton(const continuum::SolverReport &report)
 
 void ContinuumRecord::motion(const continuum::DynamicSolver &solver)
 {
-  if (!motion_.empty() && !(motion_.back().time < solver.time()))
-    return;
-  motion_.push_back({solver.time(), solver.ledger()});
-  for (const continuum::BranchEnergy &branch : solver.branch_energies())
-    branch_energies_.insert(branch_energies_.end(), {branch.stored, branch.dissipated});
+  motion_.add(solver.time(), solver.ledger(), solver.branch_energies());
 }
 
 void ContinuumRecord::check(const continuum::DynamicSolver &solver)
 {
   const continuum::EnergyLedger &e = solver.ledger();
   ledger_.add({solver.time(), e.stored, e.kinetic, e.dissipated, 0., 0., e.work, e.imbalance});
-}
-
-double ContinuumRecord::last_time() const
-{
-  return motion_.empty() ? -std::numeric_limits<double>::infinity() : motion_.back().time;
-}
-
-void ContinuumRecord::check_loaded() const
-{
-  if (motion_.empty())
-    throw std::invalid_argument("`motion` has no states");
-  for (std::size_t row = 1; row < motion_.size(); ++row)
-    if (!(motion_[row].time > motion_[row - 1].time))
-      throw std::invalid_argument("times of `motion` do not increase");
-  if (branch_energies_.size() != 2 * branches_.size() * motion_.size())
-    throw std::invalid_argument("the number of `branch_energies` does not match `motion`");
 }
 
 double ContinuumRecord::largest_reaction() const
@@ -114,71 +96,32 @@ void ContinuumRecord::write(const std::string &directory) const
   if (!motion_.empty())
   {
     write_file(directory + "/energy.csv",
-               [this](std::ostream &out)
-               {
-                 out << "t,elastic,kinetic,micro_inertia,viscous,boundary_work,imbalance";
-                 for (const std::string &branch : branches_)
-                   out << "," << branch << "_stored," << branch << "_dissipated";
-                 out << "\n";
-                 auto of_branch = branch_energies_.begin();
-                 for (const auto &[time, ledger] : motion_)
-                 {
-                   const char *separator = "";
-                   for (const double value : {time, ledger.stored, ledger.kinetic, ledger.micro_kinetic,
-                                              ledger.dissipated, ledger.work, ledger.imbalance})
-                   {
-                     out << separator << support::full_precision(value);
-                     separator = ",";
-                   }
-                   for (std::size_t i = 0; i < 2 * branches_.size(); ++i)
-                     out << "," << support::full_precision(*of_branch++);
-                   out << "\n";
-                 }
-               });
+               motion_.csv({"elastic", "kinetic", "micro_inertia", "viscous", "boundary_work", "imbalance"},
+                           [](const continuum::EnergyLedger &e) {
+                             return std::array{e.stored,     e.kinetic, e.micro_kinetic,
+                                               e.dissipated, e.work,    e.imbalance};
+                           }));
     return;
   }
-  write_file(directory + "/energy.csv",
-             [this](std::ostream &out)
-             {
-               out << "load_factor,elastic\n";
-               for (const Equilibrium &state : equilibria_)
-                 out << support::full_precision(state.load_factor) << "," << support::full_precision(state.energy)
-                     << "\n";
-             });
+  Table energy({"load_factor", "elastic"});
+  for (const Equilibrium &state : equilibria_)
+    energy.add({state.load_factor, state.energy});
+  write_file(directory + "/energy.csv", energy.csv());
   if (!equilibria_.empty())
-    write_file(directory + "/reactions.csv",
-               [this](std::ostream &out)
-               {
-                 out << "load_factor";
-                 print_names(out, equilibria_.front().reactions);
-                 for (const Equilibrium &state : equilibria_)
-                 {
-                   out << support::full_precision(state.load_factor);
-                   print(out, state.reactions);
-                 }
-               });
-  write_file(directory + "/newton.csv",
-             [this](std::ostream &out)
-             {
-               out << "mesh,load_step,iteration,load_factor,residual,tolerance,energy,step_length,linear_iterations\n";
-               for (const auto &[mesh, row] : iterations_)
-                 out << mesh << "," << row.load_step << "," << row.iteration << ","
-                     << support::full_precision(row.load_factor) << "," << support::full_precision(row.residual) << ","
-                     << support::full_precision(row.tolerance) << "," << support::full_precision(row.energy) << ","
-                     << support::full_precision(row.step_length) << "," << row.linear_iterations << "\n";
-             });
+    write_reactions(directory + "/reactions.csv", {"load_factor"}, equilibria_,
+                    [](const Equilibrium &state) { return std::vector<Table::Cell>{state.load_factor}; });
+  Table newton({"mesh", "load_step", "iteration", "load_factor", "residual", "tolerance", "energy", "step_length",
+                "linear_iterations"});
+  for (const auto &[mesh, row] : iterations_)
+    newton.add({mesh, std::uint64_t{row.load_step}, std::uint64_t{row.iteration}, row.load_factor, row.residual,
+                row.tolerance, row.energy, row.step_length, std::uint64_t{row.linear_iterations}});
+  write_file(directory + "/newton.csv", newton.csv());
   if (meshes_.size() > 1)
-    write_file(directory + "/meshes.csv",
-               [this](std::ostream &out)
-               {
-                 out << "cells,unknowns,elastic";
-                 print_names(out, meshes_.front().reactions);
-                 for (const MeshRow &row : meshes_)
-                 {
-                   out << row.n_cells << "," << row.n_unknowns << "," << support::full_precision(row.energy);
-                   print(out, row.reactions);
-                 }
-               });
+    write_reactions(directory + "/meshes.csv", {"cells", "unknowns", "elastic"}, meshes_,
+                    [](const MeshRow &mesh) {
+                      return std::vector<Table::Cell>{std::uint64_t{mesh.n_cells}, std::uint64_t{mesh.n_unknowns},
+                                                      mesh.energy};
+                    });
 }
 
 } // namespace latcon::output

@@ -6,7 +6,8 @@
 
 #include "continuum/dynamic_solver.h"
 #include "continuum/static_solver.h"
-#include "verification/output/energy_ledger.h"
+#include "verification/output/csv.h"
+#include "verification/output/histories.h"
 
 namespace latcon::output
 {
@@ -16,7 +17,7 @@ class ContinuumRecord
 {
 public:
   /// @param branches names of the Maxwell branches of a motion in the columns of energy.csv, as mechanism_names() gives
-  explicit ContinuumRecord(std::vector<std::string> branches = {}) : branches_(std::move(branches)) {}
+  explicit ContinuumRecord(std::vector<std::string> branches = {}) : motion_(std::move(branches)) {}
 
   /// Records load factor, energy and reactions of an equilibrium. Replaces that of the same load factor on a coarser
   /// mesh.
@@ -41,19 +42,14 @@ public:
   double reaction_change() const;
 
   /// Returns the time of the last recorded state of a motion [s]; minus infinity before the first.
-  double last_time() const;
+  double last_time() const { return motion_.last_time(); }
 
-  /// Saves or loads the recorded states of a motion. @throws std::invalid_argument if there are none, if their times do
-  /// not increase, or if their branches are not those of the record
+  /// Saves or loads the recorded states of a motion. @throws std::invalid_argument as EnergyHistory::archive()
   template <class Archive>
   void archive(Archive &archive)
   {
-    archive.records("motion", motion_);
-    if (!branches_.empty())
-      archive("branch_energies", branch_energies_);
+    motion_.archive(archive, std::numeric_limits<double>::infinity());
     archive("ledger", ledger_);
-    if constexpr (Archive::loads)
-      check_loaded();
   }
 
   /// Writes energy.csv and, for equilibria, reactions.csv, newton.csv and, with two meshes or more, meshes.csv.
@@ -61,7 +57,6 @@ public:
   void write(const std::string &directory) const;
 
 private:
-  void check_loaded() const;
   using Reactions = std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>>;
 
   struct Equilibrium
@@ -77,26 +72,11 @@ private:
     double energy;
     Reactions reactions;
   };
-  struct MotionRow
-  {
-    double time;
-    continuum::EnergyLedger ledger;
-
-    template <class Archive>
-    void archive(Archive &archive)
-    {
-      archive("time", time);
-      archive("ledger", ledger);
-    }
-  };
-
   std::vector<Equilibrium> equilibria_;
   std::vector<MeshRow> meshes_;
   std::vector<std::pair<std::size_t, continuum::NewtonIteration>> iterations_; // with the index of the mesh, from 0
-  std::vector<MotionRow> motion_;
-  LedgerCheck ledger_;
-  std::vector<std::string> branches_;
-  std::vector<double> branch_energies_; // stored and dissipated, per branch and state of the motion [J/m]
+  EnergyHistory<continuum::EnergyLedger> motion_;
+  LedgerCheck ledger_; // of every step
 };
 
 /// Returns the name of an edge: "left", "right", "bottom", "top", "inner", or its number.

@@ -9,7 +9,8 @@ namespace latcon::output
 CrackFilm::CrackFilm(const input::Case &input, lattice::Simulation &simulation, const CrackRecord &record,
                      double seed_tip_X, std::filesystem::path directory, support::TaskThread &writing)
   : simulation_(simulation), record_(record), writing_(writing),
-    frames_(std::make_shared<MotionWriter>(simulation.lattice(), std::move(directory))),
+    frames_(std::make_shared<FieldWriter>(simulation.lattice(), simulation.material(), std::move(directory), "motion",
+                                          FrameFields::motion)),
     is_enabled_(input.motion_frames > 0),
     pitch_((input.stop_position * simulation.lattice().length() - seed_tip_X) / std::max(1u, input.motion_frames)),
     next_frame_(seed_tip_X + pitch_)
@@ -21,10 +22,10 @@ void CrackFilm::begin(bool resumed)
   if (!resumed)
   {
     add_frame();
-    next_frame_ = due_beyond(record_.tip_X(), next_frame_);
+    next_frame_ = due_beyond(record_.tip().X(), next_frame_);
   }
   else if (is_enabled_ && simulation_.band().is_first())
-    frames_->write_collection();
+    frames_->series().write_collection();
 }
 
 void CrackFilm::end()
@@ -35,7 +36,7 @@ void CrackFilm::end()
 
 void CrackFilm::step()
 {
-  const double tip_X = record_.tip_X();
+  const double tip_X = record_.tip().X();
   if (tip_X < next_frame_)
     return;
   add_frame();
@@ -55,7 +56,7 @@ void CrackFilm::check_loaded(double first) const
 {
   std::vector<double> times{0.};
   double next = first;
-  for (const analysis::TipRecord &tip : record_.tip())
+  for (const analysis::TipRecord &tip : record_.tip().records())
     if (tip.X >= next)
     {
       if (tip.t > 0.)
@@ -64,7 +65,7 @@ void CrackFilm::check_loaded(double first) const
     }
   lattice::require_archived(next_frame_ == next, "`next_frame` is not the next frame that is due");
   if (is_enabled_)
-    lattice::require_archived(frames_->times() == times, "`times` of frames do not match the record of the tip");
+    lattice::require_archived(frames_->series().times() == times, "`times` of frames do not match the record of the tip");
 }
 
 void CrackFilm::add_frame()

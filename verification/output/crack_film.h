@@ -7,7 +7,7 @@
 #include "support/task_thread.h"
 #include "verification/input/case.h"
 #include "verification/output/crack_record.h"
-#include "verification/output/motion_writer.h"
+#include "verification/output/field_writer.h"
 
 namespace latcon::output
 {
@@ -52,7 +52,7 @@ private:
   lattice::Simulation &simulation_;
   const CrackRecord &record_;
   support::TaskThread &writing_;
-  std::shared_ptr<MotionWriter> frames_; // also of the tasks that are pending
+  std::shared_ptr<FieldWriter> frames_; // also of the tasks that are pending
   bool is_enabled_;
   double pitch_;      // advance of the tip between frames [m]
   double next_frame_; // X of the tip at the next frame [m]

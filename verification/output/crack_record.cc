@@ -1,17 +1,15 @@
 #include "verification/output/crack_record.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <ostream>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
 
 #include "lattice/archive_rows.h"
 #include "support/errors.h"
-#include "support/full_precision.h"
 #include "verification/analysis/fragments.h"
 #include "verification/output/crack_json.h"
 #include "verification/output/mechanism_names.h"
@@ -20,19 +18,6 @@ namespace latcon::output
 {
 namespace
 {
-
-// The tip hops between sites, so its speed is meaningful only over several of them.
-constexpr double speed_baseline = 6.; // in spacings
-
-void write_row(std::ostream &out, std::initializer_list<double> values)
-{
-  const char *separator = "";
-  for (const double value : values)
-  {
-    out << separator << support::full_precision(value);
-    separator = ",";
-  }
-}
 
 // Fastest site; a site whose position or velocity is not finite takes precedence.
 struct FastestSite
@@ -66,7 +51,9 @@ FastestSite fastest_site(const lattice::Simulation &simulation)
 } // namespace
 
 CrackRecord::CrackRecord(lattice::Simulation &simulation, std::string step_entry)
-  : simulation_(simulation), step_entry_(std::move(step_entry)), mechanisms_(mechanism_names(simulation.material()))
+  : simulation_(simulation), step_entry_(std::move(step_entry)),
+    tip_(simulation.lattice().spacing(), simulation.lattice().length()),
+    energies_(mechanism_names(simulation.material()))
 {
 }
 
@@ -90,36 +77,23 @@ void CrackRecord::record_tip()
   if (!tip || tip == last_tip_)
     return;
   last_tip_ = tip;
-  const double time = simulation_.state().time;
   const Eigen::Vector2d X = simulation_.lattice().reference(*tip), x = simulation_.position(*tip);
-  tip_.push_back({time, X.x(), X.y(), x.x(), x.y()});
-  broken_at_tip_.push_back(simulation_.n_broken());
-
-  double speed = 0.;
-  const double baseline = speed_baseline * simulation_.lattice().spacing();
-  for (std::size_t i = tip_.size() - 1; i-- > 0;)
-    if (X.x() - tip_[i].X >= baseline && time > tip_[i].t)
-    {
-      speed = (X.x() - tip_[i].X) / (time - tip_[i].t);
-      break;
-    }
-  speeds_.push_back(speed);
+  tip_.add({simulation_.state().time, X.x(), X.y(), x.x(), x.y()}, simulation_.n_broken());
 }
 
 void CrackRecord::energies()
 {
-  energies_.push_back({simulation_.state().time, sound_energies()});
-  for (const lattice::MechanismEnergy &mechanism : simulation_.mechanism_energies())
-    mechanism_energies_.insert(mechanism_energies_.end(), {mechanism.stored, mechanism.dissipated});
+  const lattice::EnergyBalance balance = checked_energies();
+  energies_.add(simulation_.state().time, balance, simulation_.mechanism_energies());
 }
 
-lattice::EnergyBalance CrackRecord::sound_energies()
+lattice::EnergyBalance CrackRecord::checked_energies()
 {
   const lattice::EnergyBalance balance = simulation_.energies();
   const double available = balance.initial + std::abs(balance.boundary_work);
   if (balance.elastic + balance.kinetic <= 2. * available)
   {
-    simulation_.save(last_sound_);
+    simulation_.save(last_valid_state_);
     return balance;
   }
   const FastestSite fastest = fastest_site(simulation_);
@@ -129,10 +103,10 @@ lattice::EnergyBalance CrackRecord::sound_energies()
           << balance.elastic << " J/m elastic and " << balance.kinetic << " J/m kinetic energy, of " << available
           << " J/m supplied; the fastest site is number " << simulation_.lattice().site_number(fastest.place)
           << " at X = " << X.x() << " m, Y = " << X.y() << " m, with " << fastest.speed << " m/s; ";
-  if (!last_sound_.empty())
+  if (!last_valid_state_.empty())
   {
-    message << "the last frame shows the last valid state, at " << last_sound_.time() << " s; ";
-    simulation_.restore(last_sound_);
+    message << "the last frame shows the last valid state, at " << last_valid_state_.time() << " s; ";
+    simulation_.restore(last_valid_state_);
   }
   message << "try a smaller " << step_entry_;
   throw support::SolverError(message.str());
@@ -143,44 +117,22 @@ void CrackRecord::check_loaded() const
   using lattice::require_archived;
   const lattice::TriangularLattice &sheet = simulation_.lattice();
   const auto is_site = [&](std::size_t place) { return place < sheet.n_places() && sheet.is_site(place); };
-  const double now = simulation_.state().time;
-  require_archived(speeds_.size() == tip_.size() && broken_at_tip_.size() == tip_.size(),
-                   "the numbers of `speeds`, `broken_at_tip` and records of the tip do not match");
-  require_archived(last_tip_.has_value() == !tip_.empty() && (!last_tip_ || is_site(*last_tip_)),
+  require_archived(last_tip_.has_value() == !tip_.records().empty() && (!last_tip_ || is_site(*last_tip_)),
                    "`last_tip` is not a site of the sheet");
   require_archived(broken_.size() == simulation_.n_broken(), "the number of `broken_bonds` does not match the state");
-  require_archived(!energies_.empty(), "`energies` is empty");
-  require_archived(mechanism_energies_.size() == 2 * mechanisms_.size() * energies_.size(),
-                   "the number of `mechanism_energies` does not match `energies`");
-  double before = 0.;
-  const auto require_order = [&](double time, const std::string &what)
-  {
-    require_archived(time >= before && time <= now, "times of `" + what + "` do not increase up to the current time");
-    before = time;
-  };
-  for (const analysis::TipRecord &tip : tip_)
-  {
-    require_order(tip.t, "tip");
-    require_archived(std::abs(tip.X) <= sheet.length() + sheet.spacing(), "`tip` is outside the sheet");
-  }
-  before = 0.;
-  for (const EnergyRow &row : energies_)
-    require_order(row.time, "energies");
-  before = 0.;
+  require_increasing_times(broken_, simulation_.state().time, "broken_bonds",
+                           [](const lattice::BrokenBond &bond) { return bond.time; });
   for (const lattice::BrokenBond &bond : broken_)
-  {
-    require_order(bond.time, "broken_bonds");
     require_archived(is_site(bond.near) && is_site(bond.far) && bond.kind < simulation_.state().bonds.n_kinds(),
                      "`broken_bonds` contains bonds that the sheet does not have");
-  }
 }
 
 double CrackRecord::imbalance() const
 {
-  LedgerCheck check;
-  for (const auto &[time, e] : energies_)
-    check.add({time, e.elastic, e.kinetic, e.viscous, e.broken, 0., e.boundary_work, e.imbalance()});
-  return check.imbalance();
+  return energies_.imbalance(
+    [](double time, const lattice::EnergyBalance &e) {
+      return LedgerState{time, e.elastic, e.kinetic, e.viscous, e.broken, 0., e.boundary_work, e.imbalance()};
+    });
 }
 
 analysis::CrackMeasurement CrackRecord::measure(double seed_tip_X) const
@@ -193,42 +145,24 @@ analysis::CrackMeasurement CrackRecord::measure(double seed_tip_X) const
   options.lattice_spacing = simulation_.lattice().spacing();
   options.end_time = simulation_.state().time;
   options.seed_tip_X = seed_tip_X;
-  return analysis::measure_crack(tip_, breaks, options);
+  return analysis::measure_crack(tip_.records(), breaks, options);
 }
 
 TextFiles CrackRecord::tables(const std::filesystem::path &directory) const
 {
-  std::ostringstream crack, broken, energy;
-  crack << "t,X,Y,x,y,speed,bonds_broken\n";
-  for (std::size_t i = 0; i < tip_.size(); ++i)
-  {
-    write_row(crack, {tip_[i].t, tip_[i].X, tip_[i].Y, tip_[i].x, tip_[i].y, speeds_[i]});
-    crack << ',' << broken_at_tip_[i] << '\n';
-  }
-  broken << "t,site,other_site,X,Y,stretch\n";
   const lattice::TriangularLattice &sheet = simulation_.lattice();
+  Table broken({"t", "site", "other_site", "X", "Y", "stretch"});
   for (const lattice::BrokenBond &bond : broken_)
-  {
-    broken << support::full_precision(bond.time) << ',' << sheet.site_number(bond.near) << ','
-           << sheet.site_number(bond.far) << ',';
-    write_row(broken, {bond.midpoint.x(), bond.midpoint.y(), bond.stretch});
-    broken << '\n';
-  }
-  energy << "t,elastic,kinetic,viscous,broken,boundary_work,contact,imbalance";
-  for (const std::string &mechanism : mechanisms_)
-    energy << ',' << mechanism << "_stored," << mechanism << "_dissipated";
-  energy << '\n';
-  auto of_mechanism = mechanism_energies_.begin();
-  for (const auto &[time, e] : energies_)
-  {
-    write_row(energy, {time, e.elastic, e.kinetic, e.viscous, e.broken, e.boundary_work, e.contact, e.imbalance()});
-    for (std::size_t i = 0; i < 2 * mechanisms_.size(); ++i)
-      energy << ',' << support::full_precision(*of_mechanism++);
-    energy << '\n';
-  }
-  return {{directory / "crack.csv", crack.str()},
-          {directory / "broken_bonds.csv", broken.str()},
-          {directory / "energy.csv", energy.str()}};
+    broken.add({bond.time, sheet.site_number(bond.near), sheet.site_number(bond.far), bond.midpoint.x(),
+                bond.midpoint.y(), bond.stretch});
+  return {{directory / "crack.csv", tip_.csv(true)},
+          {directory / "broken_bonds.csv", broken.csv()},
+          {directory / "energy.csv",
+           energies_.csv({"elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance"},
+                         [](const lattice::EnergyBalance &e) {
+                           return std::array{e.elastic,       e.kinetic, e.viscous,    e.broken,
+                                             e.boundary_work, e.contact, e.imbalance()};
+                         })}};
 }
 
 void CrackRecord::write_measurement(const std::filesystem::path &directory,
@@ -260,7 +194,7 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
                                    {"stretch", bond->stretch},
                                    {"limit", bond->limit}};
   }
-  json["bridged_length"] = analysis::bridged_length(state, simulation_.lattice(), seed_tip_X, tip_X());
+  json["bridged_length"] = analysis::bridged_length(state, simulation_.lattice(), seed_tip_X, tip_.X());
   json["end_time"] = state.time;
   json["energy_imbalance"] = imbalance();
   json["skip_verification"] = skip_verification;

@@ -6,7 +6,7 @@
 
 #include "lattice/simulation.h"
 #include "verification/analysis/crack_measurement.h"
-#include "verification/output/energy_ledger.h"
+#include "verification/output/histories.h"
 #include "verification/output/output_file.h"
 
 namespace latcon::output
@@ -32,14 +32,9 @@ public:
   /// Checks the energies of the sheet and stores a snapshot of the state. Collective.
   /// @throws SolverError if the energies are not finite or exceed the available energy, with time and position of the
   /// failure; the simulation then is back at the last valid state (see lattice::Simulation::restore)
-  void check() { (void)sound_energies(); }
+  void check() { (void)checked_energies(); }
 
-  /// Returns the positions of the tip and their times.
-  const std::vector<analysis::TipRecord> &tip() const { return tip_; }
-  /// Returns reference X of the tip [m]; 0 without a tip.
-  double tip_X() const { return tip_.empty() ? 0. : tip_.back().X; }
-  /// Returns the Lagrangian speed over the last few spacings [m/s]; 0 if it is not yet known.
-  double speed() const { return speeds_.empty() ? 0. : speeds_.back(); }
+  const TipHistory &tip() const { return tip_; }
   /// Returns the imbalance of the recorded energies, see LedgerCheck::imbalance().
   double imbalance() const;
 
@@ -62,47 +57,26 @@ public:
   void archive(Archive &archive)
   {
     archive("last_tip", last_tip_);
-    archive.records("tip", tip_);
-    archive("speeds", speeds_);
-    archive("broken_at_tip", broken_at_tip_);
+    tip_.archive(archive, simulation_.state().time);
     archive.records("broken_bonds", broken_);
-    archive.records("energies", energies_);
-    if (!mechanisms_.empty())
-      archive("mechanism_energies", mechanism_energies_);
+    energies_.archive(archive, simulation_.state().time);
     if constexpr (Archive::loads)
       check_loaded();
-    simulation_.save(last_sound_);
+    simulation_.save(last_valid_state_);
   }
 
 private:
   void check_loaded() const;
   void record_tip();
-  lattice::EnergyBalance sound_energies();
-
-  struct EnergyRow
-  {
-    double time;
-    lattice::EnergyBalance balance;
-
-    template <class Archive>
-    void archive(Archive &archive)
-    {
-      archive("time", time);
-      archive("balance", balance);
-    }
-  };
+  lattice::EnergyBalance checked_energies();
 
   lattice::Simulation &simulation_;
   std::string step_entry_;
   std::optional<std::size_t> last_tip_;
-  std::vector<analysis::TipRecord> tip_;
-  std::vector<double> speeds_;             // per tip record [m/s]
-  std::vector<std::size_t> broken_at_tip_; // bonds broken so far, per tip record
+  TipHistory tip_;
   std::vector<lattice::BrokenBond> broken_;
-  std::vector<EnergyRow> energies_;
-  std::vector<std::string> mechanisms_;    // names in the columns of energy.csv
-  std::vector<double> mechanism_energies_; // stored and dissipated, per mechanism and energy row [J/m]
-  lattice::Snapshot last_sound_;
+  EnergyHistory<lattice::EnergyBalance> energies_;
+  lattice::Snapshot last_valid_state_;
 };
 
 } // namespace latcon::output

@@ -6,6 +6,25 @@
 
 namespace latcon::output
 {
+namespace
+{
+
+std::string text_of(const double value)
+{
+  return support::full_precision(value);
+}
+
+std::string text_of(const std::uint64_t value)
+{
+  return std::to_string(value);
+}
+
+std::string text_of(const std::string &value)
+{
+  return csv_field(value);
+}
+
+} // namespace
 
 std::string csv_field(const std::string &text)
 {
@@ -42,9 +61,7 @@ std::string Table::csv() const
   for (const std::vector<Cell> &row : rows_)
   {
     for (const Cell &cell : row)
-      text += (std::holds_alternative<double>(cell) ? support::full_precision(std::get<double>(cell))
-                                                    : csv_field(std::get<std::string>(cell))) +
-              ',';
+      text += std::visit([](const auto &value) { return text_of(value); }, cell) + ',';
     end_line();
   }
   return text;

@@ -1,6 +1,7 @@
 /// Tables of numbers and words as CSV (RFC 4180).
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <variant>
 #include <vector>
@@ -15,7 +16,7 @@ namespace latcon::output
 class Table
 {
 public:
-  using Cell = std::variant<double, std::string>;
+  using Cell = std::variant<double, std::uint64_t, std::string>;
 
   /// Creates an empty table. @param columns names, with the unit in brackets if there is one: "k d", "phase velocity
   /// [m/s]"

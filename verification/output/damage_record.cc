@@ -1,6 +1,7 @@
 #include "verification/output/damage_record.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -12,17 +13,10 @@
 
 namespace latcon::output
 {
-namespace
-{
-
-// The tip advances by cells, so its speed is meaningful only over several of them.
-constexpr double speed_baseline = 6.; // in spacings
-
-} // namespace
 
 DamageRecord::DamageRecord(const input::Case &input, const continuum::DamageMotion &motion, const double seed_tip)
   : input_(input), motion_(motion), seed_tip_(seed_tip),
-    column_(static_cast<std::size_t>(std::floor(seed_tip / motion.grid().size_x)))
+    column_(static_cast<std::size_t>(std::floor(seed_tip / motion.grid().size_x))), tip_(input.spacing, input.length)
 {
 }
 
@@ -35,11 +29,11 @@ analysis::DamageImage DamageRecord::image() const
 void DamageRecord::step()
 {
   const std::optional<analysis::ContourTip> tip = analysis::contour_tip(image(), column_);
-  if (!tip || (!tip_.empty() && tip->column == column_))
+  if (!tip || (!tip_.records().empty() && tip->column == column_))
     return;
   column_ = tip->column;
   const continuum::NodeGrid &grid = motion_.grid();
-  const double X = tip->X, Y = tip->Y, time = motion_.time();
+  const double X = tip->X, Y = tip->Y;
   // Displacement between the nodes of a cell.
   const double along = std::min(X / grid.size_x, static_cast<double>(grid.cells_x) - 1e-9);
   const double across = std::min((Y - grid.bottom) / grid.size_y, static_cast<double>(grid.cells_y) - 1e-9);
@@ -52,34 +46,25 @@ void DamageRecord::step()
     const std::vector<double> &u = motion_.displacement()[static_cast<std::size_t>(axis)];
     x(axis) += (1. - q) * ((1. - p) * u[a] + p * u[a + 1]) + q * ((1. - p) * u[a + up] + p * u[a + up + 1]);
   }
-  tip_.push_back({time, X, Y, x.x(), x.y()});
-  double speed = 0.;
-  for (std::size_t i = tip_.size() - 1; i-- > 0;)
-    if (X - tip_[i].X >= speed_baseline * input_.spacing && time > tip_[i].t)
-    {
-      speed = (X - tip_[i].X) / (time - tip_[i].t);
-      break;
-    }
-  speeds_.push_back(speed);
+  tip_.add({motion_.time(), X, Y, x.x(), x.y()});
 }
 
 void DamageRecord::energies()
 {
-  if (energies_.empty() || energies_.back().time < motion_.time())
-    energies_.push_back({motion_.time(), motion_.ledger()});
+  energies_.add(motion_.time(), motion_.ledger());
 }
 
 double DamageRecord::mean_speed() const
 {
-  return motion_.time() > 0. && !tip_.empty() ? (tip_.back().X - tip_.front().X) / motion_.time() : 0.;
+  return motion_.time() > 0. && !tip_.records().empty() ? (tip_.X() - tip_.records().front().X) / motion_.time() : 0.;
 }
 
 double DamageRecord::imbalance() const
 {
-  LedgerCheck check;
-  for (const auto &[time, e] : energies_)
-    check.add({time, e.elastic + e.gradient, e.kinetic, e.viscous, e.fracture, e.shed, 0., e.imbalance});
-  return check.imbalance();
+  return energies_.imbalance(
+    [](double time, const continuum::DamageMotionLedger &e) {
+      return LedgerState{time, e.elastic + e.gradient, e.kinetic, e.viscous, e.fracture, e.shed, 0., e.imbalance};
+    });
 }
 
 analysis::CrackMeasurement DamageRecord::measure() const
@@ -93,7 +78,7 @@ analysis::CrackMeasurement DamageRecord::measure() const
   // At most that of a tip on nodes; the contour is interpolated between them.
   options.position_error *= motion_.grid().size_y / input_.spacing;
   return analysis::measure_path(
-    tip_,
+    tip_.records(),
     [&](double X_begin, double X_end)
     { return analysis::branched_fraction(columns, X_begin, X_end, input_.spacing, options.branch_rule); },
     options);
@@ -101,21 +86,20 @@ analysis::CrackMeasurement DamageRecord::measure() const
 
 void DamageRecord::write_tables(const std::filesystem::path &directory) const
 {
-  Table crack({"t", "X", "Y", "x", "y", "speed"});
-  for (std::size_t i = 0; i < tip_.size(); ++i)
-    crack.add({tip_[i].t, tip_[i].X, tip_[i].Y, tip_[i].x, tip_[i].y, speeds_[i]});
-  write_file(directory / "crack.csv", crack.csv());
+  write_file(directory / "crack.csv", tip_.csv(false));
   Table edges({"X", "strands", "lower", "upper", "damaged"});
   for (const analysis::ContourColumn &column : analysis::contour(image(), seed_tip_))
-    edges.add({column.X, static_cast<double>(column.n_strands), column.lower, column.upper, column.damaged});
+    edges.add({column.X, column.n_strands, column.lower, column.upper, column.damaged});
   write_file(directory / "crack_edges.csv", edges.csv());
   // Columns of the lattice's table, whose edges do no work here either, and whose cracks do not touch themselves here.
-  Table energy(
-    {"t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "shed", "imbalance", "gradient"});
-  for (const auto &[time, e] : energies_)
-    energy.add(
-      {time, e.elastic + e.gradient, e.kinetic, e.viscous, e.fracture, 0., 0., e.shed, e.imbalance, e.gradient});
-  write_file(directory / "energy.csv", energy.csv());
+  write_file(
+    directory / "energy.csv",
+    energies_.csv(
+      {"elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "shed", "imbalance", "gradient"},
+      [](const continuum::DamageMotionLedger &e) {
+        return std::array{e.elastic + e.gradient, e.kinetic, e.viscous, e.fracture, 0., 0., e.shed, e.imbalance,
+                          e.gradient};
+      }));
 }
 
 void DamageRecord::write_measurement(const std::filesystem::path &directory,
@@ -148,27 +132,6 @@ void DamageRecord::write_measurement(const std::filesystem::path &directory,
   json["skip_verification"] = skip_verification;
   json["units"] = "speeds m/s, lengths m in the undeformed sheet, time s; uncertainties are one standard deviation";
   write_file(directory / "crack.json", json.dump(2) + "\n");
-}
-
-void DamageRecord::check_loaded() const
-{
-  using lattice::require_archived;
-  const double now = motion_.time();
-  require_archived(column_ < motion_.grid().columns(), "`column` is outside the sheet");
-  require_archived(speeds_.size() == tip_.size(), "the numbers of `speeds` and records of the tip do not match");
-  require_archived(!energies_.empty(), "`energies` is empty");
-  double before = 0.;
-  for (const analysis::TipRecord &tip : tip_)
-  {
-    require_archived(tip.t >= before && tip.t <= now, "times of `tip` do not increase up to the current time");
-    before = tip.t;
-  }
-  before = 0.;
-  for (const EnergyRow &row : energies_)
-  {
-    require_archived(row.time >= before && row.time <= now, "times of `energies` do not increase up to the present");
-    before = row.time;
-  }
 }
 
 } // namespace latcon::output

@@ -6,7 +6,7 @@
 #include "continuum/damage/damage_motion.h"
 #include "verification/analysis/damage_contour.h"
 #include "verification/input/case.h"
-#include "verification/output/energy_ledger.h"
+#include "verification/output/histories.h"
 
 namespace latcon::output
 {
@@ -26,11 +26,7 @@ public:
   /// Records the energies.
   void energies();
 
-  double tip_X() const { return tip_.empty() ? 0. : tip_.back().X; } ///< [m]; 0 before the first step
-  double speed() const
-  {
-    return speeds_.empty() ? 0. : speeds_.back();
-  } ///< over the last few spacings [m/s]; 0: unknown
+  const TipHistory &tip() const { return tip_; }
 
   /// Returns the mean Lagrangian speed of the tip since the start [m/s]; 0 before the first step.
   double mean_speed() const;
@@ -53,37 +49,21 @@ public:
   void archive(Archive &archive)
   {
     archive("column", column_);
-    archive.records("tip", tip_);
-    archive("speeds", speeds_);
-    archive.records("energies", energies_);
+    tip_.archive(archive, motion_.time());
+    energies_.archive(archive, motion_.time());
     if constexpr (Archive::loads)
-      check_loaded();
+      lattice::require_archived(column_ < motion_.grid().columns(), "`column` is outside the sheet");
   }
 
 private:
-  void check_loaded() const;
   analysis::DamageImage image() const;
-
-  struct EnergyRow
-  {
-    double time;
-    continuum::DamageMotionLedger ledger;
-
-    template <class Archive>
-    void archive(Archive &archive)
-    {
-      archive("time", time);
-      archive("ledger", ledger);
-    }
-  };
 
   const input::Case &input_;
   const continuum::DamageMotion &motion_;
   double seed_tip_;    // [m]
   std::size_t column_; // of nodes, that the tip has reached
-  std::vector<analysis::TipRecord> tip_;
-  std::vector<double> speeds_; // per tip record [m/s]
-  std::vector<EnergyRow> energies_;
+  TipHistory tip_;
+  EnergyHistory<continuum::DamageMotionLedger> energies_;
 };
 
 } // namespace latcon::output

@@ -9,7 +9,7 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 
-#include "verification/output/field_units.h"
+#include "verification/output/point_data.h"
 
 namespace latcon::output
 {
@@ -46,32 +46,11 @@ DamageWriter::DamageWriter(std::filesystem::path directory, const dealii::Tensor
 void DamageWriter::add_frame(const continuum::DamageMotion &motion)
 {
   const continuum::NodeGrid &grid = motion.grid();
-  const auto n = static_cast<vtkIdType>(grid.n_nodes());
-  const auto array = [n](const char *name, int components)
-  {
-    vtkNew<vtkFloatArray> values;
-    values->SetName(name);
-    values->SetNumberOfComponents(components);
-    values->SetNumberOfTuples(n);
-    set_unit(*values);
-    return values;
-  };
+  const auto vector = [](const auto &components, std::size_t a)
+  { return Eigen::Vector2d(components[0][a], components[1][a]); };
   vtkNew<vtkPoints> points;
-  points->SetNumberOfPoints(n);
-  const auto displacement = array("displacement", 3), velocity = array("velocity", 3);
-  const auto damage = array("damage", 1), energy = array("strain_energy_density", 1);
-  const std::vector<double> densities = energy_densities(motion);
-  for (vtkIdType id = 0; id < n; ++id)
-  {
-    const auto a = static_cast<std::size_t>(id);
-    const dealii::Point<2> X = grid.position(a);
-    const dealii::Tensor<1, 2> affine = loading_ * X - X;
-    points->SetPoint(id, X[0], X[1], 0.);
-    displacement->SetTuple3(id, affine[0] + motion.displacement()[0][a], affine[1] + motion.displacement()[1][a], 0.);
-    velocity->SetTuple3(id, motion.velocity()[0][a], motion.velocity()[1][a], 0.);
-    damage->SetValue(id, static_cast<float>(motion.damage().nodal()[a]));
-    energy->SetValue(id, static_cast<float>(densities[a]));
-  }
+  for (std::size_t a = 0; a < grid.n_nodes(); ++a)
+    points->InsertNextPoint(grid.position(a)[0], grid.position(a)[1], 0.);
   vtkNew<vtkCellArray> cells;
   for (std::size_t j = 0; j < grid.cells_y; ++j)
     for (std::size_t i = 0; i < grid.cells_x; ++i)
@@ -83,11 +62,22 @@ void DamageWriter::add_frame(const continuum::DamageMotion &motion)
   vtkNew<vtkPolyData> sheet;
   sheet->SetPoints(points);
   sheet->SetPolys(cells);
-  for (vtkFloatArray *data : {displacement.Get(), velocity.Get(), damage.Get(), energy.Get()})
-    sheet->GetPointData()->AddArray(data);
+  vtkPointData &data = *sheet->GetPointData();
+  const auto add = [&](const char *name, const auto &value)
+  { add_field<vtkFloatArray>(data, name, grid.n_nodes(), value); };
+  add("displacement",
+      [&](std::size_t a) -> Eigen::Vector2d
+      {
+        const dealii::Tensor<1, 2> affine = loading_ * grid.position(a) - grid.position(a);
+        return Eigen::Vector2d(affine[0], affine[1]) + vector(motion.displacement(), a);
+      });
+  add("velocity", [&](std::size_t a) { return vector(motion.velocity(), a); });
+  add("damage", [&](std::size_t a) { return motion.damage().nodal()[a]; });
+  const std::vector<double> densities = energy_densities(motion);
+  add("strain_energy_density", [&](std::size_t a) { return densities[a]; });
   // Arrays that ParaView shows by default.
-  sheet->GetPointData()->SetActiveVectors(displacement->GetName());
-  sheet->GetPointData()->SetActiveScalars(damage->GetName());
+  data.SetActiveVectors("displacement");
+  data.SetActiveScalars("damage");
   series_.add(*sheet, motion.time());
 }
 

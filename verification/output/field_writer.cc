@@ -6,7 +6,7 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
-#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
 #include <vtkIdTypeArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -17,166 +17,137 @@
 #include "lattice/site_fields.h"
 #include "lattice/strain_gradient.h"
 #include "verification/analysis/fragments.h"
-#include "verification/output/field_units.h"
+#include "verification/output/point_data.h"
 
 namespace latcon::output
 {
 namespace
 {
 
-vtkNew<vtkDoubleArray> array(const char *name, int components, vtkIdType tuples)
+using Slots = std::vector<std::size_t>; // of the points, in their order
+
+void add_fields(vtkPolyData &frame, const lattice::State &state, const lattice::TriangularLattice &sheet,
+                const lattice::Material &material, const Slots &slots)
 {
-  vtkNew<vtkDoubleArray> values;
-  values->SetName(name);
-  values->SetNumberOfComponents(components);
-  values->SetNumberOfTuples(tuples);
-  set_unit(*values);
-  return values;
+  const lattice::SiteFields fields = site_fields(state, sheet, material);
+  const analysis::Fragments fragments = analysis::find_fragments(state, sheet);
+  lattice::StrainGradientFit gradient_fit(sheet);
+  std::vector<lattice::StrainGradient> gradients;
+  const Eigen::Matrix2d unknown = Eigen::Matrix2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  for (const std::size_t slot : slots)
+    gradients.push_back(gradient_fit.at(state, slot).value_or(lattice::StrainGradient{unknown, unknown}));
+  vtkPointData &data = *frame.GetPointData();
+  const auto add = [&](const char *name, const auto &of_slot)
+  { add_field<vtkDoubleArray>(data, name, slots.size(), [&](std::size_t i) { return of_slot[slots[i]]; }); };
+  add("deformation_gradient", fields.deformation_gradient);
+  add("first_piola_stress", fields.first_piola_stress);
+  add("cauchy_stress", fields.cauchy_stress);
+  add_field<vtkDoubleArray>(data, "strain_gradient_x", slots.size(), [&](std::size_t i) { return gradients[i].x; });
+  add_field<vtkDoubleArray>(data, "strain_gradient_y", slots.size(), [&](std::size_t i) { return gradients[i].y; });
+  add("strain_energy_density", fields.strain_energy_density);
+  add("damage", fields.damage);
+  add_field<vtkUnsignedCharArray>(data, "held", slots.size(), [&](std::size_t i) { return state.held[slots[i]]; });
+  add_field<vtkIdTypeArray>(data, "site", slots.size(), [&](std::size_t i) { return sheet.site_number(slots[i]); });
+  add_field<vtkIdTypeArray>(data, "fragment", slots.size(), [&](std::size_t i) { return fragments.number[slots[i]]; });
+  // The outermost sites of a periodic sheet are inside its ends.
+  vtkNew<vtkDoubleArray> bounds;
+  bounds->SetName("SheetBounds");
+  bounds->SetNumberOfComponents(4);
+  bounds->InsertNextTuple4(0., sheet.length(), -0.5 * sheet.height(), 0.5 * sheet.height());
+  set_unit(*bounds);
+  frame.GetFieldData()->AddArray(bounds);
 }
 
-// ParaView expects three components for vectors and nine for tensors.
-void set_vector(vtkDoubleArray &values, vtkIdType id, double x, double y)
+// Adds the bonds as lines. Cell data has the vertices first, then the lines; a site has the mean of its bonds, so that
+// it has the colour of its surroundings.
+void add_bonds(vtkPolyData &frame, const lattice::State &state, const lattice::TriangularLattice &sheet,
+               const Slots &slots)
 {
-  values.SetTuple3(id, x, y, 0.);
-}
-
-void set_tensor(vtkDoubleArray &values, vtkIdType id, const Eigen::Matrix2d &t)
-{
-  values.SetTuple9(id, t(0, 0), t(0, 1), 0., t(1, 0), t(1, 1), 0., 0., 0., 0.);
+  std::vector<vtkIdType> point_of_slot(sheet.n_places(), -1);
+  for (std::size_t i = 0; i < slots.size(); ++i)
+    point_of_slot[slots[i]] = static_cast<vtkIdType>(i);
+  vtkNew<vtkCellArray> lines;
+  std::vector<double> stretches(slots.size(), 0.);
+  std::vector<unsigned char> shells(slots.size(), 0), toughened(slots.size(), 0);
+  std::vector<unsigned int> bonds_of_point(slots.size(), 0);
+  for_each_bond(state, sheet,
+                [&](const lattice::Bond &bond)
+                {
+                  if (point_of_slot[bond.far] < 0)
+                    return; // across a periodic edge: it would be drawn as a line through the whole sheet
+                  const std::array<vtkIdType, 2> ends{{point_of_slot[bond.near], point_of_slot[bond.far]}};
+                  lines->InsertNextCell(2, ends.data());
+                  const double value = stretch(state, sheet, bond);
+                  stretches.push_back(value);
+                  for (const vtkIdType end : ends)
+                  {
+                    stretches[static_cast<std::size_t>(end)] += value;
+                    ++bonds_of_point[static_cast<std::size_t>(end)];
+                  }
+                  shells.push_back(static_cast<unsigned char>(lattice::shell_of(bond.kind) + 1));
+                  toughened.push_back(state.bonds.toughened(bond.near, bond.kind) ? 1 : 0);
+                });
+  for (std::size_t i = 0; i < slots.size(); ++i)
+    stretches[i] = bonds_of_point[i] > 0 ? stretches[i] / bonds_of_point[i] : 1.;
+  frame.SetLines(lines);
+  vtkCellData &data = *frame.GetCellData();
+  const std::size_t n = stretches.size();
+  add_field<vtkDoubleArray>(data, "stretch", n, [&](std::size_t i) { return stretches[i]; });
+  add_field<vtkUnsignedCharArray>(data, "shell", n, [&](std::size_t i) { return shells[i]; });
+  add_field<vtkUnsignedCharArray>(data, "toughened", n, [&](std::size_t i) { return toughened[i]; });
+  data.SetActiveScalars("stretch");
 }
 
 } // namespace
 
 FieldWriter::FieldWriter(const lattice::TriangularLattice &lattice, const lattice::Material &material,
-                         std::filesystem::path directory, std::string name)
-  : lattice_(lattice), material_(material), series_(std::move(directory), std::move(name))
+                         std::filesystem::path directory, std::string name, FrameFields fields)
+  : lattice_(lattice), material_(material), fields_(fields), series_(std::move(directory), std::move(name))
 {
 }
 
 void FieldWriter::add_frame(const lattice::State &state)
 {
-  std::vector<std::size_t> places; // slots of the points, in their order
-  std::vector<vtkIdType> point_of_place(lattice_.n_places(), -1);
+  Slots slots;
+  vtkNew<vtkPoints> points; // in single precision
+  if (fields_ == FrameFields::all)
+    points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> vertices;
   for (std::size_t row = 0; row < lattice_.rows(); ++row)
     for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
     {
-      const std::size_t place = lattice_.index(row, column);
-      if (state.removed[place] != 0)
+      const std::size_t slot = lattice_.index(row, column);
+      if (state.removed[slot] != 0)
         continue;
-      point_of_place[place] = static_cast<vtkIdType>(places.size());
-      places.push_back(place);
+      const Eigen::Vector2d reference = lattice_.reference(slot);
+      const vtkIdType id = points->InsertNextPoint(reference.x(), reference.y(), 0.);
+      vertices->InsertNextCell(1, &id);
+      slots.push_back(slot);
     }
-  const auto n_points = static_cast<vtkIdType>(places.size());
-
-  const lattice::SiteFields fields = site_fields(state, lattice_, material_);
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(n_points);
-  vtkNew<vtkCellArray> vertices;
-  const auto displacement = array("displacement", 3, n_points);
-  const auto velocity = array("velocity", 3, n_points);
-  const auto deformation_gradient = array("deformation_gradient", 9, n_points);
-  const auto first_piola_stress = array("first_piola_stress", 9, n_points);
-  const auto cauchy_stress = array("cauchy_stress", 9, n_points);
-  const auto strain_gradient_x = array("strain_gradient_x", 9, n_points);
-  const auto strain_gradient_y = array("strain_gradient_y", 9, n_points);
-  lattice::StrainGradientFit gradient_fit(lattice_);
-  const Eigen::Matrix2d unknown = Eigen::Matrix2d::Constant(std::numeric_limits<double>::quiet_NaN());
-  const auto strain_energy_density = array("strain_energy_density", 1, n_points);
-  const auto damage = array("damage", 1, n_points);
-  vtkNew<vtkUnsignedCharArray> held;
-  held->SetName("held");
-  held->SetNumberOfTuples(n_points);
-  vtkNew<vtkIdTypeArray> site;
-  site->SetName("site");
-  site->SetNumberOfTuples(n_points);
-  vtkNew<vtkIdTypeArray> fragment;
-  fragment->SetName("fragment");
-  fragment->SetNumberOfTuples(n_points);
-  const analysis::Fragments fragments = analysis::find_fragments(state, lattice_);
-  for (vtkIdType id = 0; id < n_points; ++id)
+  vtkNew<vtkPolyData> frame;
+  frame->SetPoints(points);
+  frame->SetVerts(vertices);
+  vtkPointData &data = *frame->GetPointData();
+  const auto displacement = [&](std::size_t i) -> Eigen::Vector2d {
+    return Eigen::Vector2d(state.x[slots[i]], state.y[slots[i]]) - lattice_.reference(slots[i]);
+  };
+  const auto velocity = [&](std::size_t i) { return Eigen::Vector2d(state.vx[slots[i]], state.vy[slots[i]]); };
+  if (fields_ == FrameFields::all)
   {
-    const std::size_t place = places[static_cast<std::size_t>(id)];
-    const Eigen::Vector2d reference = lattice_.reference(place);
-    points->SetPoint(id, reference.x(), reference.y(), 0.);
-    vertices->InsertNextCell(1, &id);
-    set_vector(*displacement, id, state.x[place] - reference.x(), state.y[place] - reference.y());
-    set_vector(*velocity, id, state.vx[place], state.vy[place]);
-    set_tensor(*deformation_gradient, id, fields.deformation_gradient[place]);
-    set_tensor(*first_piola_stress, id, fields.first_piola_stress[place]);
-    set_tensor(*cauchy_stress, id, fields.cauchy_stress[place]);
-    const std::optional<lattice::StrainGradient> gradient = gradient_fit.at(state, place);
-    set_tensor(*strain_gradient_x, id, gradient ? gradient->x : unknown);
-    set_tensor(*strain_gradient_y, id, gradient ? gradient->y : unknown);
-    strain_energy_density->SetValue(id, fields.strain_energy_density[place]);
-    damage->SetValue(id, fields.damage[place]);
-    held->SetValue(id, state.held[place]);
-    site->SetValue(id, static_cast<vtkIdType>(lattice_.site_number(place)));
-    fragment->SetValue(id, static_cast<vtkIdType>(fragments.number[place]));
+    add_field<vtkDoubleArray>(data, "displacement", slots.size(), displacement);
+    add_field<vtkDoubleArray>(data, "velocity", slots.size(), velocity);
+    add_fields(*frame, state, lattice_, material_, slots);
+    add_bonds(*frame, state, lattice_, slots);
   }
-
-  vtkNew<vtkCellArray> lines;
-  const auto bond_stretch = array("stretch", 1, 0);
-  vtkNew<vtkUnsignedCharArray> shell, toughened;
-  shell->SetName("shell");
-  toughened->SetName("toughened");
-  // Cell data has the vertices first, then the lines. A site gets the mean of its bonds, so that it has the colour of
-  // its surroundings.
-  for (vtkIdType id = 0; id < n_points; ++id)
+  else
   {
-    bond_stretch->InsertNextValue(0.);
-    shell->InsertNextValue(0);
-    toughened->InsertNextValue(0);
+    add_field<vtkFloatArray>(data, "displacement", slots.size(), displacement);
+    add_field<vtkFloatArray>(data, "velocity", slots.size(), velocity);
+    data.SetActiveScalars("displacement");
   }
-  std::vector<unsigned int> bonds_of_point(static_cast<std::size_t>(n_points), 0);
-  for_each_bond(state, lattice_,
-                [&](const lattice::Bond &bond)
-                {
-                  if (point_of_place[bond.far] < 0)
-                    return; // across a periodic edge: it would be drawn as a line through the whole sheet
-                  const std::array<vtkIdType, 2> ends{{point_of_place[bond.near], point_of_place[bond.far]}};
-                  lines->InsertNextCell(2, ends.data());
-                  const double value = stretch(state, lattice_, bond);
-                  bond_stretch->InsertNextValue(value);
-                  for (const vtkIdType end : ends)
-                  {
-                    bond_stretch->SetValue(end, bond_stretch->GetValue(end) + value);
-                    ++bonds_of_point[static_cast<std::size_t>(end)];
-                  }
-                  shell->InsertNextValue(static_cast<unsigned char>(lattice::shell_of(bond.kind) + 1));
-                  toughened->InsertNextValue(state.bonds.toughened(bond.near, bond.kind) ? 1 : 0);
-                });
-
-  for (vtkIdType id = 0; id < n_points; ++id)
-  {
-    const unsigned int bonds = bonds_of_point[static_cast<std::size_t>(id)];
-    bond_stretch->SetValue(id, bonds > 0 ? bond_stretch->GetValue(id) / bonds : 1.);
-  }
-
-  vtkNew<vtkPolyData> sheet;
-  sheet->SetPoints(points);
-  sheet->SetVerts(vertices);
-  sheet->SetLines(lines);
-  for (vtkDataArray *data :
-       {static_cast<vtkDataArray *>(displacement.Get()), static_cast<vtkDataArray *>(velocity.Get()),
-        static_cast<vtkDataArray *>(deformation_gradient.Get()), static_cast<vtkDataArray *>(first_piola_stress.Get()),
-        static_cast<vtkDataArray *>(cauchy_stress.Get()), static_cast<vtkDataArray *>(strain_gradient_x.Get()),
-        static_cast<vtkDataArray *>(strain_gradient_y.Get()), static_cast<vtkDataArray *>(strain_energy_density.Get()),
-        static_cast<vtkDataArray *>(damage.Get()), static_cast<vtkDataArray *>(held.Get()),
-        static_cast<vtkDataArray *>(site.Get()), static_cast<vtkDataArray *>(fragment.Get())})
-    sheet->GetPointData()->AddArray(data);
-  for (vtkDataArray *data : {static_cast<vtkDataArray *>(bond_stretch.Get()), static_cast<vtkDataArray *>(shell.Get()),
-                             static_cast<vtkDataArray *>(toughened.Get())})
-    sheet->GetCellData()->AddArray(data);
-  // Arrays that ParaView shows by default.
-  sheet->GetPointData()->SetActiveVectors(displacement->GetName());
-  sheet->GetCellData()->SetActiveScalars(bond_stretch->GetName());
-  // The outermost sites of a periodic sheet are inside its ends.
-  const auto bounds = array("SheetBounds", 4, 1);
-  bounds->SetTuple4(0, 0., lattice_.length(), -0.5 * lattice_.height(), 0.5 * lattice_.height());
-  sheet->GetFieldData()->AddArray(bounds);
-
-  series_.add(*sheet, state.time);
+  // Array that ParaView shows by default; velocities are zero at the start.
+  data.SetActiveVectors("displacement");
+  series_.add(*frame, state.time);
 }
 
 } // namespace latcon::output

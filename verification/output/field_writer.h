@@ -6,6 +6,13 @@
 namespace latcon::output
 {
 
+/// Fields of a frame of the lattice.
+enum class FrameFields
+{
+  all,
+  motion ///< displacement and velocity at the sites, in single precision: a tenth of the size, for animations
+};
+
 /// Writes frames of a lattice for ParaView: `NAME.pvd`, and a file `NAME-NNNN.vtp` per frame, in one directory.
 ///
 /// Points are the sites at their reference positions [m]; warp by `displacement` for the current ones. Cells are the
@@ -22,13 +29,13 @@ class FieldWriter
 public:
   /// Creates a writer. The lattice must outlive this object.
   FieldWriter(const lattice::TriangularLattice &lattice, const lattice::Material &material,
-              std::filesystem::path directory, std::string name = "lattice");
+              std::filesystem::path directory, std::string name = "lattice", FrameFields fields = FrameFields::all);
 
   /// Adds the state as the next frame; replaces the last frame if it has the same time. @throws support::OutputError if
   /// a file cannot be written
   void add_frame(const lattice::State &state);
 
-  std::size_t n_frames() const { return series_.n_frames(); }
+  const FrameSeries &series() const { return series_; }
 
   /// Saves or loads the list of frames; see Simulation.
   template <class Archive>
@@ -37,12 +44,10 @@ public:
     series_.archive(archive);
   }
 
-  /// Writes `NAME.pvd` with the current list of frames. @throws support::OutputError
-  void write_collection() const { series_.write_collection(); }
-
 private:
   const lattice::TriangularLattice &lattice_;
   lattice::Material material_;
+  FrameFields fields_;
   FrameSeries series_;
 };
 

@@ -10,7 +10,7 @@
 
 #include "support/atomic_file.h"
 #include "support/pvd.h"
-#include "verification/output/field_units.h"
+#include "verification/output/point_data.h"
 #include "verification/output/vtk_file.h"
 
 namespace latcon::output

@@ -131,7 +131,6 @@ TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &mat
   {
     output::FieldWriter writer(sheet, material, frame->folder, frame->name);
     writer.add_frame(simulation.state());
-    writer.write_collection();
   }
   const lattice::EnergyBalance end = simulation.energies();
   const double advance = (drive.n_strides - n_half) * drive.stride();
