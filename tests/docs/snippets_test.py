@@ -13,7 +13,7 @@ import tempfile
 
 import pytest
 
-from snippets import BadPage, blocks, differences
+from snippets import blocks, differences
 
 LATCON, SOURCE = pathlib.Path(os.environ["LATCON"]), pathlib.Path(__file__).resolve().parents[2]
 FULL = "LATCON_FULL" in os.environ
@@ -127,48 +127,3 @@ def test_snippets_do_what_the_pages_say(tmp_path, page):
         elif block.language == "python":
             statements.append(block)
     assert not statements or not try_statements(clone, statements)
-
-
-# The test of the test.
-def test_blocks_have_languages_marks_and_output():
-    one, two, three = blocks("page.md", "```sh\na\n```\n\n```text\nb\n```\n<!-- exit code: 3 -->\n```sh\nc\n```\n"
-                                        "words\n\n```text\nd\n```\n")
-    assert (one.text, one.output, one.line) == ("a\n", "b\n", 1)
-    (weekly,) = blocks("page.md", "<!-- run weekly: long -->\n```sh\na\n```\n")
-    assert (weekly.mark, weekly.says) == ("run weekly", "long")
-    assert (two.mark, two.says, two.output) == ("exit code", "3", "")
-    assert three.language == "text"
-    (weekly,) = blocks("page.md", "<!-- run weekly: long -->\n```python\na\n```\n")
-    assert weekly.mark == "run weekly"
-    for text in ("<!-- exit code: 3 -->\n```python\na\n```\n", "```sh\na\n", "```\na\n```\n", "<!-- not run: so -->\nwords\n", "<!-- not run: so -->\n```text\na\n```\n",
-                 "words\n\n    ./run verify\n"):
-        with pytest.raises(BadPage):
-            blocks("page.md", text)
-
-
-def test_output_is_compared_by_words_and_numbers():
-    printed = "first line 12 s\nspeed  20.200 +- 0.84 m/s holds\nlast\n"
-    assert differences("speed 20.2 +- 0.84 m/s ...\n...\nlast\n", printed) == []
-    assert differences("first line ... s\n", printed) == []
-    assert differences("speed 20.3 +- 0.84 m/s holds\n", printed) == ["speed 20.3 +- 0.84 m/s holds"]
-    assert differences("last\nspeed ...\n", printed) == ["speed ..."]
-    assert differences("spee\n", printed) == ["spee"]
-
-
-def test_what_fails_is_told(tmp_path):
-    clone = Clone(tmp_path)
-    for text, part in (("```sh\n./run lattice none.prm\n```\n", "exit code 2"),
-                       ("```sh\nfalse\ntrue\n```\n", "exit code 1"),
-                       ("<!-- exit code: 3 -->\n```sh\ntrue\n```\n", "exit code 0"),
-                       ("```sh\n./run --version\n```\n```text\nlatcon 77\n```\n", "not printed"),
-                       ("```prm\nsubsection Sheet\n  set spacin = 1 mm\nend\n```\n", "spacing"),
-                       ("```json\n{\"titel\": \"x\", \"runs\": {}}\n```\n", "title"),
-                       ("```json\n{\"Sheet\": {\"length\": \"1 kg\"}}\n```\n", "length")):
-        (block,) = blocks("page.md", text)
-        wrong = (try_commands if block.language == "sh" else try_input)(clone, block)
-        assert part in wrong
-    for text, part in (("```python\nx = 1\n```\n```python\nprint(x)\n```\n```text\n2\n```\n", "page.md:4: not printed"),
-                       ("```python\nx = 1\n```\n```python\nprint(y)\n```\n", "page.md:4: exit code 1"),
-                       ("```python\nx = 1\n```\n```python\nprint(x)\n```\n```text\n1\n```\n", "")):
-        wrong = try_statements(clone, blocks("page.md", text))
-        assert part in wrong and bool(part) == bool(wrong), wrong
