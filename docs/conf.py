@@ -142,6 +142,8 @@ CONTENTS = {
 TREE = ":::{toctree}\n:hidden:\n:glob:\n:caption: %s\n\n%s\n:::\n"
 
 INTERFACES = """
+<a href="cpp/index.html">Interface in C++</a>
+
 :::{eval-rst}
 .. automodule:: latcon
    :members:
