@@ -1,8 +1,10 @@
 """Exceptions of the package. Those of a run contain the program's message and exit code."""
 from __future__ import annotations
 
+import importlib
 import os
 import pathlib
+from typing import Any
 
 
 class LatconError(Exception):
@@ -28,6 +30,14 @@ class UnreadableFile(LatconError):
         super().__init__(f"{path}: {problem}")
         self.path = pathlib.Path(path)
         self.problem = problem
+
+
+def optional_package(module: str, purpose: str, package: str) -> Any:
+    """Imports a module of a package that not every user has; otherwise raises LatconError with the name of the package."""
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        raise LatconError(f"{purpose} the Python package {package}: {error}") from error
 
 
 class _EndOfProgram(BaseException):

@@ -23,12 +23,14 @@ _TABLE = (
     ("Pa", "opening_stress_peak_8d+"), ("1", "opening_stress_concentration_8d+"), ("degrees", "wedge_angle+"),
     ("1", "speed_over_shear+ speed_over_longitudinal+"), ("m/s", "shear_speed longitudinal_speed process_zone_speed"),
     ("Pa", "far_opening_stress"))
+_CONTOUR = ("width", "width_rms", "centre_rms", *(f"{line}_{what}" for line in ("centre", "lower_edge", "upper_edge", "width")
+                                                  for what in ("wavelength", "amplitude")))
 # A name that ends with + has an uncertainty, one standard deviation.
 RECORDED: dict[str, str] = {name: unit for unit, words in _TABLE for word in words.split()
                             for name in ((word[:-1], word[:-1] + _UNCERTAINTY) if word[-1] == "+" else (word,))}
 """SI units of the quantities that a study records of a run, in the order of `study.csv`: numbers in `crack.json` and
 `near_tip.json`, and zeta and lengths over d, which follow from those and the case."""
-UNITS: dict[str, str] = RECORDED | dict.fromkeys(("X", "Y", "sampled_from", "sampled_to"), "m")
+UNITS: dict[str, str] = RECORDED | dict.fromkeys(("X", "Y", "sampled_from", "sampled_to", *_CONTOUR), "m")
 """SI units of the numbers in `crack.json` and `near_tip.json`; all others are pure numbers."""
 
 SHOWN = {"m": (100.0, "cm"), "m^2": (1e6, "mm²"), "s": (1e3, "ms"), "degrees": (1.0, "°")}

@@ -9,6 +9,7 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..case import set_options
 from ..folder import FolderLock, write_file
 from .output import plan_table
 from .plan import plan_runs
@@ -106,9 +107,7 @@ def _study_command(options: Mapping[str, Any], requested: RequestedStudy) -> str
     """Returns `latcon study` with the choices of the user, from any folder."""
     study = requested.file if requested.kept else options["study"]
     words = [options["program"], "study", os.path.abspath(study) if os.path.exists(study) else study]
-    for key, value in requested.overrides.items():
-        words += ["--set", f"{key}={value}"]
-    words += [f"--{name.replace('_', '-')}" for name in ("quick", "skip_verification", "yes") if options[name]]
+    words += [*set_options(requested.overrides), *(f"--{name.replace('_', '-')}" for name in ("quick", "skip_verification", "yes") if options[name])]
     return shlex.join([*words, "--output-dir", os.path.abspath(options["output_dir"])])
 
 

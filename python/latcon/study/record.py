@@ -218,11 +218,12 @@ def _polled() -> list[tuple[int, int]]:
 
 
 class Progress:
-    """Progress line on standard error: in place in a terminal, otherwise a line per minute."""
+    """Progress line on standard error: in place in a terminal, otherwise a line per minute; or JSON to LATCON_PROGRESS."""
 
     def __init__(self, is_wanted: bool) -> None:
         self._in_place = os.isatty(2) and os.environ.get("TERM") != "dumb"
-        self._interval = (0.2 if self._in_place else 60.0) if is_wanted else math.inf
+        self._descriptor = int(os.environ.get("LATCON_PROGRESS") or -1)
+        self._interval = (0.2 if self._in_place or self._descriptor >= 0 else 60.0) if is_wanted else math.inf
         self._begin = self._shown = time.monotonic()
 
     def is_due(self) -> bool:
@@ -232,8 +233,13 @@ class Progress:
     def show(self, text: str, done: float) -> None:
         """Shows a line, and the time that is left if a fraction is done."""
         self._shown = time.monotonic()
-        if done > 0.01:
-            text += f", {round((self._shown - self._begin) * (1 / done - 1))} s left"
+        left = (self._shown - self._begin) * (1 / done - 1) if done > 0.01 else None
+        if left is not None:
+            text += f", {round(left)} s left"
+        if self._descriptor >= 0:
+            with contextlib.suppress(OSError):  # nobody reads any more
+                os.write(self._descriptor, json.dumps({"text": text, "seconds_left": left}).encode() + b"\n")
+            return
         say_error(f"\r\x1b[K{text}" if self._in_place else text + "\n")
 
     def clear(self) -> None:
