@@ -6,6 +6,12 @@ import os
 import pathlib
 from typing import Any
 
+DONE, INTERNAL_ERROR, BAD_INPUT, CLAIM_FAILED, SOLVER_FAILED, OUTPUT_FAILED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 130
+"""Exit codes of the program."""
+
+PACKAGES_MISSING = 69
+"""Exit code of `report/__main__.py`, which has named the packages."""
+
 
 class LatconError(Exception):
     """Base class of all errors of this package except :class:`Interrupted`."""
@@ -104,7 +110,8 @@ class Interrupted(_EndOfProgram, KeyboardInterrupt):
 
 
 _BY_EXIT_CODE: dict[int, type[ProgramError] | type[Interrupted]] = {
-    1: InternalError, 2: BadInput, 3: ClaimFailed, 4: DidNotConverge, 5: OutputFailed, 130: Interrupted}
+    INTERNAL_ERROR: InternalError, BAD_INPUT: BadInput, CLAIM_FAILED: ClaimFailed, SOLVER_FAILED: DidNotConverge,
+    OUTPUT_FAILED: OutputFailed, INTERRUPTED: Interrupted}
 
 
 def error_of(exit_code: int, message: str, directory: pathlib.Path | None = None) -> ProgramError | Interrupted:

@@ -15,8 +15,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import IO
 
-from .errors import ProgramNotFound, error_of
-from .report.__main__ import IO_FAILED, PACKAGES_MISSING
+from .errors import OUTPUT_FAILED, PACKAGES_MISSING, ProgramNotFound, error_of
 
 Progress = bool | Callable[[str], None]
 
@@ -83,14 +82,19 @@ def draw_report(directory: pathlib.Path) -> None:
     ProgramError
         If that fails; with exit code 5 also if a package is missing.
     """
-    _output([sys.executable, "-sP", pathlib.Path(__file__).parent / "report" / "__main__.py", "report", directory, "--quiet"])
+    _output(page_command("report", directory))
+
+
+def page_command(kind: str, directory: str | os.PathLike[str]) -> list[str | os.PathLike[str]]:
+    """Returns the command that draws a page, see `report/__main__.py`, without modules of the user."""
+    return [sys.executable, "-sP", pathlib.Path(__file__).parent / "report" / "__main__.py", kind, directory, "--quiet"]
 
 
 def _output(command: Sequence[str | os.PathLike[str]]) -> str:
     ended = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", errors="replace", stdin=subprocess.DEVNULL,
                            check=False)
     if ended.returncode != 0:
-        code = IO_FAILED if ended.returncode == PACKAGES_MISSING else ended.returncode
+        code = OUTPUT_FAILED if ended.returncode == PACKAGES_MISSING else ended.returncode
         raise error_of(code, _message(ended.stderr.strip(), ended.stdout))
     return ended.stdout
 

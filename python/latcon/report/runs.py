@@ -3,7 +3,7 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import UnreadableFile
+from ..errors import INTERRUPTED, UnreadableFile
 from ..files import if_present, read_columns, read_json, read_text
 from ..folder import EARLIER
 from .claim_plots import read_claim_tables
@@ -12,7 +12,6 @@ from .claim_plots import read_claim_tables
 SIGNS_OF_A_RUN = ("results.json", "run.json", "crack.json", "crack.csv", "lattice.pvd")
 # First columns of energy.csv of an equilibrium and of a motion of the continuum.
 CONTINUUM_ENERGIES = ("load_factor,", "t,elastic,kinetic,micro_inertia,")
-INTERRUPTED = 130  # exit code of latcon
 
 
 @dataclass(frozen=True)

@@ -7,23 +7,21 @@ import io
 import json
 import math
 import os
-import pathlib
 import resource
 import select
 import shutil
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..errors import PACKAGES_MISSING, CLAIM_FAILED, DONE, INTERRUPTED
 from ..folder import FolderLock, add_to_list, archive, is_listed, write_atomically, write_file
-from .program import CLAIM_FAILED, DONE, INTERRUPTED, Ended, Program
+from ..program import page_command
+from .program import Ended, Program
 from .pool import end_with_parent, environment_of_children
 from .output import shortest
-
-PACKAGES_MISSING = 69  # exit status of a script that has named them, see report/__main__.py
 
 
 class Printed:
@@ -196,8 +194,7 @@ def say_error(text: str) -> None:
 def draw_page(kind: str, directory: str, page: str, repeat: str) -> bool:
     """Draws a page by :mod:`latcon.report`. Nodes of a cluster may have no packages for it; then says so, since all results are
     written, and how to draw it."""
-    script = pathlib.Path(__file__).parents[1] / "report" / "__main__.py"
-    status = subprocess.run([sys.executable, "-sP", script, kind, directory, "--quiet"], check=False).returncode
+    status = subprocess.run(page_command(kind, directory), check=False).returncode
     if status == PACKAGES_MISSING:
         say_error(f"latcon: cannot draw {directory}/{page} without these packages; every other file is complete. To draw the page, "
                   f"{repeat} on a machine with Python and the packages of the report\n")
