@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from .case import Case
 from .errors import ProgramNotFound, UnreadableFile
-from .files import read_json, read_table, read_text
+from .files import read_json, read_rows, read_table, read_text
 from .folder import absolute
 from .frames import Frames, read_near_tip
 from .program import draw_report, find_program
@@ -116,7 +116,7 @@ class Run:
         ``verdict`` (``holds``, ``fails``, ``reported``); numbers that do not apply are NaN. The first three numbers are in
         ``unit``, error and tolerance as the claim defines them.
         """
-        return read_rows(self.directory / "results.json")
+        return results_table(self.directory / "results.json")
 
     @functools.cached_property
     def frames(self) -> Frames:
@@ -201,13 +201,7 @@ def open_run(directory: str | os.PathLike[str]) -> Run:
     return Run(directory)
 
 
-def read_rows(path: pathlib.Path) -> pd.DataFrame:
+def results_table(path: pathlib.Path) -> pd.DataFrame:
     """Returns the rows of a `results.json` as :attr:`Run.results`."""
     import pandas as pd
-    rows = read_json(path).get("claims")
-    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-        raise UnreadableFile(path, "has no list 'claims'")
-    table = pd.DataFrame(rows, columns=list(_RESULT_COLUMNS))
-    for name in ("lattice", "continuum", "theory", "error", "tolerance"):
-        table[name] = table[name].astype(float)
-    return table
+    return pd.DataFrame(read_rows(path), columns=list(_RESULT_COLUMNS)).astype(dict.fromkeys(_RESULT_COLUMNS[3:8], float))

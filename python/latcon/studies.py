@@ -14,7 +14,7 @@ from .errors import ClaimFailed, DidNotConverge, optional_package
 from .files import read_json
 from .folder import absolute
 from .program import Progress, interrupt_runs, progress_indicator, run
-from .results import Run, open_run, read_rows
+from .results import Run, open_run, results_table
 from .schema import SEED_ENTRY
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ class Study:
     @functools.cached_property
     def results(self) -> pd.DataFrame:
         """`results.json`: one row per tested statement, with the columns of :attr:`Run.results`."""
-        return read_rows(self.directory / "results.json")
+        return results_table(self.directory / "results.json")
 
     def run(self, name: str, seed: int) -> Run:
         """Opens a run.
