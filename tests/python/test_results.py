@@ -41,6 +41,9 @@ def test_crack_has_values_uncertainties_and_units(crack):
         crack.crack.wavelenght
     assert str(latcon.Value(0.0243900138, 0.000292, "m")) == "0.02439 ± 0.00029 m"
     assert len(crack.near_tip) > 30
+    contour = latcon.Quantities({"width": 1e-3, "width_uncertainty": 1e-4, "upper_edge_wavelength": None, "centre_log_evidence": 3.0})
+    assert str(contour.width) == "0.00100 ± 0.00010 m"
+    assert (contour.upper_edge_wavelength.unit, contour.centre_log_evidence.unit) == ("m", "1")
 
 
 def test_recorded_quantities_are_those_of_the_files(crack):
@@ -59,6 +62,7 @@ def test_tables_are_the_files_to_the_last_bit(crack, file, name):
     for column in table:
         assert (table[column].to_numpy(float) == [float(row[column]) for row in written]).all(), column
     assert table.attrs["units"]["t"] == "s"
+    assert all(table[column].dtype == np.int64 for column in table if column in ("site", "other_site", "bonds_broken"))
 
 
 def test_results_and_provenance(crack):
