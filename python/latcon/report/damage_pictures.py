@@ -2,11 +2,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
-
 from ..errors import UnreadableFile
-from ..files import if_present, read_columns, read_series
-from ..frames import arrays_of, read_vtk
+from ..files import if_present, read_columns
+from ..frames import read_frame
+from .motion import last_frame
 from .pictures import BLACK, BLUE, GREY, RED, WIDTH, Page, save
 
 NEEDED = ("displacement", "velocity", "damage", "strain_energy_density")
@@ -30,27 +29,21 @@ class DamageFrame:
 
 def read_last_damage_frame(folder):
     """Reads the last existing frame listed in continuum.pvd; None if there is none of a continuum with damage."""
-    for time, path in reversed(if_present(read_series, folder / "continuum.pvd") or []):
-        if path.suffix == ".vtp" and path.exists():
-            return read_damage_frame(path, time)
-    return None
+    time, path = last_frame(folder / "continuum.pvd")
+    return read_damage_frame(path, time) if path else None
 
 
 def read_damage_frame(path, time):
     """Reads a frame."""
-    sheet = read_vtk(path, "vtkXMLPolyDataReader")
-    if sheet.GetNumberOfPoints() == 0:
-        raise UnreadableFile(path, "truncated, or without nodes")
-    fields, _ = arrays_of(sheet.GetPointData())
+    frame = read_frame(path, time, NEEDED)
+    fields, reference = frame.fields, frame.reference
     if missing := [name for name in NEEDED if name not in fields]:
         raise UnreadableFile(path, f"not a frame of a continuum with damage: array {missing[0]!r} is missing")
-    reference = vtk_to_numpy(sheet.GetPoints().GetData())[:, :2].astype(float)
     columns = int(np.argmax(reference[:, 1] > reference[0, 1])) or len(reference)
     if len(reference) % columns or not all(np.isfinite(fields[name]).all() for name in NEEDED):
         raise UnreadableFile(path, "its nodes are not those of a grid, or a value is not finite")
-    moved = reference + fields["displacement"]
     return DamageFrame(time, *(np.asarray(values, float).reshape(-1, columns) for values in (
-        *reference.T, *moved.T, np.linalg.norm(fields["velocity"], axis=1), fields["damage"], fields["strain_energy_density"])))
+        *reference.T, *frame.position.T, np.linalg.norm(fields["velocity"], axis=1), fields["damage"], fields["strain_energy_density"])))
 
 
 def draw_damage(frame, path):
@@ -74,10 +67,7 @@ def draw_damage(frame, path):
         axes.set_xlim(*(100 * np.array((x[sound].min(), x[sound].max()))))
         axes.set_ylim(*(100 * np.array((y[sound].min(), y[sound].max()))))
         axes.grid(False)
-        bar = page.figure.colorbar(shown, cax=page.axes(LEFT, above + height + FOOT, width, 0.13),
-                                   orientation="horizontal", extend="max" if largest == top else "neither")
-        bar.set_label(label)
-        bar.outline.set_visible(False)
+        page.colour_bar(shown, LEFT, above + height + FOOT, width, 0.13, label, extend="max" if largest == top else "neither")
         above += height + FOOT + BAR + TOP
     save(page.figure, path, few_colours=False)
 
