@@ -10,7 +10,8 @@ _UNCERTAINTY = "_uncertainty"
 
 _TABLE = (
     ("1", "zeta"), ("m/s", "speed_lagrangian+ speed_laboratory+"), ("m", "wavelength+"), ("1", "wavelength_over_d+"), ("m", "amplitude+"),
-    ("1", "amplitude_over_d+"), ("m", "crest_amplitude+"), ("1", "crest_amplitude_over_d+ periods"), ("m", "window_begin window_end"),
+    ("1", "amplitude_over_d+"), ("m", "crest_amplitude+"), ("1", "crest_amplitude_over_d+ periods"), ("m", "path_rms window_begin window_end"),
+    ("1/m", "path_growth+"), ("J/m^2", "viscous_per_area broken_per_area"),
     ("1", "branched_fraction bonds_broken detached_sites detached_fragments largest_fragment overstretched_bonds"),
     ("m", "bridged_length flank_damage_depth"), ("1", "flank_damage_share"), ("s", "end_time"), ("1", "energy_imbalance samples"),
     ("m^2", "negative_zone_area+ negative_zone_area_of_samples+"), ("m", "negative_zone_length+ negative_zone_distance+"),
@@ -27,7 +28,7 @@ _TABLE = (
 RECORDED: dict[str, str] = {name: unit for unit, words in _TABLE for word in words.split()
                             for name in ((word[:-1], word[:-1] + _UNCERTAINTY) if word[-1] == "+" else (word,))}
 """SI units of the quantities that a study records of a run, in the order of `study.csv`: numbers in `crack.json` and
-`near_tip.json`, and zeta and lengths over d, which follow from those and the case."""
+`near_tip.json`, and those that follow from these, the case and the tables: zeta, lengths over d, numbers of the path, energies per area."""
 UNITS: dict[str, str] = RECORDED | dict.fromkeys(("X", "Y", "sampled_from", "sampled_to"), "m")
 """SI units of the numbers in `crack.json` and `near_tip.json`; all others are pure numbers."""
 

@@ -7,6 +7,7 @@ import json
 import pathlib
 from typing import Any
 
+from ..tables import table_values
 from .plan import PlannedRun
 from .program import CLAIM_FAILED, DONE, Program, printable
 
@@ -79,7 +80,7 @@ def measured_values(program: Program, folder: str, spacing: float) -> dict[str, 
         for suffix in ("", "_uncertainty"):
             if name + suffix in values:
                 values[f"{name}_over_d{suffix}"] = values[name + suffix] / spacing
-    return values
+    return values | table_values(folder, spacing, values.get("window_begin", 0.0), values.get("window_end", 0.0))
 
 
 def is_begun(program: Program, run: PlannedRun, folder: str, case: str, skip_verification: bool) -> bool:
