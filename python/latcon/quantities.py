@@ -68,13 +68,28 @@ class Value:
 
 def quantity_text(value: float, uncertainty: float | None, unit: str) -> str:
     """Formats a number with a readable unit: lengths in cm, areas in mm², times in ms."""
-    scale, shown = SHOWN.get(unit, (1.0, "" if unit == "1" else unit))
-    number = number_text(scale * value, None if uncertainty is None else scale * uncertainty)
-    return number + ("" if shown in ("", "°") else " ") + shown
+    scale, shown = shown_unit(unit)
+    return number_text(value, uncertainty, scale=scale) + ("" if shown in ("", "°") else " ") + shown
 
 
-def number_text(value: float, uncertainty: float | None, sign: str = "±") -> str:
-    """Formats a number to the digits that its uncertainty justifies, "20.06 ± 0.23"; four digits if there is none."""
+def shown_unit(unit: str) -> tuple[float, str]:
+    """Returns the readable unit of a quantity, with the factor to it from its SI unit; empty for a pure number."""
+    return SHOWN.get(unit, (1.0, "" if unit == "1" else unit))
+
+
+def number_text(value: float, uncertainty: float | None, sign: str = "±", scale: float = 1.0) -> str:
+    """Formats a number to the digits that its uncertainty justifies, "20.06 ± 0.23"; four digits if there is none.
+
+    Parameters
+    ----------
+    value, uncertainty
+        Number and one standard deviation.
+    sign
+        Between both.
+    scale
+        Factor for both.
+    """
+    value, uncertainty = scale * value, None if uncertainty is None else scale * uncertainty
     if uncertainty is None or not 1e-12 * abs(value) < uncertainty < math.inf:  # of equal values it is round-off
         return f"{value:.4g}"
     digits = min(max(1 - math.floor(math.log10(uncertainty)), 0), 12)

@@ -7,9 +7,10 @@ import json
 import pathlib
 from typing import Any
 
+from ..errors import CLAIM_FAILED, DONE
 from ..tables import table_values
 from .plan import PlannedRun
-from .program import CLAIM_FAILED, DONE, Program, printable
+from .program import Program, printable
 
 
 class RunState(enum.Enum):
