@@ -19,7 +19,7 @@ from .results import open_run as open  # called as latcon.open
 from .schema import Entry, Schema, schema
 from .studies import Study, open_study, sweep
 
-__version__ = "0.1.0"  # that of CMakeLists.txt, which the tests compare
+__version__ = "1.0.0"  # that of CMakeLists.txt, which the tests compare
 
 # Without `open`, which `from latcon import *` would substitute for Python's built-in function.
 __all__ = ["BadInput", "Case", "ClaimFailed", "DidNotConverge", "Entry", "Frame", "InternalError", "Interrupted", "Job", "LatconError",
