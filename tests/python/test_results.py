@@ -51,6 +51,15 @@ def test_recorded_quantities_are_those_of_the_files(crack):
     assert written - set(RECORDED) == others
 
 
+def test_crack_of_the_nonlocal_continuum_is_read_alike(tmp_path):
+    case = tiny_case().set("Time/integrator", "runge-kutta-chebyshev").set("Time/end", "0.05 ms")
+    run = latcon.fracture(case, tmp_path / "out", skip_verification=True, report=False, progress=False, side="continuum")
+    assert run.info["side"] == run.crack["side"] == "continuum"
+    last = latcon.open(tmp_path / "out").frames[-1]
+    assert len(last.position) == 81 * 49  # twice as fine as the lattice
+    assert last.bonds.max() < len(last.position) and (last.stretch > 1).all()
+
+
 @pytest.mark.parametrize("file, name", [("crack.csv", "path"), ("energy.csv", "energy"), ("broken_bonds.csv", "broken_bonds")])
 def test_tables_are_the_files_to_the_last_bit(crack, file, name):
     table, written = getattr(crack, name), rows(crack.directory / file)
