@@ -126,7 +126,7 @@ public:
   /// Returns the penalty [Pa m] gamma p (p + 1) / h times the normal stiffness, on a face of a cell that extends h =
   /// `extent` [m] normal to it, for states that are not stiffer than supported_stiffness().
   double penalty(double extent) const;
-  /// Returns the stiffness [Pa m^2] of the gradient law above which penalties grow with it, eq. (C.84).
+  /// Returns the stiffness [Pa m^2] of the gradient law above which penalties grow with it, eq. (C.59).
   double supported_stiffness() const;
   const dealii::IndexSet &owned() const { return owned_; }
   const dealii::IndexSet &relevant() const { return relevant_; }
