@@ -39,8 +39,8 @@ CRACK = {
 SHEET = {
     "solver/steps": [hostile.LARGE], "solver/time": [hostile.value(-1e308)], "solver/displacement": [hostile.longer],
     "solver/velocity": [hostile.no_number], "solver/linear_solver/is_stale": [hostile.value(2)],
-    "solver/elastic_diagonal": [hostile.shorter], "record/motion/n": [hostile.LARGE],
-    "record/motion/time": [hostile.value(1e308)], "frames/frames/n": [hostile.LARGE],
+    "solver/elastic_diagonal": [hostile.shorter], "record/energies/n": [hostile.LARGE],
+    "record/energies/time": [hostile.value(1e308)], "frames/frames/n": [hostile.LARGE],
     "frames/frames/pieces": [hostile.value(0)], "next_frame": [hostile.value(1e-300)], "step": [hostile.LARGE],
 }
 

@@ -357,6 +357,8 @@ private:
     archive("frames", frames_);
     if (Archive::loads && !(frames_.last_time() <= solver_.time()))
       throw support::InputError("the last frame is of a later time");
+    if (Archive::loads && !(record_.last_time() <= solver_.time()))
+      throw support::InputError("the last energies are of a later time");
   }
 
   const bridge::ContinuumModel &model_;
