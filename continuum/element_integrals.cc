@@ -43,13 +43,17 @@ private:
   const double *own_; // a ghosted vector is sorted, so the owned entries are contiguous
 };
 
-// Integrates densities over cells and faces at one state u.
+// Integrates densities over cells and faces at one state u, or those of a motion.
 class Integrator
 {
 public:
-  Integrator(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order)
-    : sheet_(sheet), u_(u, sheet.owned()), load_factor_(load_factor), order_(order), tables_(sheet)
+  Integrator(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order,
+             const Motion *motion = nullptr)
+    : sheet_(sheet), fields_{NodalValues(u, sheet.owned())}, load_factor_(load_factor), order_(order), motion_(motion),
+      tables_(sheet)
   {
+    if (motion)
+      fields_.emplace_back(motion->velocity, sheet.owned());
     for (unsigned int n = 0; n < sheet.element().n_dofs_per_cell() / 2; ++n)
       for (unsigned int i = 0; i < 2; ++i)
         system_index_[i].push_back(sheet.element().component_to_system_index(i, n));
@@ -66,7 +70,10 @@ public:
     {
       const double *basis = table.row(q, 0);
       evaluate_sides(basis, rows);
-      cell_density(sheet_.constitution(), sheet_.has_gradient(), derivatives_[0], order_, density_);
+      if (motion_)
+        motion_->law.cell_density(derivatives_[0], rates_[0], order_, motion_->rate_by_displacement, density_);
+      else
+        cell_density(sheet_.constitution(), sheet_.has_gradient(), derivatives_[0], order_, density_);
       add_point(basis, rows, table.JxW[q], contributions.back());
     }
     end(contributions.back());
@@ -83,7 +90,7 @@ public:
         std::vector<Tensor<1, 2>> prescribed(points.size());
         for (std::size_t q = 0; q < points.size(); ++q)
           for (unsigned int i = 0; i < 2; ++i)
-            prescribed[q][i] = load_factor_ * condition.gradient->value(points[q], i);
+            prescribed[q][i] = (motion_ ? motion_->load_rate : load_factor_) * condition.gradient->value(points[q], i);
         begin(contributions);
         add_nodes(cell, 0);
         integrate_face(tables, 1, extent(cell, face), &prescribed, {condition.components[0], condition.components[1]},
@@ -145,10 +152,11 @@ private:
   {
     const auto n = static_cast<unsigned int>(nodes_.size());
     stride_ = padded_size(n);
-    nodal_.assign(2 * stride_, 0.);
-    for (unsigned int a = 0; a < n; ++a)
-      for (unsigned int i = 0; i < 2; ++i)
-        nodal_[i * stride_ + a] = u_(nodes_[a][i]);
+    nodal_.assign(2 * fields_.size() * stride_, 0.);
+    for (std::size_t f = 0; f < fields_.size(); ++f)
+      for (unsigned int a = 0; a < n; ++a)
+        for (unsigned int i = 0; i < 2; ++i)
+          nodal_[(2 * f + i) * stride_ + a] = fields_[f](nodes_[a][i]);
     if (order_ == Order::first)
     {
       first_.assign(2 * stride_, 0.);
@@ -157,8 +165,8 @@ private:
     if (order_ == Order::second)
     {
       work_.resize(2 * n_derivatives * stride_);
-      for (std::vector<double> &block : second_)
-        block.assign(n * stride_, 0.);
+      for (unsigned int block = 0; block < n_blocks(); ++block)
+        second_[block].assign(n * stride_, 0.);
     }
     basis_.assign(n_sides * n_derivatives * stride_, 0.);
   }
@@ -181,22 +189,36 @@ private:
             to[node_of_[s][n]] = from[n];
         }
       evaluate_sides(basis_.data(), rows);
-      face_density(*sheet_.constitution().gradient, derivatives_, n_sides, tables[0]->normals[q],
-                   prescribed ? (*prescribed)[q] : Tensor<1, 2>(), held, penalty, order_, density_);
+      const Tensor<1, 2> &N = tables[0]->normals[q];
+      const Tensor<1, 2> given = prescribed ? (*prescribed)[q] : Tensor<1, 2>();
+      if (motion_)
+        motion_->law.face_density(derivatives_, rates_, n_sides, N, given, held,
+                                  sheet_.penalty(extent, motion_->law.resistance_across(N)), order_,
+                                  motion_->rate_by_displacement, density_);
+      else
+        face_density(*sheet_.constitution().gradient, derivatives_, n_sides, N, given, held, penalty, order_, density_);
       add_point(basis_.data(), rows, tables[0]->JxW[q], contribution);
     }
     end(contribution);
   }
 
-  // Computes the derivatives of u from the basis, and clears the density.
+  // Computes the derivatives of the fields from the basis, and clears the density.
   void evaluate_sides(const double *basis, const Rows &rows)
   {
     clear(density_, order_);
+    evaluate_field(basis, rows, nodal_.data(), derivatives_);
+    if (motion_)
+      evaluate_field(basis, rows, &nodal_[2 * stride_], rates_);
+  }
+
+  void evaluate_field(const double *basis, const Rows &rows, const double *nodal,
+                      std::array<FieldDerivatives, 2> &field) const
+  {
     double derivatives[2][2][n_derivatives] = {};
-    evaluate_derivatives(basis, stride_, rows, nodal_.data(), derivatives[0][0]);
+    evaluate_derivatives(basis, stride_, rows, nodal, derivatives[0][0]);
     for (unsigned int s = 0; s < rows.n_sides; ++s)
       for (unsigned int i = 0; i < 2; ++i)
-        std::copy(derivatives[i][s], derivatives[i][s] + n_derivatives, derivatives_[s][i].begin());
+        std::copy(derivatives[i][s], derivatives[i][s] + n_derivatives, field[s][i].begin());
   }
 
   void add_point(const double *basis, const Rows &rows, const double JxW, Contribution &contribution)
@@ -206,11 +228,11 @@ private:
       for (unsigned int i = 0; i < 2; ++i)
         add_first(basis, stride_, rows, density_.first[i][0], JxW, &first_[i * stride_], &magnitude_[i * stride_]);
     if (order_ == Order::second)
-      for (unsigned int block = 0; block < 3; ++block)
+      for (unsigned int block = 0; block < n_blocks(); ++block)
       {
         const auto &[i, k] = components[block];
-        add_second(basis, stride_, rows, density_.second[i][k][0][0][0], JxW, i == k, nodes_.size(), work_.data(),
-                   second_[block].data());
+        add_second(basis, stride_, rows, density_.second[i][k][0][0][0], JxW, i == k && !motion_, nodes_.size(),
+                   work_.data(), second_[block].data());
       }
   }
 
@@ -232,10 +254,16 @@ private:
     }
     if (order_ != Order::second)
       return;
-    // The second derivative is symmetric: only one triangle of the blocks of equal components was summed, and only one
-    // of the two mixed blocks.
+    // The second derivative of an energy is symmetric: only one triangle of the blocks of equal components was summed,
+    // and only one of the two mixed blocks.
     FullMatrix<double> &K = contribution.tangent;
     K.reinit(2 * n, 2 * n);
+    for (unsigned int block = 0; block < n_blocks() && motion_; ++block)
+      for (std::size_t a = 0; a < n; ++a)
+        for (std::size_t b = 0; b < n; ++b)
+          K(2 * a + components[block].first, 2 * b + components[block].second) = second_[block][a * stride_ + b];
+    if (motion_)
+      return;
     for (std::size_t a = 0; a < n; ++a)
     {
       for (std::size_t b = a; b < n; ++b)
@@ -246,12 +274,14 @@ private:
     }
   }
 
-  static constexpr std::pair<unsigned int, unsigned int> components[3] = {{0, 0}, {1, 1}, {0, 1}}; // of second_
+  static constexpr std::pair<unsigned int, unsigned int> components[4] = {{0, 0}, {1, 1}, {0, 1}, {1, 0}}; // of second_
+  unsigned int n_blocks() const { return motion_ ? 4 : 3; }
 
   const Sheet &sheet_;
-  NodalValues u_;
+  std::vector<NodalValues> fields_; // u, and the velocity of a motion
   double load_factor_;
   Order order_;
+  const Motion *motion_; // nullptr: none
   ShapeTables tables_;
   std::array<std::vector<unsigned int>, 2> system_index_; // of the scalar shape functions, per component
 
@@ -260,12 +290,13 @@ private:
   std::vector<types::global_dof_index> cell_dofs_;
   unsigned int stride_ = 0;
   std::vector<double> basis_; // see element_kernels.h
-  std::vector<double> nodal_; // [component][node] of u
+  std::vector<double> nodal_; // [field][component][node]
   std::vector<double> first_; // [component][node], as magnitude_
   std::vector<double> magnitude_;
-  std::array<std::vector<double>, 3> second_; // [node][node]
+  std::array<std::vector<double>, 4> second_; // [node][node]
   std::vector<double> work_;
   std::array<FieldDerivatives, 2> derivatives_; // of u, per side
+  std::array<FieldDerivatives, 2> rates_;       // of the velocity, per side
   PointIntegrand density_{};
 };
 
@@ -302,12 +333,9 @@ struct AddingVisitor
     contributions.clear();
   }
 };
-} // namespace
 
-void integrate(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order,
-               const std::function<void(const Contribution &)> &add)
+void integrate_with(Integrator &integrator, const Sheet &sheet, const std::function<void(const Contribution &)> &add)
 {
-  Integrator integrator(sheet, u, load_factor, order);
   AddingVisitor visitor{integrator, add, {}};
   if (sheet.has_gradient())
   {
@@ -320,5 +348,20 @@ void integrate(const Sheet &sheet, const Sheet::Vector &u, const double load_fac
       visitor.cell(cell);
       visitor.cell_end();
     }
+}
+} // namespace
+
+void integrate(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order,
+               const std::function<void(const Contribution &)> &add)
+{
+  Integrator integrator(sheet, u, load_factor, order);
+  integrate_with(integrator, sheet, add);
+}
+
+void integrate(const Sheet &sheet, const Sheet::Vector &u, const Motion &motion, const Order order,
+               const std::function<void(const Contribution &)> &add)
+{
+  Integrator integrator(sheet, u, 0., order, &motion);
+  integrate_with(integrator, sheet, add);
 }
 } // namespace latcon::continuum

@@ -59,8 +59,7 @@ public:
   Sheet(const Mesh &mesh, const Constitution &constitution, unsigned int degree,
         BoundaryConditions conditions = BoundaryConditions());
 
-  /// Creates a sheet with the same laws, elements and conditions on another mesh of the same domain, without a
-  /// stiffness factor, which belongs to one mesh.
+  /// Creates a sheet with the same laws, elements and conditions on another mesh of the same domain.
   std::unique_ptr<Sheet> clone_on(const Mesh &mesh) const;
 
   /// Renumbers the unknowns after a change of the mesh. Existing vectors become invalid.
@@ -96,9 +95,8 @@ public:
   void make_matrix(const dealii::AffineConstraints<double> &constraints, Matrix &matrix) const;
 
   /// Returns the states at reference points [m]. Every rank passes the same points and gets all states. On a cell
-  /// boundary, F and G are means over the adjacent cells, independent of the partition. P, Q and the energy density
-  /// include the stiffness factor. Throws InvalidInput if a point is outside the mesh by more than 1e-8 of a cell, or
-  /// not finite.
+  /// boundary, F and G are means over the adjacent cells, independent of the partition. Throws InvalidInput if a
+  /// point is outside the mesh by more than 1e-8 of a cell, or not finite.
   std::vector<PointState> evaluate(const Vector &u, const std::vector<dealii::Point<2>> &points) const;
 
   /// Returns the range of det F over all quadrature points. Does not throw for det F <= 0.
@@ -125,8 +123,10 @@ public:
   bool has_gradient() const { return constitution_.has_gradient(); }
   /// Returns the penalty [Pa m] gamma p (p + 1) / h times the normal stiffness, on a face of a cell that extends h =
   /// `extent` [m] normal to it, for states that are not stiffer than supported_stiffness().
-  double penalty(double extent) const;
-  /// Returns the stiffness [Pa m^2] of the gradient law above which penalties grow with it, eq. (C.59).
+  double penalty(double extent) const { return penalty(extent, normal_stiffness_); }
+  /// Returns the penalty of another law with that `stiffness` across the face [Pa m^2 or Pa s m^2].
+  double penalty(double extent, double stiffness) const;
+  /// Returns the stiffness [Pa m^2] of the gradient law above which penalties grow with it, eq. (C.84).
   double supported_stiffness() const;
   const dealii::IndexSet &owned() const { return owned_; }
   const dealii::IndexSet &relevant() const { return relevant_; }

@@ -23,12 +23,14 @@ _TABLE = (
     ("Pa", "opening_stress_peak_8d+"), ("1", "opening_stress_concentration_8d+"), ("degrees", "wedge_angle+"),
     ("1", "speed_over_shear+ speed_over_longitudinal+"), ("m/s", "shear_speed longitudinal_speed process_zone_speed"),
     ("Pa", "far_opening_stress"))
+_CONTOUR = ("width", "width_rms", "centre_rms", *(f"{line}_{what}" for line in ("centre", "lower_edge", "upper_edge", "width")
+                                                  for what in ("wavelength", "amplitude")))
 # A name that ends with + has an uncertainty, one standard deviation.
 RECORDED: dict[str, str] = {name: unit for unit, words in _TABLE for word in words.split()
                             for name in ((word[:-1], word[:-1] + _UNCERTAINTY) if word[-1] == "+" else (word,))}
 """SI units of the quantities that a study records of a run, in the order of `study.csv`: numbers in `crack.json` and
 `near_tip.json`, and zeta and lengths over d, which follow from those and the case."""
-UNITS: dict[str, str] = RECORDED | dict.fromkeys(("X", "Y", "sampled_from", "sampled_to"), "m")
+UNITS: dict[str, str] = RECORDED | dict.fromkeys(("X", "Y", "sampled_from", "sampled_to", *_CONTOUR), "m")
 """SI units of the numbers in `crack.json` and `near_tip.json`; all others are pure numbers."""
 
 SHOWN = {"m": (100.0, "cm"), "m^2": (1e6, "mm²"), "s": (1e3, "ms"), "degrees": (1.0, "°")}
@@ -67,13 +69,28 @@ class Value:
 
 def quantity_text(value: float, uncertainty: float | None, unit: str) -> str:
     """Formats a number with a readable unit: lengths in cm, areas in mm², times in ms."""
-    scale, shown = SHOWN.get(unit, (1.0, "" if unit == "1" else unit))
-    number = number_text(scale * value, None if uncertainty is None else scale * uncertainty)
-    return number + ("" if shown in ("", "°") else " ") + shown
+    scale, shown = shown_unit(unit)
+    return number_text(value, uncertainty, scale=scale) + ("" if shown in ("", "°") else " ") + shown
 
 
-def number_text(value: float, uncertainty: float | None, sign: str = "±") -> str:
-    """Formats a number to the digits that its uncertainty justifies, "20.06 ± 0.23"; four digits if there is none."""
+def shown_unit(unit: str) -> tuple[float, str]:
+    """Returns the readable unit of a quantity, with the factor to it from its SI unit; empty for a pure number."""
+    return SHOWN.get(unit, (1.0, "" if unit == "1" else unit))
+
+
+def number_text(value: float, uncertainty: float | None, sign: str = "±", scale: float = 1.0) -> str:
+    """Formats a number to the digits that its uncertainty justifies, "20.06 ± 0.23"; four digits if there is none.
+
+    Parameters
+    ----------
+    value, uncertainty
+        Number and one standard deviation.
+    sign
+        Between both.
+    scale
+        Factor for both.
+    """
+    value, uncertainty = scale * value, None if uncertainty is None else scale * uncertainty
     if uncertainty is None or not 1e-12 * abs(value) < uncertainty < math.inf:  # of equal values it is round-off
         return f"{value:.4g}"
     digits = min(max(1 - math.floor(math.log10(uncertainty)), 0), 12)

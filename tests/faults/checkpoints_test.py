@@ -63,8 +63,3 @@ def test_damage_is_refused_or_fallen_back_from(tmp_path):
     told = damage.damage_at_random(PROGRAM, "lattice in motion", tmp_path, random.Random(1), 8)
     assert told["refused"] > 0
     assert told["fell back"] > 0
-
-
-def test_harness_sees_what_is_accepted(tmp_path):
-    with pytest.raises(hostile.Accepted):
-        check_refused(tmp_path, "lattice in motion", {"run/program": [hostile.another_type]})  # which is not read

@@ -200,7 +200,8 @@ struct MovingSheet
   // @throws InputError, continuum::InvalidInput for what start() would refuse
   MovingSheet(const input::Case &input, bridge::ContinuumModel &model)
     : settings(dynamic_settings(input, model)),
-      viscosity(bridge::homogenised_viscosity(input.lattice(), model.subject().material)),
+      viscosity(
+        bridge::homogenised_viscosity(input.lattice(), model.subject().material, model.viscous_gradient_length())),
       memory(bridge::homogenised_memory(input.lattice(), model.subject().material)),
       solver(model.mesh(), model.constitution(), model.conditions(), {input.density, model.inertia_length()}, settings,
              viscosity.get(), {}, memory.get()),

@@ -7,8 +7,9 @@ import json
 import pathlib
 from typing import Any
 
+from ..errors import CLAIM_FAILED, DONE
 from .plan import PlannedRun
-from .program import CLAIM_FAILED, DONE, Program, printable
+from .program import Program, printable
 
 
 class RunState(enum.Enum):
