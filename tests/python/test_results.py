@@ -45,10 +45,19 @@ def test_crack_has_values_uncertainties_and_units(crack):
 
 def test_recorded_quantities_are_those_of_the_files(crack):
     written = {name for file in ("crack", "near_tip") for name in json.loads((crack.directory / f"{file}.json").read_text())}
-    derived = {"zeta", *(name for name in RECORDED if "_over_d" in name)}
+    derived = {"zeta", *(name for name in RECORDED if "_over_d" in name or name.startswith("path_") or name.endswith("_per_area"))}
     assert set(RECORDED) - derived <= written and not derived & written
     others = {"pattern", "reason", "thresholds", "nearest_to_breaking", "skip_verification", "units", "sampled_from", "sampled_to"}
     assert written - set(RECORDED) == others
+
+
+def test_crack_of_the_nonlocal_continuum_is_read_alike(tmp_path):
+    case = tiny_case().set("Time/integrator", "runge-kutta-chebyshev").set("Time/end", "0.05 ms")
+    run = latcon.fracture(case, tmp_path / "out", skip_verification=True, report=False, progress=False, side="continuum")
+    assert run.info["side"] == run.crack["side"] == "continuum"
+    last = latcon.open(tmp_path / "out").frames[-1]
+    assert len(last.position) == 81 * 49  # twice as fine as the lattice
+    assert last.bonds.max() < len(last.position) and (last.stretch > 1).all()
 
 
 @pytest.mark.parametrize("file, name", [("crack.csv", "path"), ("energy.csv", "energy"), ("broken_bonds.csv", "broken_bonds")])
