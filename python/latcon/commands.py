@@ -16,7 +16,8 @@ Directory = str | os.PathLike[str]
 
 
 def fracture(case: CaseLike, directory: Directory, *, threads: int | None = None, resume: bool = False,
-             skip_verification: bool = False, report: bool = True, yes: bool = False, progress: Progress = True) -> Run:
+             skip_verification: bool = False, report: bool = True, yes: bool = False, progress: Progress = True,
+             side: str = "lattice") -> Run:
     """Verifies the material and the pre-stretch of a case, then runs its crack (``latcon fracture``).
 
     Parameters
@@ -39,6 +40,8 @@ def fracture(case: CaseLike, directory: Directory, *, threads: int | None = None
     progress
         True: a progress indicator on standard error, tqdm if it is installed. False: none. A function: called with each
         progress line of the program.
+    side
+        ``"lattice"`` or ``"continuum"``: what breaks, the latter the nonlocal continuum of the case.
 
     Returns
     -------
@@ -52,7 +55,7 @@ def fracture(case: CaseLike, directory: Directory, *, threads: int | None = None
     Interrupted
         After Ctrl-C or another signal: a checkpoint and all results are written.
     """
-    options = ["--skip-verification"] * skip_verification + ["--no-report"] * (not report)
+    options = ["--side", side] + ["--skip-verification"] * skip_verification + ["--no-report"] * (not report)
     return _run("fracture", case, directory, threads, resume, yes, progress, options)
 
 

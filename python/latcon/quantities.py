@@ -10,7 +10,8 @@ _UNCERTAINTY = "_uncertainty"
 
 _TABLE = (
     ("1", "zeta"), ("m/s", "speed_lagrangian+ speed_laboratory+"), ("m", "wavelength+"), ("1", "wavelength_over_d+"), ("m", "amplitude+"),
-    ("1", "amplitude_over_d+"), ("m", "crest_amplitude+"), ("1", "crest_amplitude_over_d+ periods"), ("m", "window_begin window_end"),
+    ("1", "amplitude_over_d+"), ("m", "crest_amplitude+"), ("1", "crest_amplitude_over_d+ periods"), ("m", "path_rms window_begin window_end"),
+    ("1/m", "path_growth+"), ("J/m^2", "viscous_per_area broken_per_area"),
     ("1", "branched_fraction bonds_broken detached_sites detached_fragments largest_fragment overstretched_bonds"),
     ("m", "bridged_length flank_damage_depth"), ("1", "flank_damage_share"), ("s", "end_time"), ("1", "energy_imbalance samples"),
     ("m^2", "negative_zone_area+ negative_zone_area_of_samples+"), ("m", "negative_zone_length+ negative_zone_distance+"),
@@ -23,14 +24,12 @@ _TABLE = (
     ("Pa", "opening_stress_peak_8d+"), ("1", "opening_stress_concentration_8d+"), ("degrees", "wedge_angle+"),
     ("1", "speed_over_shear+ speed_over_longitudinal+"), ("m/s", "shear_speed longitudinal_speed process_zone_speed"),
     ("Pa", "far_opening_stress"))
-_CONTOUR = ("width", "width_rms", "centre_rms", *(f"{line}_{what}" for line in ("centre", "lower_edge", "upper_edge", "width")
-                                                  for what in ("wavelength", "amplitude")))
 # A name that ends with + has an uncertainty, one standard deviation.
 RECORDED: dict[str, str] = {name: unit for unit, words in _TABLE for word in words.split()
                             for name in ((word[:-1], word[:-1] + _UNCERTAINTY) if word[-1] == "+" else (word,))}
 """SI units of the quantities that a study records of a run, in the order of `study.csv`: numbers in `crack.json` and
-`near_tip.json`, and zeta and lengths over d, which follow from those and the case."""
-UNITS: dict[str, str] = RECORDED | dict.fromkeys(("X", "Y", "sampled_from", "sampled_to", *_CONTOUR), "m")
+`near_tip.json`, and those that follow from these, the case and the tables: zeta, lengths over d, numbers of the path, energies per area."""
+UNITS: dict[str, str] = RECORDED | dict.fromkeys(("X", "Y", "sampled_from", "sampled_to"), "m")
 """SI units of the numbers in `crack.json` and `near_tip.json`; all others are pure numbers."""
 
 SHOWN = {"m": (100.0, "cm"), "m^2": (1e6, "mm²"), "s": (1e3, "ms"), "degrees": (1.0, "°")}

@@ -41,14 +41,26 @@ def test_crack_has_values_uncertainties_and_units(crack):
         crack.crack.wavelenght
     assert str(latcon.Value(0.0243900138, 0.000292, "m")) == "0.02439 ± 0.00029 m"
     assert len(crack.near_tip) > 30
+    contour = latcon.Quantities({"width": 1e-3, "width_uncertainty": 1e-4, "upper_edge_wavelength": None, "centre_log_evidence": 3.0})
+    assert str(contour.width) == "0.00100 ± 0.00010 m"
+    assert (contour.upper_edge_wavelength.unit, contour.centre_log_evidence.unit) == ("m", "1")
 
 
 def test_recorded_quantities_are_those_of_the_files(crack):
     written = {name for file in ("crack", "near_tip") for name in json.loads((crack.directory / f"{file}.json").read_text())}
-    derived = {"zeta", *(name for name in RECORDED if "_over_d" in name)}
+    derived = {"zeta", *(name for name in RECORDED if "_over_d" in name or name.startswith("path_") or name.endswith("_per_area"))}
     assert set(RECORDED) - derived <= written and not derived & written
     others = {"pattern", "reason", "thresholds", "nearest_to_breaking", "skip_verification", "units", "sampled_from", "sampled_to"}
     assert written - set(RECORDED) == others
+
+
+def test_crack_of_the_nonlocal_continuum_is_read_alike(tmp_path):
+    case = tiny_case().set("Time/integrator", "runge-kutta-chebyshev").set("Time/end", "0.05 ms")
+    run = latcon.fracture(case, tmp_path / "out", skip_verification=True, report=False, progress=False, side="continuum")
+    assert run.info["side"] == run.crack["side"] == "continuum"
+    last = latcon.open(tmp_path / "out").frames[-1]
+    assert len(last.position) == 81 * 49  # twice as fine as the lattice
+    assert last.bonds.max() < len(last.position) and (last.stretch > 1).all()
 
 
 @pytest.mark.parametrize("file, name", [("crack.csv", "path"), ("energy.csv", "energy"), ("broken_bonds.csv", "broken_bonds")])
@@ -59,6 +71,7 @@ def test_tables_are_the_files_to_the_last_bit(crack, file, name):
     for column in table:
         assert (table[column].to_numpy(float) == [float(row[column]) for row in written]).all(), column
     assert table.attrs["units"]["t"] == "s"
+    assert all(table[column].dtype == np.int64 for column in table if column in ("site", "other_site", "bonds_broken"))
 
 
 def test_results_and_provenance(crack):

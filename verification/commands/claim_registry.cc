@@ -67,12 +67,6 @@ std::vector<Claim> claims_before_fracture(const lattice::Material &material)
   return claims_where([&](const Claim &claim) { return claim.is_before_fracture(material); });
 }
 
-std::vector<Claim> claims_before_continuum_fracture(const lattice::Material &material)
-{
-  return claims_where([&](const Claim &claim)
-                      { return claim.is_before_fracture(material) || (claim.gate && claim.is_about_damage); });
-}
-
 std::string unknown_claim(const std::string &name)
 {
   const std::vector<std::string> known = names();
