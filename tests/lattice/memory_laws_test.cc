@@ -103,5 +103,4 @@ TEST(CustomMemory, RejectsLawsWithStressAtRest)
   EXPECT_THROW(with(1, 0., std::nan("")), std::invalid_argument);
 }
 
-// Velocity Verlet, and Runge-Kutta-Chebyshev of five stages.
 } // namespace memory_laws_test

@@ -1,10 +1,8 @@
 #include "lattice/velocity_verlet.h"
 
 #include <cmath>
-#include <cstring>
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
@@ -123,38 +121,6 @@ TEST(TimeStepLimits, AreThatOfTheSpringsAlone)
   // By hand: omega^2 = 12 A0 3 (a + b) / (d m), A0 / m = s / (rho d).
   EXPECT_NEAR(limits.elastic, 2. / std::sqrt(12. * 2. / 3. * 7.5e5 / (944. * sheets::spacing * sheets::spacing)),
               1e-12 * limits.elastic);
-}
-
-// Same bits for 1, 2 and 4 threads, through breaking, toughening and the ledger.
-TEST(Simulation, BitsDoNotDependOnThreads)
-{
-  const auto result = [](int threads)
-  {
-    omp_set_num_threads(threads);
-    const TriangularLattice sheet = sheets::square(32);
-    const Material material = sheets::rubber();
-    const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
-    State state = homogeneous_state(sheet, material, F, Edges::held);
-    add_noise(state, sheet, 0.01 * sheets::spacing, 1);
-    Simulation simulation(sheet, material, std::move(state), 2e-7,
-                          Fracture(sheet, material, 3.05, BehindTipToughening{4. * sheets::spacing, 2.}, F));
-    simulation.cut(sheets::middle_row(sheet, 5, 8));
-    for (int step = 0; step < 1500; ++step)
-      simulation.step();
-    const EnergyBalance e = simulation.energies();
-    return std::tuple{simulation.state(), e, simulation.n_broken()};
-  };
-  const auto [one, one_energies, one_broken] = result(1);
-  EXPECT_GT(one_broken, 20u);
-  for (const int threads : {2, 4})
-  {
-    const auto [state, energies, broken] = result(threads);
-    EXPECT_EQ(broken, one_broken);
-    EXPECT_EQ(std::memcmp(state.x.data(), one.x.data(), one.x.size() * sizeof(double)), 0);
-    EXPECT_EQ(std::memcmp(state.vy.data(), one.vy.data(), one.vy.size() * sizeof(double)), 0);
-    EXPECT_EQ(energies.viscous, one_energies.viscous);
-    EXPECT_EQ(energies.elastic, one_energies.elastic);
-  }
 }
 
 TEST(Noise, DependsOnSeedAloneAndKeepsItsAmplitude)
