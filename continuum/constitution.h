@@ -5,10 +5,8 @@
 
 namespace latcon::continuum
 {
-class StiffnessFactor;
-
 /// Constitutive model of a sheet: local law W(F), optional gradient law W_g(F, Grad F), and penalty of the gradient
-/// law. The laws, and the factor if there is one, must outlive every object that uses this one.
+/// law. The laws must outlive every object that uses this one.
 struct Constitution
 {
   Constitution(const Material &law) : local(&law) {}
@@ -47,9 +45,5 @@ struct Constitution
   /// deformation and for non-uniform meshes. With gamma < 2, quadratic elements converge at their full order only on
   /// finer meshes; a larger gamma costs linear iterations.
   double penalty = 2.;
-
-  /// Factor of all energies above, as a function of position on one mesh; nullptr: 1. The functions of this class,
-  /// which know no position, exclude it.
-  const StiffnessFactor *factor = nullptr;
 };
 } // namespace latcon::continuum

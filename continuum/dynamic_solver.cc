@@ -48,7 +48,6 @@ void DynamicSolver::check_input() const
     if (!holds)
       throw InvalidInput(rule);
   };
-  require(!sheet_.constitution().factor, "a motion does not support a stiffness factor");
   require(inertia_.density > 0. && std::isfinite(inertia_.density), "the density must be positive and finite");
   require(inertia_.length >= 0. && std::isfinite(inertia_.length), "the micro-inertia length must be finite and >= 0");
   require(settings_.time_step > 0. && std::isfinite(settings_.time_step), "the time step must be positive and finite");

@@ -4,11 +4,7 @@
 #include "continuum/errors.h"
 #include "continuum/mesh_loop.h"
 #include "continuum/shape_tables.h"
-#include "continuum/stiffness_factor.h"
 #include "continuum/vector_kernels.h"
-
-#include <deal.II/base/qprojector.h>
-#include <deal.II/base/quadrature_lib.h>
 
 #include <Epetra_MultiVector.h>
 
@@ -52,15 +48,12 @@ class Integrator
 {
 public:
   Integrator(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order,
-             const PointEnergyVisitor *visit = nullptr, const Motion *motion = nullptr)
-    : sheet_(sheet), fields_{NodalValues(u, sheet.owned())}, load_factor_(load_factor), order_(order), visit_(visit),
-      motion_(motion), tables_(sheet), cell_points_(QGauss<2>(sheet.degree() + 1))
+             const Motion *motion = nullptr)
+    : sheet_(sheet), fields_{NodalValues(u, sheet.owned())}, load_factor_(load_factor), order_(order), motion_(motion),
+      tables_(sheet)
   {
     if (motion)
       fields_.emplace_back(motion->velocity, sheet.owned());
-    for (const unsigned int face : GeometryInfo<2>::face_indices())
-      face_points_[face] =
-        QProjector<2>::project_to_face(ReferenceCells::Quadrilateral, QGauss<1>(sheet.degree() + 1), face);
     for (unsigned int n = 0; n < sheet.element().n_dofs_per_cell() / 2; ++n)
       for (unsigned int i = 0; i < 2; ++i)
         system_index_[i].push_back(sheet.element().component_to_system_index(i, n));
@@ -81,7 +74,7 @@ public:
         motion_->law.cell_density(derivatives_[0], rates_[0], order_, motion_->rate_by_displacement, density_);
       else
         cell_density(sheet_.constitution(), sheet_.has_gradient(), derivatives_[0], order_, density_);
-      add_point(cell, cell_points_.point(q), basis, rows, table.JxW[q], contributions.back());
+      add_point(basis, rows, table.JxW[q], contributions.back());
     }
     end(contributions.back());
   }
@@ -100,8 +93,8 @@ public:
             prescribed[q][i] = (motion_ ? motion_->load_rate : load_factor_) * condition.gradient->value(points[q], i);
         begin(contributions);
         add_nodes(cell, 0);
-        integrate_face(cell, face, tables, 1, extent(cell, face), &prescribed,
-                       {condition.components[0], condition.components[1]}, contributions.back());
+        integrate_face(tables, 1, extent(cell, face), &prescribed, {condition.components[0], condition.components[1]},
+                       contributions.back());
         return; // the first condition in the list applies, as for displacements
       }
   }
@@ -116,7 +109,7 @@ public:
     add_nodes(cell, 0);
     add_nodes(neighbor, 1);
     const double smaller = std::min(extent(cell, face), extent(neighbor, neighbor_face));
-    integrate_face(cell, face, tables, 2, smaller, nullptr, {true, true}, contributions.back());
+    integrate_face(tables, 2, smaller, nullptr, {true, true}, contributions.back());
   }
 
 private:
@@ -178,10 +171,9 @@ private:
     basis_.assign(n_sides * n_derivatives * stride_, 0.);
   }
 
-  // The quadrature points are those of the whole `face` of `cell`.
-  void integrate_face(const Iterator &cell, const unsigned int face, const std::array<const ShapeTable *, 2> &tables,
-                      const unsigned int n_sides, const double extent, const std::vector<Tensor<1, 2>> *prescribed,
-                      const std::array<bool, 2> &held, Contribution &contribution)
+  void integrate_face(const std::array<const ShapeTable *, 2> &tables, const unsigned int n_sides, const double extent,
+                      const std::vector<Tensor<1, 2>> *prescribed, const std::array<bool, 2> &held,
+                      Contribution &contribution)
   {
     start(n_sides);
     const FacePenalty penalty{sheet_.penalty(extent), sheet_.supported_stiffness()};
@@ -205,7 +197,7 @@ private:
                                   motion_->rate_by_displacement, density_);
       else
         face_density(*sheet_.constitution().gradient, derivatives_, n_sides, N, given, held, penalty, order_, density_);
-      add_point(cell, face_points_[face].point(q), basis_.data(), rows, tables[0]->JxW[q], contribution);
+      add_point(basis_.data(), rows, tables[0]->JxW[q], contribution);
     }
     end(contribution);
   }
@@ -229,13 +221,8 @@ private:
         std::copy(derivatives[i][s], derivatives[i][s] + n_derivatives, field[s][i].begin());
   }
 
-  void add_point(const Iterator &cell, const Point<2> &unit_point, const double *basis, const Rows &rows,
-                 const double weight, Contribution &contribution)
+  void add_point(const double *basis, const Rows &rows, const double JxW, Contribution &contribution)
   {
-    if (visit_)
-      (*visit_)(cell, unit_point, density_.value * weight);
-    const StiffnessFactor *factor = sheet_.constitution().factor;
-    const double JxW = factor ? factor->at(cell, unit_point) * weight : weight;
     contribution.energy += density_.value * JxW;
     if (order_ == Order::first)
       for (unsigned int i = 0; i < 2; ++i)
@@ -294,11 +281,8 @@ private:
   std::vector<NodalValues> fields_; // u, and the velocity of a motion
   double load_factor_;
   Order order_;
-  const PointEnergyVisitor *visit_; // nullptr: none
-  const Motion *motion_;            // nullptr: none
+  const Motion *motion_; // nullptr: none
   ShapeTables tables_;
-  Quadrature<2> cell_points_;                             // on the reference cell
-  std::array<Quadrature<2>, 4> face_points_;              // of each face, on the reference cell
   std::array<std::vector<unsigned int>, 2> system_index_; // of the scalar shape functions, per component
 
   std::vector<std::array<types::global_dof_index, 2>> nodes_; // degrees of freedom of both components
@@ -377,14 +361,7 @@ void integrate(const Sheet &sheet, const Sheet::Vector &u, const double load_fac
 void integrate(const Sheet &sheet, const Sheet::Vector &u, const Motion &motion, const Order order,
                const std::function<void(const Contribution &)> &add)
 {
-  Integrator integrator(sheet, u, 0., order, nullptr, &motion);
+  Integrator integrator(sheet, u, 0., order, &motion);
   integrate_with(integrator, sheet, add);
-}
-
-void visit_point_energies(const Sheet &sheet, const Sheet::Vector &u, const double load_factor,
-                          const PointEnergyVisitor &visit)
-{
-  Integrator integrator(sheet, u, load_factor, Order::value, &visit);
-  integrate_with(integrator, sheet, [](const Contribution &) {});
 }
 } // namespace latcon::continuum

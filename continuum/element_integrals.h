@@ -43,14 +43,4 @@ struct Motion
 /// The sheet must have a gradient law, whose faces and penalty factor these are.
 void integrate(const Sheet &sheet, const Sheet::Vector &u, const Motion &motion, Order order,
                const std::function<void(const Contribution &)> &add);
-
-/// Visitor of quadrature points, with the energy of a point: density times weight [J/m], without the stiffness factor.
-using PointEnergyVisitor = std::function<void(const dealii::DoFHandler<2>::active_cell_iterator &cell,
-                                              const dealii::Point<2> &unit_point, double energy)>;
-
-/// Calls visit(cell, unit_point, energy) for each quadrature point of each locally owned cell and of every face
-/// assigned to this rank, at the state `u` [m] (with ghost entries). A point on a face between cells belongs to the
-/// finer cell. The energies of a face may be negative. Throws NonPhysicalState, only on the rank where it occurs.
-void visit_point_energies(const Sheet &sheet, const Sheet::Vector &u, double load_factor,
-                          const PointEnergyVisitor &visit);
 } // namespace latcon::continuum

@@ -229,9 +229,6 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
   if (!(time > last_time()))
     throw InvalidInput("the time of a frame must be larger than that of the previous frame");
 
-  if (sheet.constitution().factor)
-    throw InvalidInput("frames do not support a stiffness factor");
-
   const std::string frame = frame_name(name_, frames_.size());
   const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(communicator_);
   const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(communicator_);

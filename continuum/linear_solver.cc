@@ -93,7 +93,7 @@ unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const
     throw LinearSolverFailed(std::string(symmetry_ == Symmetry::symmetric ? "conjugate gradients" : "GMRES") +
                              " stopped after " + std::to_string(failure.last_step) + " iterations");
   }
-  catch (const ExceptionBase &failure)
+  catch (const dealii::ExceptionBase &failure)
   {
     throw LinearSolverFailed(std::string("the linear solver failed: ") + failure.what());
   }

@@ -1,10 +1,8 @@
 #include "continuum/reactions.h"
 
 #include "continuum/collective.h"
-#include "continuum/stiffness_factor.h"
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/qprojector.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_values.h>
@@ -33,7 +31,6 @@ void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector
                              update_values | update_gradients | update_hessians | update_normal_vectors |
                                update_JxW_values);
       const FEValuesExtractors::Vector displacement(0);
-      const StiffnessFactor *factor = sheet.constitution().factor;
       std::vector<Tensor<2, 2>> F(values.n_quadrature_points);
       std::vector<Tensor<3, 2>> G(values.n_quadrature_points);
       std::vector<types::global_dof_index> dofs(element.n_dofs_per_cell());
@@ -43,16 +40,13 @@ void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector
         values.reinit(cell, face);
         values[displacement].get_function_gradients(u, F);
         values[displacement].get_function_hessians(u, G);
-        const Quadrature<2> points =
-          QProjector<2>::project_to_face(ReferenceCells::Quadrilateral, QGauss<1>(sheet.degree() + 1), face);
         forces = 0.;
         for (unsigned int q = 0; q < F.size(); ++q)
         {
           for (unsigned int i = 0; i < 2; ++i)
             F[q][i][i] += 1.;
-          const double weight = factor ? factor->at(cell, points.point(q)) * values.JxW(q) : values.JxW(q);
           const Tensor<1, 2> traction =
-            sheet.constitution().first_piola_stress(F[q], G[q]) * values.normal_vector(q) * weight;
+            sheet.constitution().first_piola_stress(F[q], G[q]) * values.normal_vector(q) * values.JxW(q);
           for (unsigned int a = 0; a < dofs.size(); ++a)
             forces[a] += traction[element.system_to_component_index(a).first] * values.shape_value(a, q);
         }

@@ -4,7 +4,6 @@
 #include "continuum/errors.h"
 #include "continuum/homogeneous_constraints.h"
 #include "continuum/point_location.h"
-#include "continuum/stiffness_factor.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -52,9 +51,7 @@ Sheet::Sheet(const Mesh &mesh, const Constitution &constitution, const unsigned 
 
 std::unique_ptr<Sheet> Sheet::clone_on(const Mesh &mesh) const
 {
-  Constitution laws = constitution_;
-  laws.factor = nullptr;
-  return std::make_unique<Sheet>(mesh, laws, degree_, conditions_);
+  return std::make_unique<Sheet>(mesh, constitution_, degree_, conditions_);
 }
 
 void Sheet::check_input() const
@@ -167,7 +164,7 @@ Sheet::Vector Sheet::lift() const
 std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point<2>> &points) const
 {
   // Each cell has one owner, so the mean over the cells that contain a point is independent of the partition.
-  constexpr unsigned int n_sums = 16; // u (2), F (4), G (8), stiffness factor, number of cells
+  constexpr unsigned int n_sums = 15; // u (2), F (4), G (8), number of cells
   std::vector<double> sums(n_sums * points.size(), 0.);
   run_collectively(
     communicator(),
@@ -201,7 +198,6 @@ std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point
                 sum[6 + 4 * i + 2 * J + K] += hessians[n][i][J][K];
             }
           }
-          sum[14] += constitution_.factor ? constitution_.factor->at(cell, located.unit_points[n]) : 1.;
           sum[n_sums - 1] += 1.;
         }
       }
@@ -234,10 +230,6 @@ std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point
     state.P = constitution_.first_piola_stress(state.F, state.G);
     state.Q = constitution_.double_stress(state.F, state.G);
     state.energy_density = constitution_.energy(state.F, state.G);
-    const double factor = sum[14] / count;
-    state.P *= factor;
-    state.Q *= factor;
-    state.energy_density *= factor;
   }
   return states;
 }

@@ -59,8 +59,7 @@ public:
   Sheet(const Mesh &mesh, const Constitution &constitution, unsigned int degree,
         BoundaryConditions conditions = BoundaryConditions());
 
-  /// Creates a sheet with the same laws, elements and conditions on another mesh of the same domain, without a
-  /// stiffness factor, which belongs to one mesh.
+  /// Creates a sheet with the same laws, elements and conditions on another mesh of the same domain.
   std::unique_ptr<Sheet> clone_on(const Mesh &mesh) const;
 
   /// Renumbers the unknowns after a change of the mesh. Existing vectors become invalid.
@@ -96,9 +95,8 @@ public:
   void make_matrix(const dealii::AffineConstraints<double> &constraints, Matrix &matrix) const;
 
   /// Returns the states at reference points [m]. Every rank passes the same points and gets all states. On a cell
-  /// boundary, F and G are means over the adjacent cells, independent of the partition. P, Q and the energy density
-  /// include the stiffness factor. Throws InvalidInput if a point is outside the mesh by more than 1e-8 of a cell, or
-  /// not finite.
+  /// boundary, F and G are means over the adjacent cells, independent of the partition. Throws InvalidInput if a
+  /// point is outside the mesh by more than 1e-8 of a cell, or not finite.
   std::vector<PointState> evaluate(const Vector &u, const std::vector<dealii::Point<2>> &points) const;
 
   /// Returns the range of det F over all quadrature points. Does not throw for det F <= 0.

@@ -242,31 +242,13 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
 SolverReport StaticSolver::solve(const Observer &observer)
 {
   SolverReport report;
-  if (load_factor_ < 1.)
-    advance(1., report, observer);
-  return report;
-}
-
-SolverReport StaticSolver::step_to(const double load_factor)
-{
-  if (!std::isfinite(load_factor))
-    throw InvalidInput("the load factor must be finite");
-  SolverReport report;
-  advance(load_factor, report, Observer());
-  return report;
-}
-
-// Changes the load factor to `end` in one step or more.
-void StaticSolver::advance(const double end, SolverReport &report, const Observer &observer)
-{
   double rise = settings_.first_load_step;
   constexpr unsigned int few_iterations = 5;
-  const double direction = load_factor_ <= end ? 1. : -1.;
-  do
+  while (load_factor_ < 1.)
   {
     // A remainder within rounding is added to this step.
-    const double left = direction * (end - load_factor_);
-    const double target = left <= rise * (1. + 1e-12) ? end : load_factor_ + direction * rise;
+    const double left = 1. - load_factor_;
+    const double target = left <= rise * (1. + 1e-12) ? 1. : load_factor_ + rise;
     const std::size_t before = report.iterations.size();
     const std::string failure = attempt(target, report);
     report.load_steps.push_back(
@@ -287,15 +269,14 @@ void StaticSolver::advance(const double end, SolverReport &report, const Observe
                              failure,
                            report);
     }
-  } while (load_factor_ != end);
+  }
+  return report;
 }
 
 void StaticSolver::refine(Sheet::Mesh &mesh, const double fraction)
 {
   if (&mesh != &sheet_.mesh())
     throw InvalidInput("refine() needs the mesh of the solver's own sheet");
-  if (sheet_.constitution().factor)
-    throw InvalidInput("refine() does not support a stiffness factor, which belongs to one mesh");
   if (!(fraction > 0. && fraction <= 1.))
     throw InvalidInput("the fraction of cells to refine must be in (0, 1]");
   parallel::distributed::GridRefinement::refine_and_coarsen_fixed_number(mesh, error_indicators(sheet_, displacement_),

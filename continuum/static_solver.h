@@ -68,11 +68,6 @@ public:
   /// Throws SolverFailed with the history; the state is then unchanged.
   SolverReport equilibrate();
 
-  /// Finds the equilibrium at `load_factor` [-], which may be larger than the current one, smaller or the same, from
-  /// the current state in load steps as solve(). Throws SolverFailed as solve() does, and InvalidInput for a load
-  /// factor that is not finite.
-  SolverReport step_to(double load_factor);
-
   /// Returns the stored energy E [J/m] of the current state, per unit reference thickness.
   double total_energy() const;
 
@@ -101,7 +96,6 @@ private:
   double round_off(const Evaluation &state, const Vector &u) const;
   void check_penalty(const Vector &u, const Vector &step, double load_factor) const;
   std::string attempt(double target, SolverReport &report);
-  void advance(double end, SolverReport &report, const Observer &observer);
 
   Sheet sheet_;
   StaticSettings settings_;

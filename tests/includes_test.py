@@ -13,7 +13,7 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
-SIDES = ("support", "lattice/bonds", "lattice", "continuum", "continuum/damage")
+SIDES = ("support", "lattice/bonds", "lattice", "continuum")
 MODELS = (*SIDES, "verification/input", "verification/bridge", "verification/analysis", "verification/output")
 # The folders that a folder may include in addition to itself, each below those that it includes; `claims/*` is the folder of any one claim.
 ALLOWED = {
@@ -21,7 +21,6 @@ ALLOWED = {
     "lattice/bonds": ("support",),
     "lattice": ("support", "lattice/bonds"),
     "continuum": ("support",),
-    "continuum/damage": ("support", "continuum"),
     "verification/analysis": ("support", "lattice/bonds", "lattice"),
     "verification/input": ("support", "lattice/bonds", "lattice"),
     "verification/bridge": (*SIDES, "verification/input"),
@@ -39,7 +38,7 @@ ALLOWED = {
     # Tests of one side must not depend on the other either.
     "tests/support": ("support",),
     "tests/lattice": ("support", "lattice/bonds", "lattice", "tests/support"),
-    "tests/continuum": ("support", "continuum", "continuum/damage", "tests/support"),
+    "tests/continuum": ("support", "continuum", "tests/support"),
     "tests/verification/analysis": ("support", "lattice", "verification/analysis", "tests/support", "tests/lattice"),
 }
 # Folders that may not include a library, by the beginning of its headers' names.

@@ -44,15 +44,6 @@ SHEET = {
     "frames/frames/pieces": [hostile.value(0)], "next_frame": [hostile.value(1e-300)], "step": [hostile.LARGE],
 }
 
-DAMAGE = {
-    "run/time": [hostile.value(1e308)], "motion/n_steps": [hostile.LARGE], "motion/displacement_x": [hostile.longer],
-    "motion/velocity_y": [hostile.no_number], "motion/damage": [hostile.value(1.5), hostile.shorter],
-    "record/column": [hostile.LARGE],
-    "record/tip/n": [hostile.LARGE], "record/tip/t": [hostile.shorter], "record/speeds": [hostile.longer],
-    "record/energies/n": [hostile.value(0)], "record/energies/time": [hostile.value(1e308)],
-    "frames/times": [hostile.value(-1.)], "next_frame": [hostile.value(1e308)], "step": [hostile.LARGE],
-}
-
 
 def check_refused(tmp_path, name, changes):
     left, checkpoint = hostile.prepared(PROGRAM, name, tmp_path)
@@ -66,10 +57,6 @@ def test_contents_of_a_crack_that_nobody_left(tmp_path):
 
 def test_contents_of_a_motion_in_finite_elements_that_nobody_left(tmp_path):
     check_refused(tmp_path, "sheet in motion", SHEET)
-
-
-def test_contents_of_a_crack_of_the_continuum_that_nobody_left(tmp_path):
-    check_refused(tmp_path, "crack of the continuum", DAMAGE)
 
 
 def test_damage_is_refused_or_fallen_back_from(tmp_path):

@@ -31,7 +31,7 @@ CLAIMS = ["claims_tests", "verification_tests"]
 PLACES = {
     "support/": ["support_tests"],
     "lattice/": ["lattice_tests", "LatticeRanks.AgreeOn2"],
-    "continuum/": ["continuum_tests", "continuum_damage_tests"],
+    "continuum/": ["continuum_tests"],
     "verification/": CLAIMS,
     "verification/analysis/": ["analysis_tests"],
     "verification/input/": ["verification_tests"],

@@ -69,7 +69,6 @@ def write_claims(folder):
     write_running_crack(folder)
     write_branches(folder)
     write_disorder(folder)
-    write_damaged_bar(folder)
     write_steady_crack(folder)
     for name, size in (("hole", "R/d"), ("notch", "length/d")):
         write_cut(folder, name, size)
@@ -141,16 +140,6 @@ def write_running_crack(folder):
                              1e6 * (1 + X / 12), 0.0])
     write(folder, "running_crack", ["shells", "side", "X/d", "Y/d", "v_x [m/s]", "v_y [m/s]", "opening_stress [Pa]",
                                     "excess_y [m]"], rows)
-
-
-def write_damaged_bar(folder):
-    """Damage that is 1e-3 off the closed form in the middle."""
-    rows = []
-    for shells, law, h in itertools.product(("NN+NNN", "NN"), ("local", "gradient"), (0.5, 0.25)):
-        for X in np.arange(-4.0 - h / 2, 4.0 + h, h):
-            damage = max(0.0, 1 - (abs(X) - h / 2) / 2) ** 2
-            rows.append([shells, law, h, X, damage - 1e-3 * (damage == 1), damage])
-    write(folder, "damaged_bar", ["shells", "law", "h/xi", "X/xi", "damage", "theory"], rows)
 
 
 def write_cut(folder, name, size):

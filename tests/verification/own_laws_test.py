@@ -131,17 +131,6 @@ def test_studies_need_the_law_up_to_the_largest_stretch_of_their_claims(tmp_path
     assert latcon("study", *sweep, "--skip-verification", "--dry-run").returncode == 0
 
 
-def test_damage_is_not_checked_for_laws_of_the_user(tmp_path):
-    for options in ((), ("--dry-run",)):
-        ended = latcon("verify", "energy", "damage", "--quick", "--case", CASES / "quick.prm", *bonds(**MOONEY_RIVLIN), *options,
-                       "--output-dir", tmp_path / "bad")
-        assert ended.returncode == 2, ended.stdout + ended.stderr
-        assert "Nearest neighbours/law = expression: the claim damage evaluates laws far beyond the stretch of 3.5" in (
-            ended.stderr)
-        assert "allowed: mooney-rivlin, linear" in ended.stderr
-        assert not (tmp_path / "bad").exists()
-
-
 def test_claims_hold(tmp_path):
     ended = latcon("verify", "energy", "wave-speeds", "--quick", "--case", CASES / "quick.prm", "--set",
                    "Next-nearest neighbours/present=false", *bonds(**MOONEY_RIVLIN), "--output-dir", tmp_path / "claims")

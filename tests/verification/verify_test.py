@@ -112,24 +112,3 @@ def test_a_claim_that_is_named_judges_something_or_fails(out):
     run = latcon("verify", "running-crack", "--quick", "--set", "Loading/strain y=0", "--output-dir", out)
     assert run.returncode == 3, run.stdout + run.stderr
     assert "running-crack: rows that are judged: not computed: this case has none" in run.stdout
-
-
-@pytest.mark.skipif(not FULL, reason="in full only")  # damage_test.cc: the constants are those of the case
-def test_the_claim_takes_its_constants_from_the_case(out):
-    """Checks another length than the spacing, another threshold and another residual stiffness, each with its effect."""
-    constants = ("Damage/length=2 mm", "Damage/threshold energy=2e6", "Damage/residual stiffness=5e-6")
-    result = latcon("verify", "damage", "--quick", "--case", CASES / "quick.prm",
-                    *(word for entry in constants for word in ("--set", entry)), "--output-dir", out)
-    assert result.returncode == 0, result.stdout + result.stderr
-    rows = json.loads((out / "results.json").read_text())["claims"]
-    assert {row["claim"] for row in rows} == {"damage"}
-    assert {row["verdict"] for row in rows} <= {"holds", "reported"}
-    assert sum(row["verdict"] == "holds" for row in rows) > 15
-    # Energy dissipated in two elements of xi/4: 2 (1 - k) W_c d times an area of 2 (xi/4)^2.
-    energy, = (row for row in rows if "energy dissipated" in row["quantity"])
-    assert float(energy["theory"]) < 2 * 2e6 * 2 * (2e-3 / 4)**2
-    assert float(energy["theory"]) > 2e6 * 2 * (2e-3 / 4)**2
-    lines = (out / "damaged_bar.csv").read_text().splitlines()
-    assert lines[0] == "shells,law,h/xi,X/xi,damage,theory"
-    assert len(lines) == 1 + 18 + 34 + 34  # nodes of bars of 17, 33 and 33 elements
-    assert undocumented(out) == []

@@ -32,8 +32,9 @@ double widest_gap(std::vector<double> &Y, double gap, double min_bonds)
   return widest;
 }
 
-} // namespace
-
+// Returns the fraction of columns that branched_fraction() counts. It does not depend on the width of the columns, if
+// this resolves the strands. @param gaps of each column, along X: the widest between neighbouring strands [m]; 0: fewer
+// than two strands
 double share_of_branches(const std::vector<double> &gaps, double column_width, double spacing, const BranchRule &rule)
 {
   // A run of columns as long as the persistence may be shorter by rounding.
@@ -53,6 +54,8 @@ double share_of_branches(const std::vector<double> &gaps, double column_width, d
   }
   return gaps.empty() ? 0. : static_cast<double>(n_branched) / static_cast<double>(gaps.size());
 }
+
+} // namespace
 
 double branched_fraction(const std::vector<BreakRecord> &breaks, double X_begin, double X_end, double lattice_spacing,
                          const BranchRule &rule)

@@ -27,17 +27,11 @@ struct BranchRule
   double grown_gap = 15.;
 };
 
-/// Returns the fraction of columns that belong to a run of columns with two or more strands that is long enough and
-/// reaches a large enough gap. It does not depend on the width of the columns, if this resolves the strands.
-/// @param gaps of each column, along X: the widest between neighbouring strands [m]; 0: fewer than two strands
-/// @param column_width [m], > 0 @param spacing d [m], > 0
-/// @return in [0, 1]; 0 without columns
-double share_of_branches(const std::vector<double> &gaps, double column_width, double spacing, const BranchRule &rule);
-
 /// Returns the fraction of the columns between X_begin and X_end in which the crack has two or more strands.
 ///
 /// In every column the Y of the broken bonds are sorted and split at gaps; a group with enough bonds is a strand.
-/// Columns count as in share_of_branches().
+/// Columns count if they belong to a run of columns with two or more strands that is long enough and reaches a large
+/// enough gap.
 /// @param breaks broken bonds in any order, may be empty
 /// @param X_begin, X_end interval, reference [m]
 /// @param lattice_spacing d [m], > 0

@@ -195,20 +195,6 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
                                const CrackMeasurementOptions &options)
 {
   check(breaks);
-  CrackMeasurement m = measure_path(
-    tip,
-    [&](double X_begin, double X_end)
-    { return branched_fraction(breaks, X_begin, X_end, options.lattice_spacing, options.branch_rule); },
-    options);
-  if (m.X_begin < m.X_end)
-    m.flanks = flank_damage(tip, breaks, m.X_begin, m.X_end, options.lattice_spacing);
-  return m;
-}
-
-CrackMeasurement measure_path(const std::vector<TipRecord> &tip,
-                              const std::function<double(double X_begin, double X_end)> &branched_fraction,
-                              const CrackMeasurementOptions &options)
-{
   check(options);
   check(tip, options.end_time);
 
@@ -250,7 +236,10 @@ CrackMeasurement measure_path(const std::vector<TipRecord> &tip,
   const std::vector<TipRecord> steady = part_between(tip, m.X_begin, m.X_end);
   m.speed_lagrangian = steady_speed(steady, options.lattice_spacing, &TipRecord::X);
   m.speed_laboratory = steady_speed(steady, options.lattice_spacing, &TipRecord::x);
-  m.branched_fraction = branched_fraction(options.seed_tip_X, m.X_end);
+  m.branched_fraction =
+    branched_fraction(breaks, options.seed_tip_X, m.X_end, options.lattice_spacing, options.branch_rule);
+  if (m.X_begin < m.X_end)
+    m.flanks = flank_damage(tip, breaks, m.X_begin, m.X_end, options.lattice_spacing);
 
   if (m.branched_fraction >= options.min_branched_fraction)
   {

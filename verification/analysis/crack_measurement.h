@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -131,11 +130,5 @@ struct CrackMeasurement
 /// run, or options out of range
 CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vector<BreakRecord> &breaks,
                                const CrackMeasurementOptions &options);
-
-/// Measures as measure_crack(), except for the flanks, a crack whose branches are not known by broken bonds.
-/// @param branched_fraction of the crack between X_begin and X_end [m]
-CrackMeasurement measure_path(const std::vector<TipRecord> &tip,
-                              const std::function<double(double X_begin, double X_end)> &branched_fraction,
-                              const CrackMeasurementOptions &options);
 
 } // namespace latcon::analysis

@@ -21,9 +21,6 @@ struct Claim
 
   bool is_default = true; ///< part of `latcon verify` without names
 
-  /// False: the claim evaluates laws far beyond `largest_stretch` (claim_inputs.h), and refuses user-defined ones.
-  bool takes_user_laws = true;
-
   /// The claim is part of the verification before fracture: a crack is refused if one of its rows fails, or if the
   /// quick version judges none.
   bool gate = false;
@@ -31,9 +28,6 @@ struct Claim
   /// The claim is about memories of bonds: part of `latcon verify` without names, and of verification before fracture,
   /// for materials with a memory only.
   bool is_about_memory = false;
-
-  /// The claim is about damage of the continuum: part of verification before fracture of the continuum only.
-  bool is_about_damage = false;
 
   /// The claim depends on nothing of a case, so that one verdict serves all cases of a program.
   bool is_about_program = false;
@@ -56,7 +50,7 @@ struct Claim
   /// Returns whether verification before fracture includes the claim. @param material of the sheet that breaks
   [[nodiscard]] bool is_before_fracture(const lattice::Material &material) const
   {
-    return gate && !is_about_damage && (!is_about_memory || material.has_memory());
+    return gate && (!is_about_memory || material.has_memory());
   }
 };
 

@@ -118,19 +118,4 @@ void check_user_laws(const input::Case &input, input::Parameters &parameters)
       check(input.shell(number), input::Case::shell_sections[number]);
 }
 
-void check_user_laws_of(const std::vector<Claim> &claims, const input::Case &input, input::Parameters &parameters)
-{
-  for (const Claim &claim : claims)
-  {
-    if (claim.takes_user_laws)
-      continue;
-    const std::string reason = "the claim " + claim.name + " evaluates laws far beyond the stretch of " +
-                               support::full_precision(largest_stretch) +
-                               " up to which user-defined ones are checked; allowed: mooney-rivlin, linear";
-    for (std::size_t number = 0; number < lattice::n_shells; ++number)
-      if (input.has_shell(number) && input.shell(number).has_user_law())
-        parameters.error(std::string(input::Case::shell_sections[number]) + "/law", reason);
-  }
-}
-
 } // namespace latcon::claims

@@ -20,15 +20,12 @@ namespace latcon::claims
 /// number of spacings. Claims are given nothing else, so that no verdict can depend on an entry that is not listed.
 [[nodiscard]] input::Case claim_inputs(const input::Case &input, const std::vector<std::string> &further = {});
 
-/// Largest stretch [-] at which claims that take user-defined laws evaluate bond laws, except those of a loaded or
+/// Largest stretch [-] at which claims evaluate bond laws, except those of a loaded or
 /// breaking sheet.
 inline constexpr double largest_stretch = 3.5;
 
 /// Reports user-defined laws without values at stretches at which claims evaluate them. To be called before
 /// Parameters::finish() by commands that check claims.
 void check_user_laws(const input::Case &input, input::Parameters &parameters);
-
-/// Reports user-defined laws if one of `claims` does not take them. To be called before Parameters::finish().
-void check_user_laws_of(const std::vector<Claim> &claims, const input::Case &input, input::Parameters &parameters);
 
 } // namespace latcon::claims

@@ -389,13 +389,6 @@ support::ExitCode run_continuum(const input::Options &options)
   input::Parameters parameters;
   read_case(options, input, parameters);
   const bool moves = input.continuum.solution == input::ContinuumCase::Solution::motion;
-  for (const auto &[name, is_given] :
-       {std::pair("Damage/length", input.continuum.damage_length.has_value()),
-        std::pair("Damage/threshold energy", input.continuum.damage_threshold.has_value()),
-        std::pair("Damage/residual stiffness",
-                  input.continuum.residual_stiffness != input::ContinuumCase().residual_stiffness)})
-    if (is_given)
-      parameters.error(name, "`latcon continuum` does not support damage, `latcon verify damage` does; omit the entry");
   input::require_constant_loading(input, parameters, "the finite elements have one loading");
   if (moves && !(input.end_time > 0.))
     parameters.error("Time/end", "motion needs an end time larger than 0", {"Continuum/solution"});

@@ -13,8 +13,6 @@ support::ExitCode verify(const input::Options &options)
   input::Parameters parameters;
   read_case(options, input, parameters);
   claims::check_user_laws(input, parameters);
-  if (parameters.good())
-    claims::check_user_laws_of(selected_claims(options.claims, input.material()), input, parameters);
   parameters.finish();
   if (options.dry_run)
   {

@@ -42,18 +42,8 @@ std::string kinds_of(Side side)
   throw support::InputError(path.string() + ": " + problem);
 }
 
-// Frames of cracks of the continuum are of the kind of file of lattice frames, and have no fields of sites.
-bool is_of_continuum_crack(const fs::path &path)
-{
-  return extension(path) == ".vtp" && path.filename().string().rfind("continuum-", 0) == 0;
-}
-
 void require_side(const fs::path &path, Side side)
 {
-  if (is_of_continuum_crack(path))
-    fail(path,
-         "a frame of a crack of the continuum, which cannot be compared site by site; give the output directories "
-         "of two cracks");
   if (is_frame_of(path, side))
     return;
   if (is_frame_of(path, other(side)))

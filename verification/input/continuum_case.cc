@@ -348,8 +348,7 @@ void ContinuumCase::declare(Parameters &p)
   p.add(
     "Continuum", "time step", time_step, Magnitude{}, "s",
     "time step of the motion; auto: half the time in which a longitudinal wave crosses a cell, at most a tenth of the "
-    "shortest relaxation time, and in `latcon fracture --side continuum` half the longest with which an explicit "
-    "step without viscosity is stable");
+    "shortest relaxation time");
   p.add("Continuum", "rule", rule,
         {{"average-acceleration", Rule::average_acceleration}, {"generalised-alpha", Rule::generalised_alpha}},
         "time integration scheme");
@@ -368,18 +367,6 @@ void ContinuumCase::declare(Parameters &p)
   initial_displacement.declare(p, "Initial state", "displacement", "m",
                                "initial displacement added to the base, zero on held edges");
   initial_velocity.declare(p, "Initial state", "velocity", "m/s", "initial velocity of the finite elements");
-  p.add(
-    "Damage", "length", damage_length, Magnitude{}, "m",
-    "xi of the damage of the finite elements, which reaches 2 xi from a crack; auto: the spacing of the lattice. For "
-    "`latcon verify damage` and `latcon fracture --side continuum`, as all of this section");
-  p.add(
-    "Damage", "threshold energy", damage_threshold, Magnitude{}, "J/m^3",
-    "W_c, stored energy density at which damage begins; auto: that of the law cauchy-born stretched along both axes "
-    "to the breaking stretch of the bonds, or to 3 if there is none");
-  p.add("Damage", "residual stiffness", residual_stiffness, Between{1e-6, 1e-5}, "1",
-        "k, factor of the stored energy where the damage is 1");
-  p.add("Damage", "cells per length", damage_cells, Between{1., 64.},
-        "cells of the finite elements per xi in a crack; two is coarse");
 }
 
 void ContinuumCase::check(Parameters &p, const bool has_inner_edge) const

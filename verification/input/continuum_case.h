@@ -98,9 +98,8 @@ struct ContinuumCase
   double penalty = 2.;                  ///< gamma [-]
   unsigned int cells_x = 12;
   unsigned int cells_y = 8;
-  unsigned int refinements = 2;  ///< of the coarse mesh, where cells_x and cells_y do not apply
-  unsigned int damage_cells = 3; ///< per length of the damage, in a sheet that breaks
-  std::string mesh_file;         ///< Gmsh; empty for none
+  unsigned int refinements = 2; ///< of the coarse mesh, where cells_x and cells_y do not apply
+  std::string mesh_file;        ///< Gmsh; empty for none
   unsigned int degree = 3;
   unsigned int adaptive_cycles = 0;
   double refined_fraction = 0.1;
@@ -136,10 +135,6 @@ struct ContinuumCase
   Base initial_base = Base::loading;
   FieldCase initial_displacement; ///< [m], added to the base
   FieldCase initial_velocity;     ///< [m/s]
-
-  std::optional<double> damage_length;    ///< xi [m]; none: the spacing of the lattice
-  std::optional<double> damage_threshold; ///< W_c [J/m^3]; none: from the breaking stretch, see bridge::damage_law
-  double residual_stiffness = 1e-6;       ///< k [-]
 
   ContinuumCase();
   void declare(Parameters &parameters);

@@ -162,7 +162,7 @@ TextFiles CrackRecord::tables(const std::filesystem::path &directory) const
   for (const lattice::BrokenBond &bond : broken_)
     broken.add({bond.time, sheet.site_number(bond.near), sheet.site_number(bond.far), bond.midpoint.x(),
                 bond.midpoint.y(), bond.stretch});
-  return {{directory / "crack.csv", tip_.csv(true)},
+  return {{directory / "crack.csv", tip_.csv()},
           {directory / "broken_bonds.csv", broken.csv()},
           {directory / "energy.csv",
            energies_.csv({"elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance"},

@@ -7,7 +7,7 @@ namespace latcon::output
 namespace
 {
 
-// The tip hops between sites, or advances by cells, so its speed is meaningful only over several of them.
+// The tip hops between sites, so its speed is meaningful only over several of them.
 constexpr double speed_baseline = 6.; // in spacings
 
 } // namespace
@@ -26,19 +26,13 @@ void TipHistory::add(const analysis::TipRecord &tip, const std::size_t n_broken)
   broken_.push_back(n_broken);
 }
 
-std::string TipHistory::csv(const bool counts_bonds) const
+std::string TipHistory::csv() const
 {
-  std::vector<std::string> columns{"t", "X", "Y", "x", "y", "speed"};
-  if (counts_bonds)
-    columns.emplace_back("bonds_broken");
-  Table table(std::move(columns));
+  Table table({"t", "X", "Y", "x", "y", "speed", "bonds_broken"});
   for (std::size_t i = 0; i < records_.size(); ++i)
   {
     const analysis::TipRecord &tip = records_[i];
-    std::vector<Table::Cell> row{tip.t, tip.X, tip.Y, tip.x, tip.y, speeds_[i]};
-    if (counts_bonds)
-      row.emplace_back(broken_[i]);
-    table.add(std::move(row));
+    table.add({tip.t, tip.X, tip.Y, tip.x, tip.y, speeds_[i], broken_[i]});
   }
   return table.csv();
 }

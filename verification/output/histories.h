@@ -16,7 +16,7 @@
 namespace latcon::output
 {
 
-/// Positions and speeds of the tip of a crack, whichever side breaks.
+/// Positions and speeds of the tip of a crack.
 class TipHistory
 {
 public:
@@ -24,7 +24,7 @@ public:
   TipHistory(double spacing, double length) : spacing_(spacing), length_(length) {}
 
   /// Adds a position. @param n_broken bonds broken so far
-  void add(const analysis::TipRecord &tip, std::size_t n_broken = 0);
+  void add(const analysis::TipRecord &tip, std::size_t n_broken);
 
   const std::vector<analysis::TipRecord> &records() const { return records_; }
   /// Returns reference X of the tip [m]; 0 without a tip.
@@ -32,8 +32,8 @@ public:
   /// Returns the Lagrangian speed over the last few spacings [m/s]; 0 if it is not yet known.
   double speed() const { return speeds_.empty() ? 0. : speeds_.back(); }
 
-  /// Returns crack.csv. @param counts_bonds whether it has a column of broken bonds
-  std::string csv(bool counts_bonds) const;
+  /// Returns crack.csv.
+  std::string csv() const;
 
   /// Saves or loads the history. @param now time of the motion, which must be loaded first [s]
   /// @throws std::invalid_argument for positions of later times, or outside the sheet

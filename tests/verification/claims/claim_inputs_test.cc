@@ -179,7 +179,7 @@ TEST(ClaimInputs, EveryEntryChangesThemOrIsReadByNoClaim)
     ASSERT_TRUE(changed) << key << " = " << value << ": no other value was found to try";
     const std::string section = key.substr(0, key.find('/'));
     // Claims read only the ratio of the finite element side: they choose meshes, edges and solvers themselves.
-    const bool finite_elements = section == "Body force" || section == "Initial state" || section == "Damage" ||
+    const bool finite_elements = section == "Body force" || section == "Initial state" ||
                                  (section.size() > 5 && section.compare(section.size() - 5, 5, " edge") == 0) ||
                                  (section == "Continuum" && key != "Continuum/ratio");
     const bool unread = finite_elements || no_claim_reads.count(key) != 0;
