@@ -192,7 +192,7 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
   run.info().add("stages", static_cast<std::uint64_t>(sheet.stages));
   output::Results results;
   if (!options.skip_verification)
-    results = passed_or_reported(input, claims_before_continuum_fracture(sheet.subject.material),
+    results = passed_or_reported(input, claims_before_fracture(sheet.subject.material, true),
                                  bridge::laws_of(input), options, run);
   DamageCrack crack(input, motion, options.skip_verification, checkpoints, run);
   crack.go("fracture");

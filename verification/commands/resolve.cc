@@ -188,7 +188,7 @@ support::ExitCode verify_before_cracks(const input::Options &options)
   Run run(options);
   const output::Results results =
     options.on_continuum
-      ? require_verified(input, claims_before_continuum_fracture(input.material()), bridge::laws_of(input), run)
+      ? require_verified(input, claims_before_fracture(input.material(), true), bridge::laws_of(input), run)
       : require_verified(input, claims_before_fracture(input.material()), bridge::laws_of_lattice(), run);
   return run.end(results, support::ExitCode::done);
 }
