@@ -1,18 +1,11 @@
 #include "lattice/strain_gradient.h"
 
-#include <stdexcept>
 #include <vector>
 
 #include "support/dense.h"
 
 namespace latcon::lattice
 {
-
-StrainGradientFit::StrainGradientFit(const TriangularLattice &lattice) : lattice_(lattice)
-{
-  if (!lattice.is_triangular())
-    throw std::invalid_argument("strain gradients are fitted on the triangular lattice alone");
-}
 
 const StrainGradientFit::Entry &StrainGradientFit::entry(unsigned int bonds)
 {
@@ -50,6 +43,8 @@ const StrainGradientFit::Entry &StrainGradientFit::entry(unsigned int bonds)
 
 std::optional<StrainGradient> StrainGradientFit::at(const State &state, std::size_t place)
 {
+  if (!lattice_.is_triangular())
+    return std::nullopt;
   unsigned int bonds = 0;
   Eigen::Matrix<double, n_neighbours, 2> positions = Eigen::Matrix<double, n_neighbours, 2>::Zero();
   for_each_bond_of_site(state, lattice_, place,

@@ -28,11 +28,10 @@ class StrainGradientFit
 {
 public:
   /// The lattice must outlive this object.
-  /// @throws std::invalid_argument for other than the triangular lattice
-  explicit StrainGradientFit(const TriangularLattice &lattice);
+  explicit StrainGradientFit(const TriangularLattice &lattice) : lattice_(lattice) {}
 
   /// None where the bonds left do not fix a quadratic: a flank of a lattice of nearest neighbours has four, and five
-  /// are needed.
+  /// are needed. None on sheets other than the triangular lattice: not supported.
   /// @param place of a site, not in the margin
   std::optional<StrainGradient> at(const State &state, std::size_t place);
 

@@ -34,7 +34,9 @@ class Simulation:
     case
         The case, or what :class:`latcon.Case` accepts.
     checkpoint
-        File that :meth:`checkpoint` wrote with the same case and program.
+        File that :meth:`checkpoint` wrote with the same case, side and program.
+    side
+        "lattice", or "continuum" for the nonlocal continuum of the case.
 
     Attributes
     ----------
@@ -55,9 +57,12 @@ class Simulation:
         If the module is missing.
     """
 
-    def __init__(self, case: CaseLike, checkpoint: str | os.PathLike[str] | None = None) -> None:
+    def __init__(self, case: CaseLike, checkpoint: str | os.PathLike[str] | None = None,
+                 side: str = "lattice") -> None:
+        if side not in ("lattice", "continuum"):
+            raise ValueError(f"side must be lattice or continuum, not {side!r}")
         self.case = case if isinstance(case, Case) else Case(case)
-        self._sheet = _module().Sheet(self.case.text())
+        self._sheet = _module().Sheet(self.case.text(), side == "continuum")
         if checkpoint is not None:
             with np.load(checkpoint, allow_pickle=False) as stored:
                 self._sheet.load({name.replace("|", "/"): stored[name].tobytes() for name in stored.files})

@@ -43,10 +43,6 @@ def test_bad_histories_are_refused_with_their_place(out, tmp_path, entry, value,
     assert not out.exists()
 
 
-@pytest.mark.parametrize("more, problem", [
-    (["--set", "Fracture/right end=free"], "with a history, give held"),
-    (["--side", "continuum"], "a crack of the finite elements has one loading"),
-])
-def test_what_has_one_loading_says_so(out, more, problem):
-    run = latcon(*STRIP, *HISTORY, *more, "--output-dir", out)
-    assert run.returncode == 2 and problem in run.stderr, run.stderr
+def test_what_has_one_loading_says_so(out):
+    run = latcon(*STRIP, *HISTORY, "--set", "Fracture/right end=free", "--output-dir", out)
+    assert run.returncode == 2 and "with a history, give held" in run.stderr, run.stderr

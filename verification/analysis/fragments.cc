@@ -85,7 +85,7 @@ std::size_t n_overstretched_bonds(const lattice::State &state, const lattice::Tr
 double bridged_length(const lattice::State &state, const lattice::TriangularLattice &lattice, double X_from,
                       double X_to)
 {
-  const double width = 4. * lattice.spacing();
+  const double width = 4. * lattice.lattice_spacing();
   const auto n_strips = static_cast<std::ptrdiff_t>(std::floor((X_to - X_from) / width));
   const auto strip_of = [&](std::size_t place)
   { return static_cast<std::ptrdiff_t>(std::floor((lattice.reference(place).x() - X_from) / width)); };

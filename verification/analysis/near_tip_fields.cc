@@ -220,10 +220,10 @@ bool NearTipSampler::samples_at(std::size_t tip) const
 }
 
 // Returns those of `n` rows or columns that a grid around the tip may need.
-lattice::Rows NearTipSampler::around(std::size_t centre, int before, int after, std::size_t n)
+lattice::Rows NearTipSampler::around(std::size_t centre, int before, int after, std::size_t n) const
 {
-  // One beyond the grid, up to four between the tip and the axis, and two for bonds that reach a site.
-  constexpr int more = 7;
+  // One beyond the grid, up to four between the tip and the axis, and those of bonds that reach a site.
+  const int more = 5 + static_cast<int>(lattice_.reach());
   const auto first = static_cast<std::ptrdiff_t>(centre) - before - more;
   return {static_cast<std::size_t>(std::max<std::ptrdiff_t>(first, 0)),
           std::min(n, centre + static_cast<std::size_t>(after + more + 1))};
@@ -249,7 +249,7 @@ const NearTipSample *NearTipSampler::sample(const lattice::State &state, std::si
   last_tip_ = tip;
   const Axis now = axis(state, tip);
   path_.push_back(now.reference);
-  fold_until(now.reference.x() - heading_to * lattice_.spacing());
+  fold_until(now.reference.x() - heading_to * lattice_.lattice_spacing());
   if (!samples_at(tip) || calls_at_rest_ >= calls_of_rest)
     return nullptr;
   pending_.push_back(look(state, now, tip, taken_ % samples_for_tensors == 0));
@@ -260,9 +260,10 @@ const NearTipSample *NearTipSampler::sample(const lattice::State &state, std::si
 
 NearTipSampler::Axis NearTipSampler::axis(const lattice::State &state, std::size_t tip) const
 {
-  // Sites at the X of the tip are two rows apart, or neighbours in the row across.
+  // Sites at the X of the tip are a row of the same shift apart, or neighbours in the row across.
   const bool along = lattice_.orientation() == lattice::Orientation::rows_along_crack;
-  const auto step = static_cast<std::ptrdiff_t>(along ? 2 * lattice_.stride() : 1);
+  const std::size_t rows = lattice_.grid().kind == lattice::Grid::Kind::triangular ? 2 : 1;
+  const auto step = static_cast<std::ptrdiff_t>(along ? rows * lattice_.stride() : 1);
   std::size_t lowest = tip, highest = tip;
   for (std::ptrdiff_t n = -2; n <= 2; ++n)
   {
@@ -293,7 +294,7 @@ NearTipSample NearTipSampler::look(const lattice::State &state, const Axis &axis
     if (offset.x() < -(grid_.behind + 0.75) * grid_.pitch_X || offset.x() > (grid_.ahead + 0.75) * grid_.pitch_X ||
         std::abs(offset.y()) > (grid_.half_height + 0.75) * grid_.pitch_Y)
       return;
-    if (state.removed[place] != 0 || 2u * state.lost_bonds[place] > material_.coordination())
+    if (state.removed[place] != 0 || 2u * state.lost_bonds[place] > material_.coordination(lattice_))
       return;
     const Eigen::Vector2d position(state.x[place], state.y[place]);
     const Eigen::Vector2d displacement = position - axis.current - offset;
@@ -331,7 +332,7 @@ bool NearTipSampler::descends(double X) const
 {
   double before = 0., after = 0.;
   int n_before = 0, n_after = 0;
-  const double from = heading_from * lattice_.spacing(), to = heading_to * lattice_.spacing();
+  const double from = heading_from * lattice_.lattice_spacing(), to = heading_to * lattice_.lattice_spacing();
   for (auto point = path_.rbegin(); point != path_.rend() && point->x() >= X - to; ++point)
   {
     const double distance = point->x() - X;

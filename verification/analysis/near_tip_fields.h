@@ -245,7 +245,7 @@ private:
     Eigen::Vector2d reference, current; // of the tip [m]
   };
   Axis axis(const lattice::State &state, std::size_t tip) const;
-  static lattice::Rows around(std::size_t centre, int before, int after, std::size_t n);
+  lattice::Rows around(std::size_t centre, int before, int after, std::size_t n) const;
   lattice::Rows columns_around(std::size_t tip) const;
   NearTipSample look(const lattice::State &state, const Axis &axis, std::size_t tip, bool with_tensors);
   bool descends(double X) const;

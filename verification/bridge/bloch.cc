@@ -10,9 +10,9 @@ WaveMatrices bloch_matrices(const lattice::TriangularLattice &lattice, const lat
 {
   WaveMatrices matrices{Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
   const double mass = lattice::site_mass(material, lattice);
-  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
   {
-    const lattice::Shell *shell = material.shell(kind);
+    const lattice::Shell *shell = material.shell(lattice, kind);
     if (shell == nullptr)
       continue;
     const Eigen::Vector2d R = lattice.bond_vector(kind);
@@ -20,7 +20,7 @@ WaveMatrices bloch_matrices(const lattice::TriangularLattice &lattice, const lat
     const double stretch = (F * R).norm() / length;
     const Eigen::Vector2d n = (F * R).normalized();
     const Eigen::Matrix2d along = n * n.transpose();
-    const double section_over_length = lattice::cross_section(*shell, lattice) / length;
+    const double section_over_length = lattice::cross_section(*shell, lattice, kind) / length;
     // 2 (1 - cos K.R) of both ends of the bond, in a form without cancellation for long waves.
     const double phase = 4. * std::pow(std::sin(0.5 * K.dot(R)), 2);
     matrices.stiffness += phase * section_over_length / mass *

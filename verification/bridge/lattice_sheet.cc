@@ -114,7 +114,7 @@ void require_fracture_case(const input::Case &input, input::Parameters &p)
     p.error(end, "the loads of an end are those of the loading at the start; with a history, give held",
             {"Loading/history times"});
   const bool absorbs = input.left_end == input::Case::End::absorbing || input.right_end == input::Case::End::absorbing;
-  if (p.good() && absorbs && !lattice::waves_run_along_x(input.lattice(), input.material(), input.deformation()))
+  if (p.good() && absorbs && !lattice::waves_run_along_x(input.sheet(), input.material(), input.deformation()))
     p.error(input.left_end == input::Case::End::absorbing ? "Fracture/left end" : "Fracture/right end",
             "the loaded sheet buckles, so no waves propagate along x that an end could "
             "absorb; give held or free",

@@ -21,7 +21,7 @@ void require_fracture_case(const input::Case &input, input::Parameters &paramete
 
 /// Returns the state of the sheet at the homogeneous deformation of the case, at rest and without noise, with its hole
 /// or notch, and with held and free edges of the case.
-/// @param band relevant rows: all rows of input.lattice(), or a part of them
+/// @param band relevant rows: all rows of input.sheet(), or a part of them
 lattice::State lattice_state(const input::Case &input, const lattice::RowPartition &band);
 
 } // namespace latcon::bridge

@@ -48,6 +48,7 @@ void read_case(const input::Options &options, input::Case &input, input::Paramet
   input.declare(parameters);
   parameters.read_file(options.case_file);
   parameters.read_overrides(options.overrides);
+  input.nonlocal.is_used = options.on_continuum;
   input.check(parameters);
   require_same_libraries(input, parameters);
 }

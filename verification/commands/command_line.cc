@@ -213,9 +213,7 @@ support::ExitCode run_program(int argc, char **argv)
                    [](const input::Options &chosen) { return elements::elements().run_continuum(chosen); });
   CLI::App *fracture_command = add_case_command(
     "fracture", "verify the case's material and pre-stretch, then run its crack",
-    "latcon fracture quick --set \"Loading/strain y=1.7\"", "",
-    [](const input::Options &chosen)
-    { return chosen.on_continuum ? elements::elements().run_continuum_fracture(chosen) : run_fracture(chosen); });
+    "latcon fracture quick --set \"Loading/strain y=1.7\"", "", run_fracture);
   fracture_command->add_flag("--skip-verification", options.skip_verification,
                              "run the crack unverified; noted in every output");
   fracture_command->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
@@ -225,7 +223,7 @@ support::ExitCode run_program(int argc, char **argv)
     of_crack
       ->add_option_function<std::string>(
         "--side", [&options](const std::string &side) { options.on_continuum = side == "continuum"; },
-        "which side breaks, the lattice or the continuum with damage; default: lattice")
+        "which side breaks, the lattice or the nonlocal continuum; default: lattice")
       ->check(CLI::IsMember({"lattice", "continuum"}))
       ->type_name("SIDE");
   CLI::App *resolve_command = add_command("resolve", "cases as JSON, for programs", "latcon resolve <questions.jsonl");

@@ -8,6 +8,5 @@ namespace latcon::commands
 {
 
 support::ExitCode run_continuum(const input::Options &options);          ///< `latcon continuum`
-support::ExitCode run_continuum_fracture(const input::Options &options); ///< `latcon fracture --side continuum`
 
 } // namespace latcon::commands

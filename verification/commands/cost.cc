@@ -46,8 +46,7 @@ void require_time(const input::Options &options, const double seconds)
 double rough_seconds(const input::Case &input, const lattice::TimeStepping &stepping, const double steps)
 {
   const double ranks = support::n_ranks();
-  const double sites = static_cast<double>(input.lattice().n_sites());
-  return resources::core_seconds(sites * steps * std::max(1u, stepping.stages)) / (ranks * omp_get_max_threads());
+  return resources::core_seconds(input, steps * stepping.evaluations()) / (ranks * omp_get_max_threads());
 }
 
 } // namespace latcon::commands

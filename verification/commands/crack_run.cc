@@ -42,16 +42,17 @@ std::string crack_progress(const double time, const output::TipHistory &tip)
   return text.str();
 }
 
-output::Results measured_results(const input::Case &input, const analysis::CrackMeasurement &crack, const Side side,
+output::Results measured_results(const input::Case &input, const analysis::CrackMeasurement &crack,
                                  const double imbalance, const output::Tolerance &allowed)
 {
+  const auto of_side = input.nonlocal.is_used ? &output::Result::continuum : &output::Result::lattice;
   output::Results results;
   const auto add = [&](const std::string &quantity, const std::string &unit,
                        const std::optional<analysis::Measured> &measured, const std::optional<double> &published)
   {
     output::Result row{"fracture", quantity, unit, {}, {}, published, {}, {}};
     if (measured)
-      (side == Side::lattice ? row.lattice : row.continuum) = measured->value;
+      row.*of_side = measured->value;
     if (published)
     {
       row.kind = output::RowKind::reference;
@@ -68,7 +69,7 @@ output::Results measured_results(const input::Case &input, const analysis::Crack
   add("amplitude, undeformed", "m", crack.amplitude, input.reference_amplitude);
   output::Result energies{"fracture", "energy imbalance over energy exchanged", "1", {}, {}, {}, imbalance, allowed};
   energies.kind = output::RowKind::ledger;
-  (side == Side::lattice ? energies.lattice : energies.continuum) = imbalance;
+  energies.*of_side = imbalance;
   results.add(energies);
   return results;
 }

@@ -12,20 +12,13 @@ namespace latcon::commands
 
 // What the runs of a crack have in common, whichever side breaks.
 
-/// Side that breaks.
-enum class Side
-{
-  lattice,
-  continuum
-};
-
 /// Returns time, position and speed of a crack for its progress line.
 std::string crack_progress(double time, const output::TipHistory &tip);
 
 /// Returns the rows `fracture` of a crack: its measured quantities beside the published ones, and its energies.
 /// @param imbalance output::LedgerCheck::imbalance() [-] @param allowed with which it holds
-output::Results measured_results(const input::Case &input, const analysis::CrackMeasurement &crack, Side side,
-                                 double imbalance, const output::Tolerance &allowed);
+output::Results measured_results(const input::Case &input, const analysis::CrackMeasurement &crack, double imbalance,
+                                 const output::Tolerance &allowed);
 
 /// Checks claims on the case's own material and pre-stretch, as require_verified(). A crack that they refuse leaves its
 /// page all the same.

@@ -35,7 +35,7 @@ std::string seconds_text(double seconds)
 std::string lattice_text(const input::Case &input, const lattice::TimeStepping &stepping, const resources::RunKind run,
                          const bool claims, const bool report)
 {
-  const lattice::TriangularLattice sheet = input.lattice();
+  const lattice::TriangularLattice sheet = input.sheet();
   const lattice::State state = bridge::lattice_state(input, sheet);
   std::size_t sites = 0;
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
@@ -43,7 +43,7 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
   std::size_t bonds = 0;
   lattice::for_each_bond(state, sheet, [&](const lattice::Bond &) { ++bonds; });
   std::ostringstream out;
-  out << "# lattice: " << sites << " sites, " << bonds << " bonds, " << 2 * sites << " unknowns, " << sheet.length()
+  out << (sheet.is_triangular() ? "# lattice: " : "# nonlocal continuum: ") << sites << " sites, " << bonds << " bonds, " << 2 * sites << " unknowns, " << sheet.length()
       << " m x " << sheet.height() << " m\n";
   double steps = 0., frames = 2., at_most = 1.; // at_most: maximum number of steps over the expected one
   if (run != resources::RunKind::equilibrium)

@@ -85,18 +85,18 @@ Crack run_crack(const input::Case &input, const lattice::TriangularLattice &shee
   const std::unique_ptr<lattice::Simulation> cracked = input::cracked_sheet(input, band);
   lattice::Simulation &simulation = *cracked;
 
-  const double seed_tip = sheet.reference(input.seed(sheet).back()).x();
+  const double seed_tip = input.seed_tip(sheet);
   CrackMotion motion(input, simulation, seed_tip, checkpoints, run);
   motion.go("fracture");
   run.info().add("divided_steps", static_cast<std::uint64_t>(simulation.n_divided_steps()));
   motion.film().end();
   output::CrackRecord &record = motion.record();
   const analysis::CrackMeasurement crack = record.measure(seed_tip);
-  record.write_measurement(run.directory(), crack, seed_tip, *input.breaking_stretch, skip_verification);
+  record.write_measurement(run.directory(), crack, seed_tip, input, skip_verification);
   if (run.is_root())
     motion.near_tip().write(run.directory(), crack);
   return {crack, measured_results(
-                   input, crack, Side::lattice, record.imbalance(),
+                   input, crack, record.imbalance(),
                    output::allowed_imbalance_of_crack(
                      input.integrator, simulation.state().time / input.automatic().fracture_time_stepping().step))};
 }
@@ -115,7 +115,7 @@ support::ExitCode run_fracture(const input::Options &options)
     claims::check_user_laws(input, parameters);
   parameters.finish();
 
-  const lattice::TriangularLattice sheet = input.lattice();
+  const lattice::TriangularLattice sheet = input.sheet();
   const lattice::Material material = input.material();
   const lattice::TimeStepping stepping = input.fracture_time_stepping();
   const double seconds = rough_seconds(input, stepping, resources::expected_steps(input, stepping));
@@ -133,13 +133,21 @@ support::ExitCode run_fracture(const input::Options &options)
   require_memory(options, memory);
   require_time(options, seconds);
 
-  output::Checkpoints checkpoints(options, parameters, input, "fracture");
+  output::Checkpoints checkpoints(options, parameters, input,
+                                  options.on_continuum ? "fracture --side continuum" : "fracture");
   Run run(options, parameters);
   run.record_checkpoint(checkpoints);
+  if (options.on_continuum)
+  {
+    run.info().add("side", std::string("continuum"));
+    run.info().add("grid_spacing_m", sheet.spacing());
+    run.info().add("half_bonds", static_cast<std::uint64_t>(sheet.n_kinds()));
+  }
   run.info().add("skip_verification", options.skip_verification);
   output::Results results;
   if (claims)
-    results = passed_or_reported(input, claims_before_fracture(material), bridge::laws_of_lattice(), options, run);
+    results = passed_or_reported(input, claims_before_fracture(material, options.on_continuum),
+                                 bridge::laws_of_lattice(), options, run);
   const Crack crack = run_crack(input, sheet, options.skip_verification, checkpoints, run);
   results.add(crack.results);
   return end_crack(input, options, run, results, crack.measurement);

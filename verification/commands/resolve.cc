@@ -14,7 +14,6 @@
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
-#include "verification/elements/elements.h"
 #include "verification/input/input_file.h"
 #include "verification/input/sha256.h"
 #include "verification/input/spelling.h"
@@ -100,6 +99,7 @@ private:
     if (!seeds.empty())
       changes.push_back("Lattice/noise seed=" + std::to_string(seeds.front()));
     parameters.read_overrides(changes);
+    input.nonlocal.is_used = request.value("on_continuum", false);
     input.check(parameters);
     if (!seeds.empty())
       bridge::require_fracture_case(input, parameters);
@@ -112,7 +112,7 @@ private:
     Json &values = reply["values"] = Json::object();
     for (const std::string key : request["keys"])
       values[key] = value_of(parameters.value(key));
-    add_cost(input, parameters, request["on_continuum"], reply);
+    add_cost(input, reply);
     for (const std::uint64_t seed : seeds)
     {
       input.noise_seed = seed;
@@ -128,29 +128,14 @@ private:
     return !text.empty() && *end == '\0' && std::isfinite(value) ? Json(value) : Json(text);
   }
 
-  static void add_cost(const input::Case &input, input::Parameters &parameters, bool on_continuum, Json &reply)
+  static void add_cost(const input::Case &input, Json &reply)
   {
-    resources::MemoryNeed memory;
-    double size = 0., evaluations = 0., seconds = 0.;
-    if (on_continuum)
-    {
-      const elements::CrackCost cost = elements::elements().crack_cost(input, parameters); // may refuse the case
-      size = cost.cells;
-      evaluations = cost.evaluations;
-      seconds = resources::damage_seconds(size, evaluations);
-      memory = resources::damage_memory(size);
-    }
-    else
-    {
-      const lattice::TimeStepping stepping = input.fracture_time_stepping();
-      size = static_cast<double>(input.lattice().n_sites());
-      evaluations = resources::expected_steps(input, stepping) * stepping.evaluations();
-      seconds = resources::core_seconds(size * evaluations);
-      memory = resources::lattice_memory(input, resources::RunKind::fracture, true);
-    }
-    reply.update({{"size", size},
+    const lattice::TimeStepping stepping = input.fracture_time_stepping();
+    const double evaluations = resources::expected_steps(input, stepping) * stepping.evaluations();
+    const resources::MemoryNeed memory = resources::lattice_memory(input, resources::RunKind::fracture, true);
+    reply.update({{"size", static_cast<double>(input.sheet().n_sites())},
                   {"evaluations", evaluations},
-                  {"seconds", seconds},
+                  {"seconds", resources::core_seconds(input, evaluations)},
                   {"memory", memory.shared + memory.first_rank}});
   }
 
@@ -187,9 +172,8 @@ support::ExitCode verify_before_cracks(const input::Options &options)
   parameters.finish();
   Run run(options);
   const output::Results results =
-    options.on_continuum
-      ? require_verified(input, claims_before_fracture(input.material(), true), bridge::laws_of(input), run)
-      : require_verified(input, claims_before_fracture(input.material()), bridge::laws_of_lattice(), run);
+    require_verified(input, claims_before_fracture(input.material(), input.nonlocal.is_used),
+                     bridge::laws_of_lattice(), run);
   return run.end(results, support::ExitCode::done);
 }
 

@@ -9,21 +9,8 @@
 #include "verification/claims/run_claims.h"
 #include "verification/input/options.h"
 
-namespace latcon::input
-{
-struct Case;
-class Parameters;
-} // namespace latcon::input
-
 namespace latcon::elements
 {
-
-/// Size and cost of a crack of the continuum.
-struct CrackCost
-{
-  double cells;       ///< number of cells
-  double evaluations; ///< of the forces in the whole run, at most
-};
 
 /// Functions that need finite elements. They are reached through this table because they live in a module,
 /// latcon_elements.so, which the program loads when it calls elements() first: its 150 libraries (deal.II, Trilinos and
@@ -31,11 +18,7 @@ struct CrackCost
 struct Elements
 {
   decltype(claims::run_claims) *run_claims;
-  support::ExitCode (*run_continuum)(const input::Options &options);          ///< `latcon continuum`
-  support::ExitCode (*run_continuum_fracture)(const input::Options &options); ///< `latcon fracture --side continuum`
-  /// Returns the cost of the crack of a case. Calls Parameters::finish().
-  /// @throws InputError as bridge::damaged_sheet() does
-  CrackCost (*crack_cost)(const input::Case &input, input::Parameters &parameters);
+  support::ExitCode (*run_continuum)(const input::Options &options); ///< `latcon continuum`
   /// Initialises the libraries of the finite elements; the object finalises them on destruction.
   std::shared_ptr<void> (*start)();
 };

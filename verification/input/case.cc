@@ -27,7 +27,7 @@ void check_seed(const Case &input, Parameters &p, const lattice::TriangularLatti
                                         "Fracture/stop position", "Sheet/length",         "Sheet/height"};
   try
   {
-    if (sheet.reference(input.seed(sheet).back()).x() + sheet.spacing() > input.stop_position * sheet.length())
+    if (input.seed_tip(sheet) + sheet.spacing() > input.stop_position * sheet.length())
       p.error(extent, "the seed crack must end before the stop position", others);
   }
   catch (const std::invalid_argument &problem)
@@ -85,13 +85,13 @@ void check_breaking_stretch(const Case &input, Parameters &p, const lattice::Tri
   const std::shared_ptr<const lattice::BreakingRule> rule = input.breaking_rule();
   double longest = 0., over_limit = 0.;
   std::size_t of_kind = 0;
-  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+  for (std::size_t kind = 0; kind < sheet.n_kinds(); ++kind)
   {
-    if (!input.has_shell(lattice::shell_of(kind)))
+    if (!input.has_shell(sheet.shell(kind)))
       continue;
     const Eigen::Vector2d R = sheet.bond_vector(kind);
     const double stretch = (input.deformation() * R).norm() / R.norm();
-    const double ratio = stretch / rule->limit({lattice::shell_of(kind)});
+    const double ratio = stretch / rule->limit({sheet.shell(kind)});
     // Equal ratios differ by rounding.
     if (ratio > over_limit * (1. + 1e-12))
     {
@@ -104,7 +104,7 @@ void check_breaking_stretch(const Case &input, Parameters &p, const lattice::Tri
     return;
   const Eigen::Vector2d R = sheet.bond_vector(of_kind);
   p.error("Fracture/breaking stretch",
-          std::string(lattice::shell_names[lattice::shell_of(of_kind)]) + "-neighbour bonds at " +
+          std::string(lattice::shell_names[sheet.shell(of_kind)]) + "-neighbour bonds at " +
             std::to_string(std::lround(std::atan2(R.y(), R.x()) * 180. / M_PI)) + " degrees to x are stretched to " +
             support::full_precision(longest) +
             " by the loading alone and would all break; give more than that, or less strain",
@@ -142,7 +142,7 @@ void check_stages(const Case &input, Parameters &p)
 void check_contact_step(const Case &input, Parameters &p)
 {
   if (input.breaking_stretch && input.has_contact &&
-      lattice::amplifies_contact(input.fracture_time_stepping(), input.lattice(), input.material(),
+      lattice::amplifies_contact(input.fracture_time_stepping(), input.sheet(), input.material(),
                                  input.contact_law()))
     p.error("Time/step", "two sites in contact would gain energy in every step; omit `step`, or give a smaller one",
             {"Contact/stiffness", "Contact/viscosity", "Time/integrator", "Time/stages"});
@@ -151,7 +151,7 @@ void check_contact_step(const Case &input, Parameters &p)
 // Twice the bound on the dashpots is where the undeformed lattice of nearest neighbours is certain to be unstable.
 void check_time_step(const Case &input, Parameters &p)
 {
-  const lattice::TimeStepLimits limits = lattice::time_step_limits(input.lattice(), input.material(), 1.);
+  const lattice::TimeStepLimits limits = lattice::time_step_limits(input.sheet(), input.material(), 1.);
   double limit = 2. * limits.combined;
   if (input.integrator == Case::Integrator::runge_kutta_chebyshev)
   {
@@ -201,7 +201,7 @@ void check_laws_within_a_step(const Case &input, Parameters &p)
     return;
   const double longest = input.longest_stretch();
   const double gain =
-    input.fracture_time_stepping().step * lattice::largest_stretch_rate(input.lattice(), input.material(), longest);
+    input.fracture_time_stepping().step * lattice::largest_stretch_rate(input.sheet(), input.material(), longest);
   for (std::size_t number = 0; number < lattice::n_shells; ++number)
     if (input.has_shell(number) && input.shell(number).has_user_law())
       try
@@ -351,6 +351,7 @@ void Case::declare(Parameters &p)
     "step that resolves the motion");
 
   continuum.declare(p);
+  nonlocal.declare(p);
 
   p.add("Output", "frame interval", frame_interval, MagnitudeOrZero{}, "s",
         "time between full frames; 0: only the first and the last frame");
@@ -411,11 +412,14 @@ void Case::check(Parameters &p)
       p.error(std::string("Near tip/") + name, "it must be at least a spacing and no more than the sheet, or 0",
               {"Sheet/spacing", "Sheet/length", "Sheet/height"});
 
+  nonlocal.check(*this, p);
+  if (nonlocal.is_used && !p.good())
+    return; // there may be no sheet
   if (breaking_stretch && has_sheet())
   {
-    const lattice::TriangularLattice sheet = lattice();
-    check_breaking_stretch(*this, p, sheet);
-    check_seed(*this, p, sheet);
+    const lattice::TriangularLattice moving = sheet();
+    check_breaking_stretch(*this, p, moving);
+    check_seed(*this, p, moving);
   }
   if (toughening != Toughening::none && toughening_factor == 1.)
     p.error("Fracture/factor",
@@ -424,12 +428,31 @@ void Case::check(Parameters &p)
   check_time_stepping(*this, p);
 }
 
-std::vector<std::size_t> Case::seed(const lattice::TriangularLattice &sheet) const
+std::vector<std::size_t> Case::seed(const lattice::TriangularLattice &lattice) const
 {
-  const double position = seed_position * sheet.length();
+  const double position = seed_position * lattice.length();
   if (seed_shape == SeedShape::slit)
-    return lattice::seed_sites(sheet, lattice::SeedSlit{position, seed_offset, seed_length, seed_height});
-  return lattice::seed_sites(sheet, lattice::SeedLine{position, seed_offset, seed_sites});
+    return lattice::seed_sites(lattice, lattice::SeedSlit{position, seed_offset, seed_length, seed_height});
+  return lattice::seed_sites(lattice, lattice::SeedLine{position, seed_offset, seed_sites});
+}
+
+Case::Cut Case::seed_cut(const lattice::TriangularLattice &sheet) const
+{
+  const double from = seed_position * sheet.length();
+  return {from, from + (seed_shape == SeedShape::slit ? seed_length : seed_sites * spacing),
+          seed_offset + 0.25 * sheet.spacing()};
+}
+
+double Case::seed_tip(const lattice::TriangularLattice &sheet) const
+{
+  if (sheet.is_triangular())
+    return sheet.reference(seed(sheet).back()).x();
+  const Cut cut = seed_cut(sheet);
+  if (!(cut.to - cut.from >= spacing))
+    throw std::invalid_argument("the cut must be at least a spacing long");
+  if (std::abs(seed_offset) > 0.5 * sheet.height() - 2. * spacing)
+    throw std::invalid_argument("it comes within two spacings of the lower or the upper edge of the sheet");
+  return cut.to;
 }
 
 bool Case::has_sheet() const

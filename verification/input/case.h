@@ -13,6 +13,7 @@
 #include "verification/input/continuum_case.h"
 #include "verification/input/disorder_case.h"
 #include "verification/input/loading_history.h"
+#include "verification/input/nonlocal_case.h"
 #include "verification/input/parameters.h"
 #include "verification/input/user_law.h"
 
@@ -173,6 +174,7 @@ struct Case
 
   // Continuum
   ContinuumCase continuum;
+  NonlocalCase nonlocal;
 
   // Output
   double frame_interval = 0.;      ///< [s]; 0: first and last frame only
@@ -203,6 +205,8 @@ struct Case
   bool has_sheet() const;
   /// The lattice of the sheet, periodic where its edges are.
   lattice::TriangularLattice lattice() const;
+  /// The sheet that moves: the lattice, or the nonlocal continuum if it is used.
+  lattice::TriangularLattice sheet() const { return nonlocal.is_used ? nonlocal.sheet(*this) : lattice(); }
   lattice::Material material() const;
   /// Largest stretch of an unbroken bond [-], up to which user-defined laws must have values: the breaking stretch of
   /// the strongest bond, with toughening; in a sheet that does not break, that of the loading and a fifth more. check()
@@ -215,10 +219,20 @@ struct Case
   lattice::Toughening toughening_rule() const;
   /// Rule by which bonds break, if there is a breaking stretch.
   std::shared_ptr<const lattice::BreakingRule> breaking_rule() const { return breaking.make(*this); }
-  /// Indices of the sites that the seed crack removes, by increasing X. @throws std::invalid_argument if there are none
-  std::vector<std::size_t> seed(const lattice::TriangularLattice &sheet) const;
+  /// Places of the sites that the seed crack removes from a lattice, by increasing X. @throws std::invalid_argument if
+  /// there are none
+  std::vector<std::size_t> seed(const lattice::TriangularLattice &lattice) const;
+  /// A cut along x, the seed crack of a sheet that is not the triangular lattice.
+  struct Cut
+  {
+    double from, to; ///< X [m]
+    double Y;        ///< [m]; a quarter of a spacing above the seed's line, so that no row is on it
+  };
+  Cut seed_cut(const lattice::TriangularLattice &sheet) const;
+  /// X of the right end of the seed crack [m]. @throws std::invalid_argument if it does not fit into the sheet
+  double seed_tip(const lattice::TriangularLattice &sheet) const;
   lattice::ContactLaw contact_law() const;
-  /// Time step limits of a sheet. @param breaks whether bonds break, so that sites may touch
+  /// Time step limits of the sheet. @param breaks whether bonds break, so that sites may touch
   lattice::TimeStepLimits time_step_limits(bool breaks) const;
   /// Returns the case with automatic time steps of the lattice.
   Case automatic() const

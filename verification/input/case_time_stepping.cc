@@ -6,15 +6,15 @@ namespace latcon::input
 
 lattice::ContactLaw Case::contact_law() const
 {
-  return lattice::contact_like_nearest_bond(lattice(), material(), contact_distance * spacing, contact_stiffness,
+  return lattice::contact_like_nearest_bond(sheet(), material(), contact_distance * spacing, contact_stiffness,
                                             contact_viscosity);
 }
 
 double Case::chebyshev_step(const bool breaks) const
 {
   if (breaks && has_contact)
-    return safety_factor * lattice::chebyshev_step(lattice(), material(), smallest_chebyshev_stretch, contact_law());
-  return safety_factor * lattice::chebyshev_step(lattice(), material(), smallest_chebyshev_stretch);
+    return safety_factor * lattice::chebyshev_step(sheet(), material(), smallest_chebyshev_stretch, contact_law());
+  return safety_factor * lattice::chebyshev_step(sheet(), material(), smallest_chebyshev_stretch);
 }
 
 lattice::TimeStepping Case::time_stepping(const bool breaks) const
@@ -31,8 +31,8 @@ lattice::TimeStepping Case::time_stepping(const bool breaks) const
 lattice::TimeStepLimits Case::time_step_limits(const bool breaks) const
 {
   if (breaks && has_contact)
-    return lattice::time_step_limits(lattice(), material(), smallest_stable_stretch, contact_law());
-  return lattice::time_step_limits(lattice(), material(), smallest_stable_stretch);
+    return lattice::time_step_limits(sheet(), material(), smallest_stable_stretch, contact_law());
+  return lattice::time_step_limits(sheet(), material(), smallest_stable_stretch);
 }
 
 lattice::TimeStepping Case::lattice_time_stepping() const

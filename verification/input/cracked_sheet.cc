@@ -1,5 +1,7 @@
 #include "verification/input/cracked_sheet.h"
 
+#include "lattice/seed.h"
+
 namespace latcon::input
 {
 namespace
@@ -39,7 +41,14 @@ std::unique_ptr<lattice::Simulation> cracked_sheet(const Case &input, const latt
     simulation->load_ends(input.deformation(), end_load(input.left_end), end_load(input.right_end));
   if (input.has_contact)
     simulation->enable_contact(input.contact_law());
-  simulation->cut(input.seed(band.lattice()));
+  const lattice::TriangularLattice &sheet = band.lattice();
+  if (sheet.is_triangular())
+    simulation->cut(input.seed(sheet));
+  else
+  {
+    const Case::Cut cut = input.seed_cut(sheet);
+    simulation->cut_bonds(lattice::bonds_across(sheet, cut.from, cut.to, cut.Y));
+  }
   return simulation;
 }
 

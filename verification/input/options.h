@@ -25,7 +25,7 @@ struct Options
   bool skip_verification = false;
   bool no_report = false;    ///< draw neither pictures nor page
   bool resume = false;       ///< continue from the last checkpoint; keep the finished runs of a study
-  bool on_continuum = false; ///< run the crack of the finite elements instead of that of the lattice
+  bool on_continuum = false; ///< run the crack of the nonlocal continuum instead of that of the lattice
 };
 
 } // namespace latcon::input

@@ -75,7 +75,7 @@ void ContinuumRecord::motion(const continuum::DynamicSolver &solver)
 void ContinuumRecord::check(const continuum::DynamicSolver &solver)
 {
   const continuum::EnergyLedger &e = solver.ledger();
-  ledger_.add({solver.time(), e.stored, e.kinetic, e.dissipated, 0., 0., e.work, e.imbalance});
+  ledger_.add({solver.time(), e.stored, e.kinetic, e.dissipated, 0., e.work, e.imbalance});
 }
 
 double ContinuumRecord::largest_reaction() const

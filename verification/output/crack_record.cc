@@ -52,7 +52,7 @@ FastestSite fastest_site(const lattice::Simulation &simulation)
 
 CrackRecord::CrackRecord(lattice::Simulation &simulation, std::string step_entry)
   : simulation_(simulation), step_entry_(std::move(step_entry)),
-    tip_(simulation.lattice().spacing(), simulation.lattice().length()),
+    tip_(simulation.lattice().lattice_spacing(), simulation.lattice().length()),
     energies_(mechanism_names(simulation.material()))
 {
 }
@@ -131,7 +131,7 @@ double CrackRecord::imbalance() const
 {
   return energies_.imbalance(
     [](double time, const lattice::EnergyBalance &e) {
-      return LedgerState{time, e.elastic, e.kinetic, e.viscous, e.broken, 0., e.boundary_work, e.imbalance()};
+      return LedgerState{time, e.elastic, e.kinetic, e.viscous, e.broken, e.boundary_work, e.imbalance()};
     });
 }
 
@@ -142,7 +142,14 @@ analysis::CrackMeasurement CrackRecord::measure(double seed_tip_X) const
     breaks.push_back({bond.time, bond.midpoint.x(), bond.midpoint.y()});
   analysis::CrackMeasurementOptions options;
   options.strip_length = simulation_.lattice().length();
-  options.lattice_spacing = simulation_.lattice().spacing();
+  options.lattice_spacing = simulation_.lattice().lattice_spacing();
+  // Of a nonlocal continuum: points are closer, and more bonds cross a crack.
+  const lattice::TriangularLattice &sheet = simulation_.lattice();
+  const lattice::Material &material = simulation_.material();
+  const double d = options.lattice_spacing;
+  options.position_error *= sheet.spacing() / d;
+  options.branch_rule.bonds_per_spacing *= lattice::half_sqrt3 * d * d / sheet.site_area() *
+                                           material.coordination(sheet) / material.coordination();
   options.end_time = simulation_.state().time;
   options.seed_tip_X = seed_tip_X;
   return analysis::measure_crack(tip_.records(), breaks, options);
@@ -167,12 +174,14 @@ TextFiles CrackRecord::tables(const std::filesystem::path &directory) const
 
 void CrackRecord::write_measurement(const std::filesystem::path &directory,
                                     const analysis::CrackMeasurement &measurement, double seed_tip_X,
-                                    double breaking_stretch, bool skip_verification)
+                                    const input::Case &input, bool skip_verification)
 {
   const lattice::State &state = simulation_.gather();
   if (!simulation_.band().is_first())
     return;
   nlohmann::ordered_json json = crack_json(measurement);
+  if (input.nonlocal.is_used)
+    json["side"] = "continuum";
   const auto put_flanks = [&](const std::string &name, double analysis::FlankDamage::*number)
   { json[name] = measurement.flanks ? nlohmann::ordered_json((*measurement.flanks).*number) : nullptr; };
   put_flanks("flank_damage_depth", &analysis::FlankDamage::depth);
@@ -182,7 +191,7 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   json["detached_sites"] = std::accumulate(fragments.sizes.begin(), fragments.sizes.end(), std::size_t{0});
   json["detached_fragments"] = fragments.sizes.size();
   json["largest_fragment"] = fragments.sizes.empty() ? 0 : fragments.sizes.front();
-  json["overstretched_bonds"] = analysis::n_overstretched_bonds(state, simulation_.lattice(), breaking_stretch);
+  json["overstretched_bonds"] = analysis::n_overstretched_bonds(state, simulation_.lattice(), *input.breaking_stretch);
   if (const auto bond = simulation_.nearest_to_breaking())
   {
     const lattice::TriangularLattice &sheet = simulation_.lattice();

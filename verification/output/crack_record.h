@@ -6,6 +6,7 @@
 
 #include "lattice/simulation.h"
 #include "verification/analysis/crack_measurement.h"
+#include "verification/input/case.h"
 #include "verification/output/histories.h"
 #include "verification/output/output_file.h"
 
@@ -45,10 +46,9 @@ public:
 
   /// Writes crack.json. Collective; the root rank writes.
   /// @param seed_tip_X reference X of the tip of the seed [m]
-  /// @param breaking_stretch lam_f of a bond that is not toughened [-]
   /// @param skip_verification true if the material was not verified @throws OutputError
   void write_measurement(const std::filesystem::path &directory, const analysis::CrackMeasurement &measurement,
-                         double seed_tip_X, double breaking_stretch, bool skip_verification);
+                         double seed_tip_X, const input::Case &input, bool skip_verification);
 
   /// Saves or loads the record; see lattice::Simulation. The state of the simulation, which must be loaded first,
   /// counts as valid, because checkpoints are written of valid states only. @throws std::invalid_argument for records

@@ -38,7 +38,7 @@ void LedgerCheck::add(const LedgerState &state)
   if (state.time > last_.time)
   {
     const double change = std::abs(state.kinetic - last_.kinetic) + std::abs(state.work - last_.work) + state.viscous -
-                          last_.viscous + state.broken - last_.broken + state.shed - last_.shed;
+                          last_.viscous + state.broken - last_.broken;
     largest_power_ = support::largest_of({largest_power_, change / (state.time - last_.time)});
   }
   last_ = state;
@@ -46,7 +46,7 @@ void LedgerCheck::add(const LedgerState &state)
 
 double LedgerCheck::exchanged() const
 {
-  const double broken = last_.broken - first_.broken, spent = broken + last_.viscous + last_.shed;
+  const double broken = last_.broken - first_.broken, spent = broken + last_.viscous;
   return broken > 0. ? spent : spent + largest_work_ + largest_conversion_;
 }
 
@@ -72,13 +72,6 @@ Tolerance allowed_imbalance_of_crack(input::Case::Integrator integrator, double 
 Tolerance allowed_imbalance_of_motion(input::Case::Integrator integrator, double n_steps)
 {
   return allowed_imbalance(integrator, n_steps, 4.);
-}
-
-Tolerance allowed_imbalance_of_damage(double advance, double n_steps)
-{
-  return {support::largest_of({8e-4 + 0.12 * advance, 0.8 / support::largest_of({n_steps, 1.})}),
-          "three times what starting cracks miss, and the lag of the damage by an automatic step (C.83); 0.8 steps of "
-          "the start"};
 }
 
 Tolerance allowed_imbalance_of_implicit_motion(double rate, double step)

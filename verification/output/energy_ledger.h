@@ -16,7 +16,6 @@ struct LedgerState
   double kinetic;   ///< that of micro-inertia included
   double viscous;   ///< dissipated since the start, by Maxwell branches too
   double broken;    ///< spent on breaking, since the start or with the seed
-  double shed;      ///< kinetic energy that broken material took with it
   double work;      ///< done on the sheet since the start
   double imbalance; ///< error of the sum of all energies
 
@@ -29,7 +28,6 @@ struct LedgerState
     archive("kinetic", kinetic);
     archive("viscous", viscous);
     archive("broken", broken);
-    archive("shed", shed);
     archive("work", work);
     archive("imbalance", imbalance);
   }
@@ -86,10 +84,6 @@ Tolerance allowed_imbalance_of_crack(input::Case::Integrator integrator, double 
 /// Tolerance of a motion of the lattice without a crack [-]. @param n_steps in which it exchanges its energy,
 /// theory.md, eq. (L.40)
 Tolerance allowed_imbalance_of_motion(input::Case::Integrator integrator, double n_steps);
-
-/// Tolerance of a crack of the continuum [-], theory-damage.md, eq. (C.83).
-/// @param advance of the tip in an automatic step, over the length xi of the damage [-]
-Tolerance allowed_imbalance_of_damage(double advance, double n_steps);
 
 /// Tolerance of an implicit motion without a crack [-], theory.md, eq. (L.39).
 /// @param rate LedgerCheck::rate() [1/s] @param step [s]

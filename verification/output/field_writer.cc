@@ -34,7 +34,7 @@ void add_fields(vtkPolyData &frame, const lattice::State &state, const lattice::
   lattice::StrainGradientFit gradient_fit(sheet);
   std::vector<lattice::StrainGradient> gradients;
   const Eigen::Matrix2d unknown = Eigen::Matrix2d::Constant(std::numeric_limits<double>::quiet_NaN());
-  for (const std::size_t slot : slots)
+  for (const std::size_t slot : sheet.is_triangular() ? slots : Slots())
     gradients.push_back(gradient_fit.at(state, slot).value_or(lattice::StrainGradient{unknown, unknown}));
   vtkPointData &data = *frame.GetPointData();
   const auto add = [&](const char *name, const auto &of_slot)
@@ -42,8 +42,11 @@ void add_fields(vtkPolyData &frame, const lattice::State &state, const lattice::
   add("deformation_gradient", fields.deformation_gradient);
   add("first_piola_stress", fields.first_piola_stress);
   add("cauchy_stress", fields.cauchy_stress);
-  add_field<vtkDoubleArray>(data, "strain_gradient_x", slots.size(), [&](std::size_t i) { return gradients[i].x; });
-  add_field<vtkDoubleArray>(data, "strain_gradient_y", slots.size(), [&](std::size_t i) { return gradients[i].y; });
+  if (!gradients.empty())
+  {
+    add_field<vtkDoubleArray>(data, "strain_gradient_x", slots.size(), [&](std::size_t i) { return gradients[i].x; });
+    add_field<vtkDoubleArray>(data, "strain_gradient_y", slots.size(), [&](std::size_t i) { return gradients[i].y; });
+  }
   add("strain_energy_density", fields.strain_energy_density);
   add("damage", fields.damage);
   add_field<vtkUnsignedCharArray>(data, "held", slots.size(), [&](std::size_t i) { return state.held[slots[i]]; });
@@ -84,7 +87,7 @@ void add_bonds(vtkPolyData &frame, const lattice::State &state, const lattice::T
                     stretches[static_cast<std::size_t>(end)] += value;
                     ++bonds_of_point[static_cast<std::size_t>(end)];
                   }
-                  shells.push_back(static_cast<unsigned char>(lattice::shell_of(bond.kind) + 1));
+                  shells.push_back(static_cast<unsigned char>(sheet.shell(bond.kind) + 1));
                   toughened.push_back(state.bonds.toughened(bond.near, bond.kind) ? 1 : 0);
                 });
   for (std::size_t i = 0; i < slots.size(); ++i)

@@ -121,8 +121,9 @@ std::vector<Number> field_numbers(const analysis::NearTipField &field, std::opti
 // sheet whose bonds have their mean stiffness.
 Eigen::Matrix2d stress_of_loaded_sheet(const input::Case &input)
 {
-  const double side = 12. * input.spacing;
-  const lattice::TriangularLattice sheet(input.spacing, side, side, input.orientation);
+  input::Case piece = input;
+  piece.length = piece.height = 12. * input.spacing;
+  const lattice::TriangularLattice sheet = piece.sheet();
   lattice::Material material = input.material();
   material.disorder = {};
   const lattice::RowPartition whole(sheet);
@@ -158,7 +159,7 @@ WaveSpeeds wave_speeds_along_crack(const input::Case &input)
 {
   constexpr double kd = 1e-3; // relative error of about kd^2 / 10
   const double k = kd / input.spacing;
-  const auto waves = bridge::bloch_waves(input.lattice(), input.material(), input.deformation(), {k, 0.});
+  const auto waves = bridge::bloch_waves(input.sheet(), input.material(), input.deformation(), {k, 0.});
   return {waves[0].frequency / k, waves[1].frequency / k};
 }
 
@@ -217,7 +218,7 @@ void NearTipRecord::step()
   const analysis::NearTipSample *sample = sampler_.sample(simulation_.state(), tip);
   if (sample == nullptr)
     return;
-  const double d = simulation_.lattice().spacing();
+  const double d = simulation_.lattice().lattice_spacing();
   Block &block = blocks_[sample->block];
   const analysis::NearTipField field = sample->sums.mean();
   if (const auto asymmetry = analysis::velocity_asymmetry(field))
@@ -270,7 +271,7 @@ std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack)
   json["sampled_from"] = X_begin_;
   json["sampled_to"] = X_end_;
 
-  const double d = simulation_.lattice().spacing();
+  const double d = simulation_.lattice().lattice_spacing();
   std::optional<double> laboratory_speed, process_zone_speed;
   if (crack.speed_laboratory)
     laboratory_speed = crack.speed_laboratory->value;

@@ -120,7 +120,7 @@ MemoryNeed continuum_memory(const input::Case &input, const ContinuumSize &size)
   // Branches: a stretch per direction and an overstress per branch at each quadrature point, as per bond of a site; the
   // history, that of the start of the step, that of its end, and the image of a checkpoint.
   const double of_history = c.solution == input::ContinuumCase::Solution::motion
-                              ? 4. * size.cells * std::pow(c.degree + 1., 2) * bytes_of_history(input.material())
+                              ? 4. * size.cells * std::pow(c.degree + 1., 2) * bytes_of_history(input.material(), input.lattice())
                               : 0.;
   return {size.final_unknowns * (of_unknown + entries * of_entry) + size.coarse_unknowns * entries * of_factor * fill +
             of_history,

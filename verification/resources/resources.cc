@@ -36,7 +36,7 @@ constexpr double bytes_of_variable = 8.;
 constexpr double bytes_of_claims = 7e7;
 
 // Measured on one core of 3 to 4 GHz.
-constexpr double nanoseconds_per_site_evaluation = 15.;
+constexpr double nanoseconds_per_site_evaluation = 15., nanoseconds_per_bond_evaluation = 5.;
 constexpr double seconds_of_site_in_frame = 9e-6;
 // Force evaluations of FIRE from noise to round-off, and per column, because long waves have to cross the sheet.
 constexpr double evaluations_relaxed = 7000., evaluations_relaxed_per_column = 30.;
@@ -72,11 +72,7 @@ OnMachine on_machine(const MemoryNeed &need)
 // Bonds per site.
 double bonds_of_site(const input::Case &input)
 {
-  double bonds = 0.;
-  for (std::size_t number = 0; number < lattice::n_shells; ++number)
-    if (input.has_shell(number))
-      bonds += lattice::n_kinds_per_shell;
-  return bonds;
+  return 0.5 * input.material().coordination(input.sheet());
 }
 
 // Bytes of the factors of bonds per slot.
@@ -91,11 +87,11 @@ double factors_per_place(const input::Case &input, bool breaks)
 input::Case small_piece(const input::Case &input)
 {
   constexpr double rows = 120., sites = 28000.;
+  const double shortest = 8. * input.spacing, spacing = input.sheet().spacing();
   input::Case piece = input;
   piece.hole_radius = piece.notch_length = 0.;
-  piece.height = std::min(input.height, rows * input.spacing);
-  piece.length =
-    std::min(input.length, std::max(sites * input.spacing * input.spacing / piece.height, 8. * input.spacing));
+  piece.height = std::min(input.height, std::max(rows * spacing, shortest));
+  piece.length = std::min(input.length, std::max(sites * spacing * spacing / piece.height, shortest));
   return piece;
 }
 
@@ -106,7 +102,7 @@ double measured_seconds_per_site_step(const input::Case &input, const lattice::T
   using Clock = std::chrono::steady_clock;
   constexpr double long_enough = 0.2; // [s]
   const input::Case piece = small_piece(input);
-  const lattice::TriangularLattice sheet = piece.lattice();
+  const lattice::TriangularLattice sheet = piece.sheet();
   const lattice::Material material = piece.material();
   lattice::State state = bridge::lattice_state(piece, sheet);
   lattice::add_noise(state, sheet, input.noise_amplitude * input.spacing, input.noise_seed);
@@ -130,11 +126,11 @@ double measured_seconds_per_site_step(const input::Case &input, const lattice::T
 
 } // namespace
 
-double bytes_of_history(const lattice::Material &material)
+double bytes_of_history(const lattice::Material &material, const lattice::TriangularLattice &sheet)
 {
   double values = 0.;
-  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
-    if (const lattice::Shell *const shell = material.shell(kind))
+  for (std::size_t kind = 0; kind < sheet.n_kinds(); ++kind)
+    if (const lattice::Shell *const shell = material.shell(sheet, kind))
       if (const std::size_t variables = lattice::n_variables(shell->memory); variables > 0)
         values += static_cast<double>(variables) + 1.;
   return bytes_of_variable * values;
@@ -142,13 +138,13 @@ double bytes_of_history(const lattice::Material &material)
 
 MemoryNeed lattice_memory(const input::Case &input, const RunKind run, const bool claims)
 {
-  const lattice::TriangularLattice sheet = input.lattice();
+  const lattice::TriangularLattice sheet = input.sheet();
   const double places = static_cast<double>(sheet.n_places()), sites = static_cast<double>(sheet.n_sites());
   const bool is_chebyshev =
     run != RunKind::equilibrium && input.integrator == input::Case::Integrator::runge_kutta_chebyshev;
   const double bonds = bonds_of_site(input);
   const double frame = sites * (bytes_of_site_in_frame + bonds * bytes_of_bond_in_frame);
-  const double history = run != RunKind::equilibrium ? bytes_of_history(input.material()) : 0.;
+  const double history = run != RunKind::equilibrium ? bytes_of_history(input.material(), sheet) : 0.;
   const double checkpoint = run != RunKind::equilibrium ? sites * (bytes_of_site_in_checkpoint + history) : 0.;
   const double factors = factors_per_place(input, run == RunKind::fracture);
   const double fields =
@@ -212,7 +208,7 @@ double lattice_seconds(const input::Case &input, const lattice::TimeStepping &st
   lattice::TimeStepping part = stepping;
   part.step /= parts;
   const double per_site_step = measured_seconds_per_site_step(input, part, run == RunKind::fracture);
-  const lattice::TriangularLattice sheet = input.lattice();
+  const lattice::TriangularLattice sheet = input.sheet();
   const double sites = static_cast<double>(sheet.n_sites());
   const double written = seconds_of_start + frames * sites * seconds_of_site_in_frame;
   if (run == RunKind::equilibrium)
@@ -225,24 +221,24 @@ double lattice_seconds(const input::Case &input, const lattice::TimeStepping &st
 
 double expected_steps(const input::Case &input, const lattice::TimeStepping &stepping)
 {
-  const lattice::TriangularLattice sheet = input.lattice();
+  const lattice::TriangularLattice sheet = input.sheet();
   const double way = (input.stop_position - input.seed_position) * sheet.length();
-  const double passage = way / bridge::small_strain(sheet, input.material()).shear_speed;
+  const double passage = way / bridge::small_strain(input.lattice(), input.material()).shear_speed;
   return std::ceil(std::min(input.end_time, passage) / stepping.step);
 }
 
 double parts_of_first_step(const input::Case &input, const lattice::TimeStepping &stepping, const RunKind run)
 {
-  const lattice::TriangularLattice sheet = input.lattice();
+  const lattice::TriangularLattice sheet = input.sheet();
   const lattice::Material material = input.material();
   const Eigen::Matrix2d F = input.deformation();
   std::optional<lattice::ContactLaw> contact;
   if (run == RunKind::fracture && input.has_contact)
     contact = input.contact_law();
   double parts = 1.;
-  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+  for (std::size_t kind = 0; kind < sheet.n_kinds(); ++kind)
   {
-    const lattice::Shell *const shell = material.shell(kind);
+    const lattice::Shell *const shell = material.shell(sheet, kind);
     const double stretch = (F * sheet.bond_vector(kind)).norm() / sheet.rest_length(kind);
     if (shell == nullptr || std::holds_alternative<lattice::LinearBond>(shell->law) ||
         stretch >= lattice::short_stretch)
@@ -254,21 +250,12 @@ double parts_of_first_step(const input::Case &input, const lattice::TimeStepping
   return std::min(parts, static_cast<double>(lattice::Simulation::most_parts));
 }
 
-MemoryNeed damage_memory(const double cells)
+double core_seconds(const input::Case &input, const double evaluations)
 {
-  constexpr double bytes_per_cell = 600.; // measured
-  return {bytes_per_cell * cells, 0.};
-}
-
-double damage_seconds(const double cells, const double evaluations)
-{
-  constexpr double seconds_per_cell = 1.2e-7; // measured
-  return seconds_per_cell * cells * evaluations;
-}
-
-double core_seconds(const double site_evaluations)
-{
-  return site_evaluations * nanoseconds_per_site_evaluation * 1e-9;
+  const lattice::TriangularLattice sheet = input.sheet();
+  return static_cast<double>(sheet.n_sites()) * evaluations * 1e-9 *
+         (sheet.is_triangular() ? nanoseconds_per_site_evaluation
+                                : nanoseconds_per_bond_evaluation * bonds_of_site(input));
 }
 
 void check_steps(const input::Case &input, const double step, input::Parameters &parameters)

@@ -31,7 +31,7 @@ struct MemoryNeed
 [[nodiscard]] MemoryNeed lattice_memory(const input::Case &input, RunKind run, bool claims = false);
 
 /// Returns the bytes of the history of bonds per slot.
-[[nodiscard]] double bytes_of_history(const lattice::Material &material);
+[[nodiscard]] double bytes_of_history(const lattice::Material &material, const lattice::TriangularLattice &sheet);
 
 /// Wall time of the start of the program [s].
 inline constexpr double seconds_of_start = 0.5;
@@ -63,15 +63,8 @@ inline constexpr double seconds_of_claims = 8., seconds_of_report = 9.; ///< for
 /// (L.24)); 1 if it is not divided.
 [[nodiscard]] double parts_of_first_step(const input::Case &input, const lattice::TimeStepping &stepping, RunKind run);
 
-/// Estimates the time [s] on one core of a number of force evaluations on a site, time stepping included.
-[[nodiscard]] double core_seconds(double site_evaluations);
-
-/// Estimates the memory of a crack of the finite elements with damage. @param cells number of cells
-[[nodiscard]] MemoryNeed damage_memory(double cells);
-
-/// Estimates the time of a crack of the finite elements with damage on one core [s].
-/// @param evaluations number of steps times the stages of a step
-[[nodiscard]] double damage_seconds(double cells, double evaluations);
+/// Estimates the time [s] on one core of a number of evaluations of the forces on a sheet, time stepping included.
+[[nodiscard]] double core_seconds(const input::Case &input, double evaluations);
 
 /// Reports `Time/end` to `parameters` if the number of steps exceeds the range of the counter. @param step [s], > 0
 void check_steps(const input::Case &input, double step, input::Parameters &parameters);

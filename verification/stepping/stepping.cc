@@ -90,15 +90,16 @@ private:
 class Sheet
 {
 public:
-  explicit Sheet(const std::string &case_text)
+  Sheet(const std::string &case_text, bool on_continuum)
   {
     input::Parameters parameters;
     input_.declare(parameters);
     parameters.read_text(case_text, "case");
+    input_.nonlocal.is_used = on_continuum;
     input_.check(parameters);
     bridge::require_fracture_case(input_, parameters);
     parameters.finish();
-    lattice_ = std::make_unique<lattice::TriangularLattice>(input_.lattice());
+    lattice_ = std::make_unique<lattice::TriangularLattice>(input_.sheet());
     band_ = std::make_unique<lattice::RowPartition>(*lattice_);
     simulation_ = input::cracked_sheet(input_, *band_);
     if (input_.history.empty())
@@ -238,7 +239,7 @@ PYBIND11_MODULE(latcon_stepping, module)
     });
   const py::call_guard<py::gil_scoped_release> without_lock;
   py::class_<Sheet>(module, "Sheet")
-    .def(py::init<const std::string &>())
+    .def(py::init<const std::string &, bool>())
     .def("step", &Sheet::step, without_lock)
     .def("kick", &Sheet::kick)
     .def("move_edges", &Sheet::move_edges)

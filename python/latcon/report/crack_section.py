@@ -27,23 +27,9 @@ CAPTIONS = {
                            "kidney-shaped.",
 }
 
-# Of a crack of the continuum, instead of those of the same name, or in addition; it has no others.
-CONTINUUM_CAPTIONS = {
-    "damage.png": "Last frame. Above: the deformed sheet, coloured by the speed of the material; white: damage of 0.5 and "
-                  "more. Below: damage in the undeformed sheet.",
-    "crack_edges.png": "Both edges of the crack, where the damage is 0.5, and the line midway between the outermost ones, "
-                       "in the undeformed sheet with Y exaggerated; below, the width of the damage above 0.5. Shaded: the "
-                       "window of the measurement. Edges that move towards and away from each other hide in the path.",
-    "crack_path.png": "The tip of the crack in the undeformed sheet, where the damage of 0.5 reaches farthest; the dashed "
-                      "sinusoid has the measured wavelength and amplitude.",
-    "energy.png": "Energy balance per metre of sheet thickness, since the seed crack. The dashed line is the elastic energy "
-                  "released; the areas are the energies that it was converted to. Broken material takes its motion with it. "
-                  "The small axis is the difference, over the energy that the crack spent.",
-}
-
 # Pictures of each part of the section; plots and a viewer take the place of the first three.
 PARTS = {"path": ("crack_path.png",), "energy": ("energy.png",), "near_tip": ("near_tip_velocity.png", "near_tip_stress.png"),
-         "motion": ("animation.gif", "sheet.png", "sheet_fields.png", "damage.png", "crack_edges.png")}
+         "motion": ("animation.gif", "sheet.png", "sheet_fields.png")}
 PATH_CAPTION = ("Path of the tip in the undeformed sheet, with Y exaggerated. Shaded: the window of the measurement. Drag "
                 "across the plot to zoom in, double-click to reset.")
 ENERGY_CAPTION = ("Conversion of the released elastic energy, per metre of thickness, since the cut of the seed crack. "
@@ -58,18 +44,17 @@ def crack_section(run, position, pictures, sheet, animated):
     """
     plots = {"path": (path_plot(run), PATH_CAPTION), "energy": (energy_plot(run), ENERGY_CAPTION)} if has_dygraphs() else {}
     plots = {name: plot for name, plot in plots.items() if plot[0] is not None}
-    captions = CONTINUUM_CAPTIONS if run.on_continuum else CAPTIONS
 
     def figures(part, still=False):
         found = [(name, pictures[name]) for name in PARTS[part] if name in pictures]
-        return [(last if still and last else moving, f"{run.name}: {first_sentence(captions[name])}", captions[name],
+        return [(last if still and last else moving, f"{run.name}: {first_sentence(CAPTIONS[name])}", CAPTIONS[name],
                  None if still else last) for name, (moving, last) in found]
 
     live = [*plots, *(["motion"] if sheet is not None else [])]
     return {"name": run.name, "position": position, "on_continuum": run.on_continuum, "pattern": pattern_sentence(run.crack),
             "plots": plots, "sheet": sheet, "pictures": {part: figures(part) for part in PARTS}, "near_tip": near_tip_rows(run.near_tip),
             "stills": [figure for part in PARTS if part in live for figure in figures(part, still=True)],
-            "missing": [name for name in captions if name not in pictures and (animated or name != "animation.gif")]}
+            "missing": [name for name in CAPTIONS if name not in pictures and (animated or name != "animation.gif")]}
 
 
 def pattern_phrase(crack):

@@ -126,14 +126,14 @@ def limits(position):
 
 # Forms into which elastic energy is converted: {column of energy.csv: (label, colour)}.
 SHARES = {"broken": ("in what broke", RED), "viscous": ("viscous heat", SKY), "kinetic": ("kinetic", BLUE),
-          "contact": ("contact", GREEN), "shed": ("motion of broken material", GREY)}
+          "contact": ("contact", GREEN)}
 
 
 def energy_shares(energy):
     """Released elastic energy including the work of the edges, and its non-zero shares [(column, values), ...]; all relative
     to the first row [J/m]."""
     released = energy["elastic"][0] - energy["elastic"] + energy["boundary_work"] - energy["boundary_work"][0]
-    shares = [(name, energy[name] - energy[name][0]) for name in SHARES if name in energy]
+    shares = [(name, energy[name] - energy[name][0]) for name in SHARES]
     return released, [(name, values) for name, values in shares if values.any()]
 
 

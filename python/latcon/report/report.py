@@ -6,7 +6,6 @@ from pathlib import Path
 from ..errors import UnreadableFile
 from .claim_plots import all_plots
 from .crack_path import draw_crack_path
-from .damage_pictures import draw_damage, draw_edges, read_edges, read_last_damage_frame
 from .field_pictures import draw_fields, has_fields
 from .pages import write_page
 from .motion import read_last_frame, read_motion
@@ -38,12 +37,6 @@ def draw_pictures(run, motion, folder):
         draw_sheet(frame, run.input_number("Fracture/breaking stretch"), place("sheet.png"))
         if has_fields(frame):
             draw_fields(frame, place("sheet_fields.png"))
-    broken = read_last_damage_frame(run.folder) if run.on_continuum else None
-    if broken is not None:
-        draw_damage(broken, place("damage.png"))
-    edges = read_edges(run.folder) if run.on_continuum else None
-    if edges is not None and len(edges["X"]) > 1:
-        draw_edges(edges, run.crack, place("crack_edges.png"))
     if has_rows(run.tip, 2):
         draw_crack_path(run, place("crack_path.png"))
     if has_rows(run.energy, 2):

@@ -79,7 +79,7 @@ class Run:
 
     @property
     def on_continuum(self):
-        """True if the crack ran through the continuum."""
+        """True if the crack ran through the nonlocal continuum."""
         return (self.info or {}).get("side") == "continuum"
 
     @property
@@ -163,14 +163,12 @@ def read_run(folder):
 
 
 def read_energy(path):
-    """Reads energy.csv of a motion of the lattice, or of a crack of the continuum, which also has the column "shed". None if
-    there is none, or for the two other forms written by the continuum (docs/reference-files.md), which have other columns."""
+    """Reads energy.csv of a motion of sites. None if there is none, or for the two forms written by the finite elements
+    (docs/reference-files.md), which have other columns."""
     text = if_present(read_text, path)
     if text is None or text.startswith(CONTINUUM_ENERGIES):
         return None
-    columns = ("t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance")
-    has_shed = "shed" in text.partition("\n")[0].split(",")
-    return if_present(read_columns, path, columns + ("shed",) if has_shed else columns)
+    return if_present(read_columns, path, ("t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance"))
 
 
 def read_checks(path, results, verified):

@@ -56,7 +56,7 @@ def _finite(value: float | None) -> float | str | None:
 def _seed(program: Program, planned: PlannedRun, outcome: RunOutcome) -> dict[str, Any]:
     return {"run": outcome.run, "seed": outcome.seed, "folder": f"runs/{planned.folder}", "state": outcome.state.value,
             "exit_code": outcome.exit_code, "problem": outcome.problem, "pattern": outcome.pattern or None, "reason": outcome.reason,
-            "side": planned.side, "cells" if planned.on_continuum else "sites": int(planned.size),
+            "side": planned.side, "sites": int(planned.size),
             "values": {name: outcome.values.get(name) for name in program.units}}
 
 

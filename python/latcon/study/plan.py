@@ -71,7 +71,8 @@ class PlannedRun:
 
     def text(self, program: Program) -> str:
         """Returns the text of the resolved case."""
-        return program.ask(changes=self.changes, seeds=[self.seed], checks_laws=False, wants_text=True)  # checked when planned
+        return program.ask(changes=self.changes, seeds=[self.seed], checks_laws=False, wants_text=True,
+                           on_continuum=self.on_continuum)  # checked when planned
 
 
 def parse_settings(texts: Sequence[str]) -> Settings:

@@ -1,5 +1,6 @@
 #include "verification/claims/nonlocal/nonlocal_claim.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "support/largest_error.h"
@@ -349,6 +350,16 @@ ClaimOutcome check_nonlocal(const ClaimInput &input)
   const bridge::Subject &subject = input.subject;
   NonlocalOptions options;
   options.stencils = fixed_stencils(subject.spacing, subject.orientation);
+  const input::NonlocalCase &own = input.entries.nonlocal;
+  const auto is_own = [&](const NonlocalStencil &fixed)
+  {
+    return fixed.grid.kind == own.grid && fixed.half_width <= own.half_width &&
+           std::abs(fixed.grid.spacing * own.refinement / subject.spacing - 1.) < 1e-12;
+  };
+  if (std::none_of(options.stencils.begin(), options.stencils.end(), is_own))
+    options.stencils.push_back({"stencil of the case",
+                                {own.grid, subject.spacing / own.refinement, 0., subject.orientation},
+                                std::min(own.half_width, M_PI / 6.)});
   options.samples = input.quick ? 10 : 100;
   options.breaking_stretch = input.entries.breaking_stretch.value_or(options.breaking_stretch);
   ClaimOutcome outcome{nonlocal_claim(subject, options), {}};

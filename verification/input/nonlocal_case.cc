@@ -1,0 +1,59 @@
+#include "verification/input/nonlocal_case.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "verification/input/case.h"
+
+namespace latcon::input
+{
+
+void NonlocalCase::declare(Parameters &p)
+{
+  p.add("Nonlocal", "grid", grid,
+        {{"square", lattice::Grid::Kind::square}, {"triangular", lattice::Grid::Kind::triangular}},
+        "grid of the points of the nonlocal continuum that `latcon fracture --side continuum` breaks; its rows have the "
+        "orientation of the lattice's");
+  p.add("Nonlocal", "refinement", refinement, Between{1., 20.}, "1",
+        "m: spacing of the lattice over that of the grid; bonds keep the lengths of the lattice's shells, up to a spacing "
+        "of the grid; a point has at most 127 pairs of opposite ones");
+  p.add("Nonlocal", "half width", half_width, Between{0., 0.5236}, "rad",
+        "bonds leave points within this angle of the lattice's six directions in each shell: 0 rad: in these alone; 30 "
+        "deg: in all directions");
+}
+
+void NonlocalCase::check(const Case &input, Parameters &p) const
+{
+  if (!is_used)
+    return;
+  if (input.has_sheet())
+    try
+    {
+      (void)sheet(input);
+    }
+    catch (const std::invalid_argument &problem)
+    {
+      p.error("Nonlocal/refinement", problem.what(),
+              {"Nonlocal/grid", "Nonlocal/half width", "Sheet/spacing", "Sheet/orientation"});
+    }
+  for (const auto &[name, end] : {std::pair("left end", input.left_end), std::pair("right end", input.right_end)})
+    if (end == Case::End::absorbing)
+      p.error(std::string("Fracture/") + name, "an end of the nonlocal continuum does not absorb; give held or free");
+  if (input.seed_shape == Case::SeedShape::slit && input.seed_height > 0.)
+    p.error("Fracture/seed height", "the seed crack of the nonlocal continuum is a cut without height; give 0",
+            {"Fracture/seed shape"});
+}
+
+lattice::TriangularLattice NonlocalCase::sheet(const Case &input) const
+{
+  const lattice::Grid points{grid, input.spacing / refinement, 0., input.orientation};
+  std::vector<lattice::Ring> rings =
+    lattice::lattice_rings(input.spacing, input.orientation, std::min(half_width, M_PI / 6.));
+  rings.push_back({2. * input.spacing, rings[0].direction, 2, rings[0].half_width});
+  rings.erase(std::remove_if(rings.begin(), rings.end(),
+                             [&](const lattice::Ring &ring) { return !input.has_shell(ring.shell); }),
+              rings.end());
+  return {points, lattice::ring_stencil(points, rings), input.spacing, input.length, input.height};
+}
+
+} // namespace latcon::input
