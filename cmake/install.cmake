@@ -41,7 +41,7 @@ configure_package_config_file(cmake/latconConfig.cmake.in latconConfig.cmake INS
 write_basic_package_version_file(latconConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/latconConfig.cmake ${PROJECT_BINARY_DIR}/latconConfigVersion.cmake cmake/dealii.cmake
         DESTINATION ${latcon_cmake_folder})
-install(DIRECTORY examples/own-laws examples/nonlocal-crack DESTINATION share/doc/latcon-dev/examples)
+install(DIRECTORY examples/own-laws DESTINATION share/doc/latcon-dev/examples)
 install(FILES docs/library.md cmake/copyright ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION share/doc/latcon-dev)
 
 # The program starts it for studies and reports, whatever package is installed beside it.

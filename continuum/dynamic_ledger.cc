@@ -38,7 +38,8 @@ EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, cons
   Vector rate = rise;
   rate *= 1. / step.dt;
   const Vector middle_velocity = with_ghosts(rate);
-  ledger.dissipated += step.dt * viscous_forces_.dissipation(middle, middle_velocity);
+  const double dissipated = step.dt * viscous_forces_.dissipation(middle, middle_velocity, step.load_rate());
+  ledger.dissipated += dissipated;
   for (std::size_t i = 0; i < branches.size(); ++i)
     ledger.dissipated += branches[i].dissipated - branch_energies_[i].dissipated;
 
@@ -49,7 +50,15 @@ EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, cons
   if (step.first_load_factor != step.last_load_factor)
   {
     if (!sheet_.conditions().normal_gradients.empty())
+    {
       ledger.work += sheet_.energy(middle, step.last_load_factor) - sheet_.energy(middle, step.first_load_factor);
+      if (viscosity_ != nullptr && viscosity_->gradient() != nullptr)
+      {
+        Vector viscous = sheet_.make_owned();
+        viscous_forces_.add_forces(middle, middle_velocity, step.load_rate(), viscous, nullptr);
+        ledger.work += dissipated - viscous * rise;
+      }
+    }
     if (!sheet_.conditions().displacements.empty())
     {
       // Reactions at the middle of the step; the accelerations of the time integrator are not of second order there.
@@ -57,7 +66,7 @@ EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, cons
       Vector inertial = sheet_.make_owned();
       Vector magnitude = sheet_.make_owned();
       sheet_.residual(middle, forces, magnitude, factor);
-      viscous_forces_.add_forces(middle, middle_velocity, forces, nullptr);
+      viscous_forces_.add_forces(middle, middle_velocity, step.load_rate(), forces, nullptr);
       memory_forces_.add_forces(0.5 * step.dt, middle, forces, nullptr);
       Vector change = v;
       change -= step.v;

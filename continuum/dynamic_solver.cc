@@ -125,7 +125,7 @@ DynamicSolver::Vector DynamicSolver::reactions() const
   a = acceleration_;
   multiply_by_mass(full_mass_, a, inertial);
   sheet_.residual(displacement_, forces, magnitude, load_factor_);
-  viscous_forces_.add_forces(displacement_, velocity_, forces, nullptr);
+  viscous_forces_.add_forces(displacement_, velocity_, load_rate(), forces, nullptr);
   memory_forces_.add_forces(0., displacement_, forces, nullptr);
   forces += inertial;
   forces.add(-load_factor_, loads_, -release_share(time_), release_forces_);
@@ -188,6 +188,17 @@ DynamicSolver::LoadFactorRates DynamicSolver::load_factor_rates(const double tim
           (load_factor_at(of_acceleration + duration) - 2. * load_factor_at(of_acceleration) +
            load_factor_at(of_acceleration - duration)) /
             (duration * duration)};
+}
+
+// Returns the first one at the present time [1/s]; a load factor need not be defined before the start.
+double DynamicSolver::load_rate() const
+{
+  if (!given_load_factor_)
+    return 0.;
+  const double dt = settings_.time_step;
+  if (n_steps_ > 0)
+    return load_factor_rates(time_, dt).first;
+  return (-3. * load_factor_ + 4. * load_factor_at(time_ + dt) - load_factor_at(time_ + 2. * dt)) / (2. * dt);
 }
 
 // Sets x to `factor` times the prescribed displacement where the displacement is prescribed.

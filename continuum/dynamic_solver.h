@@ -213,6 +213,7 @@ private:
   double release_share(double time) const;
   double load_factor_at(double time) const;
   LoadFactorRates load_factor_rates(double time, double duration) const;
+  double load_rate() const;
   void prescribe(Vector &x, double factor) const;
   void end_rates(const Step &step, const Vector &u, Vector &v, Vector &a) const;
   Vector interpolate(const VectorField &field) const;
@@ -224,8 +225,8 @@ private:
   Residual best_residual(const Step &step, const Vector &first, const Vector &second, Vector &u) const;
   const Sheet::Matrix &level_mass(const Sheet &level, const dealii::AffineConstraints<double> &constraints);
   Multigrid::Assembler level_assembler(double load_factor);
-  void assemble_matrix(const Vector &u, const Vector &v, double load_factor);
-  void assemble(const Vector &u, const Vector &v, double load_factor);
+  void assemble_matrix(const Vector &u, const Vector &v, double load_factor, double load_rate);
+  void assemble(const Vector &u, const Vector &v, double load_factor, double load_rate);
   void record_multigrid_state(unsigned int before, const Vector &u, double load_factor);
   void restore_multigrid();
   std::string location_of_largest(const Vector &residual) const;

@@ -96,7 +96,7 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time, const std::ve
   Vector magnitude = sheet_.make_owned();
   multiply_by_mass(full_mass_, a, rhs);
   sheet_.residual(u_ghosted, forces, magnitude, factors[0]);
-  viscous_forces_.add_forces(u_ghosted, v_ghosted, forces, nullptr);
+  viscous_forces_.add_forces(u_ghosted, v_ghosted, rate, forces, nullptr);
   std::vector<Vector> relaxed_ghosted;
   for (const Vector &displacement : relaxed)
     relaxed_ghosted.push_back(with_ghosts(displacement));
@@ -121,7 +121,7 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time, const std::ve
 
   // Diagonals for the round-off of the residual, needed before the first Newton step.
   const unsigned int set_ups = linear_solver_->n_set_ups();
-  assemble(u_ghosted, v_ghosted, factors[0]);
+  assemble(u_ghosted, v_ghosted, factors[0], rate);
   record_multigrid_state(set_ups, u_ghosted, factors[0]);
 
   displacement_ = u_ghosted;

@@ -34,7 +34,7 @@ DynamicSolver::Residual DynamicSolver::evaluate(const Step &step, const Vector &
   Vector forces = sheet_.make_owned();
   multiply_by_mass(full_mass_, Step::mean(step.rule.alpha_m, step.a, a_1), inertial);
   state.energy = sheet_.residual(state.u_mean, forces, state.magnitude, factor);
-  viscous_forces_.add_forces(state.u_mean, state.v_mean, forces, &state.magnitude);
+  viscous_forces_.add_forces(state.u_mean, state.v_mean, step.mean_load_rate(), forces, &state.magnitude);
   memory_forces_.add_forces(mean_duration(), state.u_mean, forces, &state.magnitude);
   state.residual = inertial;
   state.residual += forces;
@@ -131,7 +131,7 @@ Multigrid::Assembler DynamicSolver::level_assembler(const double load_factor)
   {
     level.tangent(u, constraints, K, load_factor);
     ViscousForces(level, viscosity_)
-      .add_tangent(u, level.make_ghosted(), rule.gamma / (rule.beta * dt), constraints, K);
+      .add_tangent(u, level.make_ghosted(), 0., rule.gamma / (rule.beta * dt), constraints, K);
     MemoryForces::add_relaxed_tangent(level, memory_, mean, u, constraints, K);
     K *= 1. - rule.alpha_f;
     K.add((1. - rule.alpha_m) / (rule.beta * dt * dt), level_mass(level, constraints));
@@ -139,7 +139,7 @@ Multigrid::Assembler DynamicSolver::level_assembler(const double load_factor)
 }
 
 // Assembles this derivative and its diagonals on the mesh of the sheet, at a mean state.
-void DynamicSolver::assemble_matrix(const Vector &u, const Vector &v, const double load_factor)
+void DynamicSolver::assemble_matrix(const Vector &u, const Vector &v, const double load_factor, const double load_rate)
 {
   const auto take_diagonal = [&](Vector &diagonal)
   {
@@ -151,16 +151,16 @@ void DynamicSolver::assemble_matrix(const Vector &u, const Vector &v, const doub
   const double dt = duration_;
   sheet_.tangent(u, homogeneous_, matrix_, load_factor);
   take_diagonal(elastic_diagonal_);
-  viscous_forces_.add_tangent(u, v, rule.gamma / (rule.beta * dt), homogeneous_, matrix_);
+  viscous_forces_.add_tangent(u, v, load_rate, rule.gamma / (rule.beta * dt), homogeneous_, matrix_);
   memory_forces_.add_tangent(mean_duration(), u, homogeneous_, matrix_);
   matrix_ *= 1. - rule.alpha_f;
   matrix_.add((1. - rule.alpha_m) / (rule.beta * dt * dt), mass_);
   take_diagonal(effective_diagonal_);
 }
 
-void DynamicSolver::assemble(const Vector &u, const Vector &v, const double load_factor)
+void DynamicSolver::assemble(const Vector &u, const Vector &v, const double load_factor, const double load_rate)
 {
-  assemble_matrix(u, v, load_factor);
+  assemble_matrix(u, v, load_factor, load_rate);
   linear_solver_->update(u, matrix_, level_assembler(load_factor));
 }
 
@@ -175,7 +175,7 @@ void DynamicSolver::record_multigrid_state(const unsigned int before, const Vect
 
 void DynamicSolver::restore_multigrid()
 {
-  assemble_matrix(multigrid_displacement_, sheet_.make_ghosted(), multigrid_load_factor_);
+  assemble_matrix(multigrid_displacement_, sheet_.make_ghosted(), multigrid_load_factor_, 0.);
   linear_solver_->restore(multigrid_displacement_, matrix_, level_assembler(multigrid_load_factor_));
 }
 
@@ -221,7 +221,7 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
     {
       const unsigned int set_ups = linear_solver_->n_set_ups();
       const double load_factor = step.mean_load_factor();
-      assemble(at.u_mean, at.v_mean, load_factor);
+      assemble(at.u_mean, at.v_mean, load_factor, step.mean_load_rate());
       Vector rhs = at.residual;
       rhs *= -1.;
       for (const types::global_dof_index i : sheet_.owned())

@@ -47,15 +47,17 @@ private:
   const double *own_; // a ghosted vector is sorted, so the owned entries are contiguous
 };
 
-// Integrates densities over cells and faces at one state u.
+// Integrates densities over cells and faces at one state u, or those of a motion.
 class Integrator
 {
 public:
   Integrator(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order,
-             const PointEnergyVisitor *visit = nullptr)
-    : sheet_(sheet), u_(u, sheet.owned()), load_factor_(load_factor), order_(order), visit_(visit), tables_(sheet),
-      cell_points_(QGauss<2>(sheet.degree() + 1))
+             const PointEnergyVisitor *visit = nullptr, const Motion *motion = nullptr)
+    : sheet_(sheet), fields_{NodalValues(u, sheet.owned())}, load_factor_(load_factor), order_(order), visit_(visit),
+      motion_(motion), tables_(sheet), cell_points_(QGauss<2>(sheet.degree() + 1))
   {
+    if (motion)
+      fields_.emplace_back(motion->velocity, sheet.owned());
     for (const unsigned int face : GeometryInfo<2>::face_indices())
       face_points_[face] =
         QProjector<2>::project_to_face(ReferenceCells::Quadrilateral, QGauss<1>(sheet.degree() + 1), face);
@@ -75,7 +77,10 @@ public:
     {
       const double *basis = table.row(q, 0);
       evaluate_sides(basis, rows);
-      cell_density(sheet_.constitution(), sheet_.has_gradient(), derivatives_[0], order_, density_);
+      if (motion_)
+        motion_->law.cell_density(derivatives_[0], rates_[0], order_, motion_->rate_by_displacement, density_);
+      else
+        cell_density(sheet_.constitution(), sheet_.has_gradient(), derivatives_[0], order_, density_);
       add_point(cell, cell_points_.point(q), basis, rows, table.JxW[q], contributions.back());
     }
     end(contributions.back());
@@ -92,7 +97,7 @@ public:
         std::vector<Tensor<1, 2>> prescribed(points.size());
         for (std::size_t q = 0; q < points.size(); ++q)
           for (unsigned int i = 0; i < 2; ++i)
-            prescribed[q][i] = load_factor_ * condition.gradient->value(points[q], i);
+            prescribed[q][i] = (motion_ ? motion_->load_rate : load_factor_) * condition.gradient->value(points[q], i);
         begin(contributions);
         add_nodes(cell, 0);
         integrate_face(cell, face, tables, 1, extent(cell, face), &prescribed,
@@ -154,10 +159,11 @@ private:
   {
     const auto n = static_cast<unsigned int>(nodes_.size());
     stride_ = padded_size(n);
-    nodal_.assign(2 * stride_, 0.);
-    for (unsigned int a = 0; a < n; ++a)
-      for (unsigned int i = 0; i < 2; ++i)
-        nodal_[i * stride_ + a] = u_(nodes_[a][i]);
+    nodal_.assign(2 * fields_.size() * stride_, 0.);
+    for (std::size_t f = 0; f < fields_.size(); ++f)
+      for (unsigned int a = 0; a < n; ++a)
+        for (unsigned int i = 0; i < 2; ++i)
+          nodal_[(2 * f + i) * stride_ + a] = fields_[f](nodes_[a][i]);
     if (order_ == Order::first)
     {
       first_.assign(2 * stride_, 0.);
@@ -166,8 +172,8 @@ private:
     if (order_ == Order::second)
     {
       work_.resize(2 * n_derivatives * stride_);
-      for (std::vector<double> &block : second_)
-        block.assign(n * stride_, 0.);
+      for (unsigned int block = 0; block < n_blocks(); ++block)
+        second_[block].assign(n * stride_, 0.);
     }
     basis_.assign(n_sides * n_derivatives * stride_, 0.);
   }
@@ -191,22 +197,36 @@ private:
             to[node_of_[s][n]] = from[n];
         }
       evaluate_sides(basis_.data(), rows);
-      face_density(*sheet_.constitution().gradient, derivatives_, n_sides, tables[0]->normals[q],
-                   prescribed ? (*prescribed)[q] : Tensor<1, 2>(), held, penalty, order_, density_);
+      const Tensor<1, 2> &N = tables[0]->normals[q];
+      const Tensor<1, 2> given = prescribed ? (*prescribed)[q] : Tensor<1, 2>();
+      if (motion_)
+        motion_->law.face_density(derivatives_, rates_, n_sides, N, given, held,
+                                  sheet_.penalty(extent, motion_->law.resistance_across(N)), order_,
+                                  motion_->rate_by_displacement, density_);
+      else
+        face_density(*sheet_.constitution().gradient, derivatives_, n_sides, N, given, held, penalty, order_, density_);
       add_point(cell, face_points_[face].point(q), basis_.data(), rows, tables[0]->JxW[q], contribution);
     }
     end(contribution);
   }
 
-  // Computes the derivatives of u from the basis, and clears the density.
+  // Computes the derivatives of the fields from the basis, and clears the density.
   void evaluate_sides(const double *basis, const Rows &rows)
   {
     clear(density_, order_);
+    evaluate_field(basis, rows, nodal_.data(), derivatives_);
+    if (motion_)
+      evaluate_field(basis, rows, &nodal_[2 * stride_], rates_);
+  }
+
+  void evaluate_field(const double *basis, const Rows &rows, const double *nodal,
+                      std::array<FieldDerivatives, 2> &field) const
+  {
     double derivatives[2][2][n_derivatives] = {};
-    evaluate_derivatives(basis, stride_, rows, nodal_.data(), derivatives[0][0]);
+    evaluate_derivatives(basis, stride_, rows, nodal, derivatives[0][0]);
     for (unsigned int s = 0; s < rows.n_sides; ++s)
       for (unsigned int i = 0; i < 2; ++i)
-        std::copy(derivatives[i][s], derivatives[i][s] + n_derivatives, derivatives_[s][i].begin());
+        std::copy(derivatives[i][s], derivatives[i][s] + n_derivatives, field[s][i].begin());
   }
 
   void add_point(const Iterator &cell, const Point<2> &unit_point, const double *basis, const Rows &rows,
@@ -221,11 +241,11 @@ private:
       for (unsigned int i = 0; i < 2; ++i)
         add_first(basis, stride_, rows, density_.first[i][0], JxW, &first_[i * stride_], &magnitude_[i * stride_]);
     if (order_ == Order::second)
-      for (unsigned int block = 0; block < 3; ++block)
+      for (unsigned int block = 0; block < n_blocks(); ++block)
       {
         const auto &[i, k] = components[block];
-        add_second(basis, stride_, rows, density_.second[i][k][0][0][0], JxW, i == k, nodes_.size(), work_.data(),
-                   second_[block].data());
+        add_second(basis, stride_, rows, density_.second[i][k][0][0][0], JxW, i == k && !motion_, nodes_.size(),
+                   work_.data(), second_[block].data());
       }
   }
 
@@ -247,10 +267,16 @@ private:
     }
     if (order_ != Order::second)
       return;
-    // The second derivative is symmetric: only one triangle of the blocks of equal components was summed, and only one
-    // of the two mixed blocks.
+    // The second derivative of an energy is symmetric: only one triangle of the blocks of equal components was summed,
+    // and only one of the two mixed blocks.
     FullMatrix<double> &K = contribution.tangent;
     K.reinit(2 * n, 2 * n);
+    for (unsigned int block = 0; block < n_blocks() && motion_; ++block)
+      for (std::size_t a = 0; a < n; ++a)
+        for (std::size_t b = 0; b < n; ++b)
+          K(2 * a + components[block].first, 2 * b + components[block].second) = second_[block][a * stride_ + b];
+    if (motion_)
+      return;
     for (std::size_t a = 0; a < n; ++a)
     {
       for (std::size_t b = a; b < n; ++b)
@@ -261,13 +287,15 @@ private:
     }
   }
 
-  static constexpr std::pair<unsigned int, unsigned int> components[3] = {{0, 0}, {1, 1}, {0, 1}}; // of second_
+  static constexpr std::pair<unsigned int, unsigned int> components[4] = {{0, 0}, {1, 1}, {0, 1}, {1, 0}}; // of second_
+  unsigned int n_blocks() const { return motion_ ? 4 : 3; }
 
   const Sheet &sheet_;
-  NodalValues u_;
+  std::vector<NodalValues> fields_; // u, and the velocity of a motion
   double load_factor_;
   Order order_;
   const PointEnergyVisitor *visit_; // nullptr: none
+  const Motion *motion_;            // nullptr: none
   ShapeTables tables_;
   Quadrature<2> cell_points_;                             // on the reference cell
   std::array<Quadrature<2>, 4> face_points_;              // of each face, on the reference cell
@@ -278,12 +306,13 @@ private:
   std::vector<types::global_dof_index> cell_dofs_;
   unsigned int stride_ = 0;
   std::vector<double> basis_; // see element_kernels.h
-  std::vector<double> nodal_; // [component][node] of u
+  std::vector<double> nodal_; // [field][component][node]
   std::vector<double> first_; // [component][node], as magnitude_
   std::vector<double> magnitude_;
-  std::array<std::vector<double>, 3> second_; // [node][node]
+  std::array<std::vector<double>, 4> second_; // [node][node]
   std::vector<double> work_;
   std::array<FieldDerivatives, 2> derivatives_; // of u, per side
+  std::array<FieldDerivatives, 2> rates_;       // of the velocity, per side
   PointIntegrand density_{};
 };
 
@@ -342,6 +371,13 @@ void integrate(const Sheet &sheet, const Sheet::Vector &u, const double load_fac
                const std::function<void(const Contribution &)> &add)
 {
   Integrator integrator(sheet, u, load_factor, order);
+  integrate_with(integrator, sheet, add);
+}
+
+void integrate(const Sheet &sheet, const Sheet::Vector &u, const Motion &motion, const Order order,
+               const std::function<void(const Contribution &)> &add)
+{
+  Integrator integrator(sheet, u, 0., order, nullptr, &motion);
   integrate_with(integrator, sheet, add);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "continuum/gradient_viscosity.h"
 #include "continuum/point_integrand.h"
 #include "continuum/sheet.h"
 
@@ -15,7 +16,7 @@ namespace latcon::continuum
 /// Local unknown 2 a + i belongs to scalar shape function a and component i.
 struct Contribution
 {
-  double energy = 0.;
+  double energy = 0.; ///< [J/m], or dissipated power [W/m]
   std::vector<dealii::types::global_dof_index> dofs;
   dealii::Vector<double> residual;  ///< only with Order::first
   dealii::Vector<double> magnitude; ///< only with Order::first: sums of absolute values
@@ -26,6 +27,21 @@ struct Contribution
 /// (with ghost entries). Order::second omits the first derivatives. Throws NonPhysicalState, only on the rank where it
 /// occurs.
 void integrate(const Sheet &sheet, const Sheet::Vector &u, double load_factor, Order order,
+               const std::function<void(const Contribution &)> &add);
+
+/// Motion in which a gradient viscosity dissipates.
+struct Motion
+{
+  const GradientViscosity &law;
+  const Sheet::Vector &velocity; ///< [m/s], with ghost entries
+  double load_rate;              ///< rate of the load factor [1/s]
+  double rate_by_displacement;   ///< dv/du [1/s], for Order::second
+};
+
+/// Calls add(contribution) likewise for the viscous forces of `motion` at the state `u`, a contribution of which has
+/// the dissipated power as energy, the forces as residual and their derivative by u as tangent, which is not symmetric.
+/// The sheet must have a gradient law, whose faces and penalty factor these are.
+void integrate(const Sheet &sheet, const Sheet::Vector &u, const Motion &motion, Order order,
                const std::function<void(const Contribution &)> &add);
 
 /// Visitor of quadrature points, with the energy of a point: density times weight [J/m], without the stiffness factor.

@@ -131,9 +131,9 @@ void Sheet::distribute()
   conformity_constraints_.copy_from(shared_constraints(known, owned_, relevant_, communicator()));
 }
 
-double Sheet::penalty(const double extent) const
+double Sheet::penalty(const double extent, const double stiffness) const
 {
-  return constitution_.penalty * degree_ * (degree_ + 1) / extent * normal_stiffness_;
+  return constitution_.penalty * degree_ * (degree_ + 1) / extent * stiffness;
 }
 
 double Sheet::supported_stiffness() const

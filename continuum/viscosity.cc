@@ -1,6 +1,7 @@
 #include "continuum/viscosity.h"
 
 #include "continuum/errors.h"
+#include "continuum/gradient_viscosity.h"
 #include "continuum/material.h"
 
 #include <cmath>
@@ -46,12 +47,15 @@ void check(const FibreDashpot &dashpot)
     throw InvalidMaterial("the viscosity of a dashpot must be finite and not negative");
 }
 
-FibreViscosity::FibreViscosity(std::vector<FibreDashpot> dashpots) : dashpots_(std::move(dashpots))
+FibreViscosity::FibreViscosity(std::vector<FibreDashpot> dashpots, const double gradient_length)
+  : dashpots_(std::move(dashpots))
 {
   if (dashpots_.empty())
     throw InvalidMaterial("fibre viscosity needs at least one dashpot");
   for (const FibreDashpot &dashpot : dashpots_)
     check(dashpot);
+  if (gradient_length != 0.)
+    gradient_ = std::make_shared<GradientViscosity>(dashpots_, gradient_length);
 }
 
 Tensor<2, 2> FibreViscosity::stress(const Tensor<2, 2> &F, const Tensor<2, 2> &Fdot) const

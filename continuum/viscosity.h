@@ -2,10 +2,13 @@
 
 #include <deal.II/base/tensor.h>
 
+#include <memory>
 #include <vector>
 
 namespace latcon::continuum
 {
+class GradientViscosity;
+
 /// Viscous law of a sheet: a stress that depends on the rate of deformation, added to the elastic stress. Laws are
 /// const and stateless. F and densities as in Material; Fdot_iJ = dv_i/dX_J [1/s]. All functions throw NonPhysicalState
 /// if F is invalid (det F <= 0 or not finite).
@@ -24,6 +27,10 @@ public:
   virtual dealii::Tensor<4, 2> stress_by_rate(const dealii::Tensor<2, 2> &F,
                                               const dealii::Tensor<2, 2> &Fdot) const = 0;
 
+  /// Returns the part that depends on the gradients of F and Fdot; nullptr: none. It requires a sheet with a gradient
+  /// law.
+  virtual const GradientViscosity *gradient() const { return nullptr; }
+
   /// Returns the dissipated power P : Fdot >= 0 [W/m^3].
   double dissipation(const dealii::Tensor<2, 2> &F, const dealii::Tensor<2, 2> &Fdot) const;
 };
@@ -34,6 +41,7 @@ struct FibreDashpot
   dealii::Tensor<1, 2> direction; ///< unit vector N_J [-], reference configuration
   double weight;                  ///< c [-] > 0, as in FibreFamily
   double viscosity;               ///< eta [Pa s] >= 0
+  double length = 0.;             ///< l [m] > 0, undeformed; needed for the gradient part alone
 };
 
 /// Checks a family. Throws InvalidMaterial unless the direction is a unit vector to 1e-12, the weight is positive, the
@@ -47,16 +55,20 @@ void check(const FibreDashpot &dashpot);
 class FibreViscosity : public Viscosity
 {
 public:
-  /// Creates the law. Throws InvalidMaterial if there is no dashpot or one is not valid.
-  explicit FibreViscosity(std::vector<FibreDashpot> dashpots);
+  /// Creates the law, with the GradientViscosity of the micro-inertia length `gradient_length` l_d [m] unless that is
+  /// 0. Throws InvalidMaterial if there is no dashpot or one is not valid, and as GradientViscosity does.
+  explicit FibreViscosity(std::vector<FibreDashpot> dashpots, double gradient_length = 0.);
 
   dealii::Tensor<2, 2> stress(const dealii::Tensor<2, 2> &F, const dealii::Tensor<2, 2> &Fdot) const override;
   dealii::Tensor<4, 2> stress_by_F(const dealii::Tensor<2, 2> &F, const dealii::Tensor<2, 2> &Fdot) const override;
   dealii::Tensor<4, 2> stress_by_rate(const dealii::Tensor<2, 2> &F, const dealii::Tensor<2, 2> &Fdot) const override;
 
+  const GradientViscosity *gradient() const override { return gradient_.get(); }
+
   const std::vector<FibreDashpot> &dashpots() const { return dashpots_; }
 
 private:
   std::vector<FibreDashpot> dashpots_;
+  std::shared_ptr<const GradientViscosity> gradient_;
 };
 } // namespace latcon::continuum

@@ -1,6 +1,6 @@
 """Web site of the documentation: `cmake --build BUILD --target docs`, then BUILD/docs/html/index.html.
 
-Pages are Markdown as a git host shows it, read by MyST. References to equations, "(L.2)", are links, in pages and in docstrings;
+Pages are Markdown as a git host shows it, read by MyST; directives are added here. References to equations, "(L.2)", are links, in pages and in docstrings;
 a reference without its target is a warning, and the target `docs` makes warnings errors. A paragraph that is a link to a .csv file becomes its table.
 """
 import csv
@@ -24,8 +24,8 @@ release = re.search(r"project\(latcon VERSION ([\d.]+)", (ROOT / "CMakeLists.txt
 extensions = ["myst_parser", "nbsphinx", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "sphinx.ext.napoleon"]
 exclude_patterns = ["pictures", "images"]
 nitpicky = True
-# Types of other packages, aliases that interfaces.md explains, and the parts of a fit.
-nitpick_ignore_regex = [("py:.*", r"(?!latcon\.).*|latcon\.fit\.(local_model|problem|record)\..*")]
+# Types of other packages, aliases that interfaces.md explains, the parts of a fit, and what a started run is made of.
+nitpick_ignore_regex = [("py:.*", r"(?!latcon\.).*|latcon\.fit\.(local_model|problem|record)\..*|latcon\.program\.Process")]
 
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 4
@@ -127,8 +127,51 @@ class Tables(SphinxTransform):
         return nodes.table("", group)
 
 
-# Pages that include a file of the root folder.
+# Files of the root folder, and the pages that they become.
 INCLUDED = {"README.md": "index", "CONTRIBUTING.md": "contributing", "CHANGELOG.md": "changelog"}
+INCLUDE = ":::{include} ../%s\n:relative-docs: docs/\n:relative-images:\n:::\n"
+
+CONTENTS = {
+    "Using latcon": "installation model tutorial parameters python reference reference-* troubleshooting glossary limits library interfaces",
+    "Cookbook, how-to pages and notebooks": "cookbook/README cookbook/* how-to/README how-to/* notebooks/*",
+    "Theory": "theory*",
+    "Verification and results": "verification running-crack continuum-crack nonlocal-crack fit-fig1 patterns convergence gallery performance "
+                                "reliability security",
+    "Inside latcon": "architecture contributing changelog",
+}
+TREE = ":::{toctree}\n:hidden:\n:glob:\n:caption: %s\n\n%s\n:::\n"
+
+INTERFACES = """
+<a href="cpp/index.html">Interface in C++</a>
+
+:::{eval-rst}
+.. automodule:: latcon
+   :members:
+
+.. autofunction:: latcon.open
+
+.. autoclass:: latcon.frames.Frames
+   :members:
+
+.. autofunction:: latcon.frames.read_near_tip
+
+.. automodule:: latcon.fit
+   :members:
+:::
+"""
+
+
+def add_directives(app, page, source):
+    """Replaces pages by the files that they link, and adds the navigation and the docstrings."""
+    if pathlib.Path(app.srcdir) != ROOT / "docs":
+        return
+    for file, name in INCLUDED.items():
+        if page == name:
+            source[0] = INCLUDE % file
+    if page == "index":
+        source[0] += "".join(TREE % (caption, "\n".join(pages.split())) for caption, pages in CONTENTS.items())
+    if page == "interfaces":
+        source[0] += INTERFACES
 
 
 def link_included(app, _env, node, shown):
@@ -147,6 +190,7 @@ def setup(app):
     app.add_transform(Equations)
     app.add_transform(Tables)
     app.add_lexer("prm", BashLexer)  # `set` and # comments
+    app.connect("source-read", add_directives)
     app.connect("missing-reference", link_included)
     app.connect("build-finished", copy_mathjax)
     return {"parallel_read_safe": True}

@@ -23,6 +23,7 @@ inline constexpr std::size_t n_shells = 3;
 /// What the shells are called in files and messages.
 inline constexpr std::array<const char *, n_shells> shell_names{{"nearest", "next-nearest", "third-nearest"}};
 
+/// Distance of two rows of a triangular grid over its spacing.
 inline const double half_sqrt3 = std::sqrt(3.) / 2.;
 
 /// A grid of reference points without end, at column * a1 + row * a2.

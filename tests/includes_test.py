@@ -145,15 +145,6 @@ def drawn(picture):
     return {tuple(html.unescape(title).split("->")) for title in titles if "->" in html.unescape(title)}
 
 
-@pytest.mark.parametrize("folder, line", [
-    ("support", "#include <deal.II/base/mpi.h>"), ("lattice", '#include "continuum/material.h"'), ("lattice", "#include <vtkPolyData.h>"),
-    ("lattice", '  #  include "../verification/input/case.h"'), ("continuum", '#include "continuum/damage/damage_field.h"'),
-    ("verification/claims/energy", '#include "verification/claims/prestretch/cut_study.h"'),
-    ("tests/verification/analysis", '#include "tests/verification/claims/subjects.h"')])
-def test_a_forbidden_include_is_seen(folder, line):
-    assert len(violations(folder, line)) == 1
-
-
 def test_folders_are_listed_above_those_that_include_them():
     order = list(ALLOWED)
     assert [folder for folder, others in ALLOWED.items() if any(order.index(other) >= order.index(folder) for other in others)] == []

@@ -71,7 +71,7 @@ def cases_of(study):
     found = []
     for heading, pattern, has_both_shells, kinds in CASES:
         seeds = [seed for name in shown if (study.runs[name][1].get(SHELLS) != "false") == has_both_shells
-                 for seed in study.runs[name][2] if seed.state == "measured"]
+                 for seed in study.runs[name][2] if seed.is_measured]
         fitting = [seed for seed in seeds if seed.pattern == pattern]
         fitting += [] if has_both_shells else seeds
         found += [(heading, seed, kinds) for seed in fitting[:1]]
@@ -93,7 +93,7 @@ def numbers_text(seed, seeds, kinds):
     """Numbers of one seed, and their means over all seeds of the run if there are several."""
     words = []
     for quantity, name, scale, unit in (number for kind in kinds for number in NUMBERS[kind]):
-        value, mean = seed.values[quantity], mean_of(seeds, quantity)
+        value, mean = seed.values.get(quantity), mean_of(seeds, quantity)
         here = "none" if value is None else f"{scale * value:.4g}{unit}"
         if mean is not None:
             over = f" ({value_text(mean, scale).rpartition(' (')[0]}{unit})" if mean.n > 1 else ""

@@ -2,7 +2,7 @@
 """Makes the record and the pictures of docs/patterns.md.
 
 Usage: page.py record FILE.csv STUDY...     the runs of output directories of `latcon study` in one table
-       page.py tables                       the tables, in Markdown
+       page.py tables FOLDER                the tables, as CSV
        page.py pictures FOLDER              patterns-map.png, patterns-spectrum.png and patterns-onset.png of the record
 """
 import argparse
@@ -97,26 +97,26 @@ def mean_text(values, scale, digits):
 
 
 def table(rows, start, head, abscissa):
-    """Lines of a table of the runs whose name begins with `start`, by abscissa(row): patterns and means over the seeds."""
+    """Table as CSV of the runs whose name begins with `start`, by abscissa(row): patterns and means over the seeds."""
     groups = {}
     for row in rows:
         if row["run"].startswith(start):
             groups.setdefault(abscissa(row), []).append(row)
-    lines = [f"| {head} | pattern | amplitude [mm] | wavelength [cm] | speed [m/s] |", "| --- | --- | --- | --- | --- |"]
+    lines = [f"{head},pattern,amplitude [mm],wavelength [cm],speed [m/s]"]
     for value, seeds in sorted(groups.items()):
         names = [seed["pattern"] for seed in seeds]
-        patterns = ", ".join(f"{name} {names.count(name)}/{len(names)}" for name in sorted(set(names)))
+        patterns = "; ".join(f"{name} {names.count(name)}/{len(names)}" for name in sorted(set(names)))
         means = [mean_text([seed[name] for seed in seeds], scale, 2) for name, scale in
                  (("amplitude", 1e3), ("wavelength", 1e2), ("speed_lagrangian", 1))]
-        lines.append(f"| {value:g} | {patterns} | {' | '.join(means)} |")
-    return lines
+        lines.append(f"{value:g},{patterns},{','.join(means)}")
+    return "\n".join(lines) + "\n"
 
 
 def tables():
-    """The tables of the page: over the strain, and over zeta."""
+    """The tables of the page by the names of their files: over the strain, and over zeta."""
     rows = read("onset")
-    return [table(rows, "y-", "strain y", lambda row: row["strain_y"]),
-            table(rows, "eta-", "ζ", lambda row: round(row["viscosity"] * ZETA, 2))]
+    return {"patterns-strain.csv": table(rows, "y-", "strain y", lambda row: row["strain_y"]),
+            "patterns-zeta.csv": table(rows, "eta-", "ζ", lambda row: round(row["viscosity"] * ZETA, 2))}
 
 
 def draw_onset(rows, path):
@@ -151,7 +151,7 @@ def draw(folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     commands = parser.add_subparsers(dest="command", required=True)
-    for name, words in (("record", ("file", "studies")), ("tables", ()), ("pictures", ("folder",))):
+    for name, words in (("record", ("file", "studies")), ("tables", ("folder",)), ("pictures", ("folder",))):
         command = commands.add_parser(name)
         for word in words:
             command.add_argument(word, type=pathlib.Path, **({"nargs": "+"} if word == "studies" else {}))
@@ -159,7 +159,8 @@ def main():
     if given.command == "record":
         record(given.file, given.studies)
     elif given.command == "tables":
-        print("\n\n".join("\n".join(lines) for lines in tables()))
+        for name, text in tables().items():
+            (given.folder / name).write_text(text, encoding="utf-8")
     else:
         draw(given.folder)
 

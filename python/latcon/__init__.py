@@ -8,7 +8,7 @@ Examples
 >>> run.crack.speed_lagrangian
 """
 from .case import Case
-from .commands import continuum, fracture, lattice, verify
+from .commands import Job, continuum, fracture, lattice, start, verify
 from .errors import (BadInput, ClaimFailed, DidNotConverge, InternalError, Interrupted, LatconError, OutputFailed, ProgramError,
                      ProgramNotFound, UnknownEntry, UnreadableFile)
 from .frames import Frame
@@ -17,8 +17,12 @@ from .quantities import Quantities, Value
 from .results import Run
 from .results import open_run as open  # called as latcon.open
 from .schema import Entry, Schema, schema
+from .studies import Study, open_study, sweep
+
+__version__ = "1.0.0"  # that of CMakeLists.txt, which the tests compare
 
 # Without `open`, which `from latcon import *` would substitute for Python's built-in function.
-__all__ = ["BadInput", "Case", "ClaimFailed", "DidNotConverge", "Entry", "Frame", "InternalError", "Interrupted", "LatconError",
-           "OutputFailed", "ProgramError", "ProgramNotFound", "Quantities", "Run", "Schema", "UnknownEntry", "UnreadableFile",
-           "Value", "continuum", "find_program", "fracture", "lattice", "schema", "verify"]
+__all__ = ["BadInput", "Case", "ClaimFailed", "DidNotConverge", "Entry", "Frame", "InternalError", "Interrupted", "Job", "LatconError",
+           "OutputFailed", "ProgramError", "ProgramNotFound", "Quantities", "Run", "Schema", "Study", "UnknownEntry",
+           "UnreadableFile", "Value", "continuum", "find_program", "fracture", "lattice", "open_study", "schema", "start", "sweep",
+           "verify"]

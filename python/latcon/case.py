@@ -1,6 +1,7 @@
 """Cases: a case file and entries that override those of the file."""
 from __future__ import annotations
 
+import copy
 import os
 import pathlib
 from collections.abc import Mapping, Sequence
@@ -11,6 +12,7 @@ from .errors import BadInput, LatconError, UnknownEntry
 from .folder import write_atomically
 from .schema import EntryValue, ResolvedCase, resolve, schema
 
+_WORDS: dict[str, EntryValue] = {"auto": None, "true": True, "false": False}
 Settable = str | float | int | bool | None | Sequence[float] | np.generic | np.ndarray
 
 
@@ -39,7 +41,7 @@ class Case:
     """
 
     def __init__(self, file: str | os.PathLike[str]) -> None:
-        path = pathlib.Path(file)
+        path = pathlib.Path(file).expanduser()
         if not path.is_file():
             shipped = schema().cases
             name = path.stem if path.suffix == ".prm" else path.name
@@ -48,6 +50,7 @@ class Case:
             path = shipped[name]
         self._file = path.absolute()
         self._overrides: dict[str, str] = {}
+        self._known: ResolvedCase | None = None  # of a run, for machines without the program
         self._cached: tuple[object, ResolvedCase] | None = None
 
     @property
@@ -60,13 +63,37 @@ class Case:
         """Replaced entries by key, as strings."""
         return dict(self._overrides)
 
-    def set(self, key: str, value: Settable) -> Case:
-        """Returns the case with another value of one entry.
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Settable]) -> Case:
+        """Returns the case with these values, as :meth:`set` takes them, and the defaults of all other entries."""
+        case = cls.__new__(cls)
+        case._file, case._overrides, case._known, case._cached = pathlib.Path(os.devnull), {}, None, None
+        return case.set(values)
+
+    @classmethod
+    def of_run(cls, file: pathlib.Path, entries: Mapping[str, str], text: str) -> Case:
+        """Returns a resolved case as a run recorded it.
+
+        Parameters
+        ----------
+        file
+            The resolved case, `case.prm`.
+        entries
+            Texts of all entries in SI units by key, from `run.json`.
+        text
+            Content of the file.
+        """
+        case = cls(file)
+        case._known = ResolvedCase({key: _recorded(value) for key, value in entries.items()}, text)
+        return case
+
+    def set(self, key: str | Mapping[str, Settable], *value: Settable) -> Case:
+        """Returns the case with other values of one entry, ``set(key, value)``, or of several, ``set({key: value, ...})``.
 
         Parameters
         ----------
         key
-            ``Section/Name``.
+            ``Section/Name``, or a mapping of such keys to values.
         value
             A number in the SI unit of the entry, a string with a unit (``"5 cm"``), a keyword, a Boolean, a sequence of numbers,
             or None for ``auto``.
@@ -82,10 +109,15 @@ class Case:
             If there is no such entry; the message names the nearest known one. An invalid value is reported by the program when
             the case is first read.
         """
-        if key not in schema():
-            raise self._unknown(key)
-        changed = Case(self._file)
-        changed._overrides = {**self._overrides, key: _text(key, value)}
+        if len(value) != (0 if isinstance(key, Mapping) else 1):
+            raise TypeError("set takes a key and a value, or one mapping of keys to values")
+        changes = key if isinstance(key, Mapping) else {key: value[0]}
+        for name in changes:
+            if name not in schema():
+                raise self._unknown(name)
+        changed = copy.copy(self)
+        changed._overrides = self._overrides | {name: entry_text(name, item) for name, item in changes.items()}
+        changed._known = changed._cached = None
         return changed
 
     def __getitem__(self, key: str) -> EntryValue:
@@ -104,6 +136,15 @@ class Case:
             With every problem of the case.
         """
         return dict(self._resolve().values)
+
+    def diff(self, other: Case) -> dict[str, tuple[EntryValue, EntryValue]]:
+        """Values of the entries in which two cases differ, in SI units, by key: this case's, the other's."""
+        own, others = self._resolve().values, other._resolve().values
+        return {key: (own.get(key), others.get(key)) for key in {**own, **others} if own.get(key) != others.get(key)}
+
+    def __eq__(self, other: object) -> bool:
+        """Whether all entries have the same values, however they are written."""
+        return isinstance(other, Case) and not self.diff(other)
 
     def text(self) -> str:
         """The resolved case in deal.II's parameter format, every entry with its documentation."""
@@ -127,12 +168,14 @@ class Case:
 
     def arguments(self) -> list[str]:
         """Command-line options that set the replaced entries."""
-        return [word for key, value in self._overrides.items() for word in ("--set", f"{key}={value}")]
+        return set_options(self._overrides)
 
     def __repr__(self) -> str:
         return f"Case({str(self._file)!r})" + "".join(f".set({key!r}, {value!r})" for key, value in self._overrides.items())
 
     def _resolve(self) -> ResolvedCase:
+        if self._known is not None:
+            return self._known
         try:
             status = self._file.stat()
         except OSError as error:
@@ -154,7 +197,12 @@ class Case:
         return UnknownEntry(f"{key}: unknown entry", 2)
 
 
-def _text(key: str, value: Settable) -> str:
+def set_options(settings: Mapping[str, str]) -> list[str]:
+    """Returns command-line options that set entries."""
+    return [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
+
+
+def entry_text(key: str, value: Settable) -> str:
     """Value in the syntax of a case file."""
     if isinstance(value, (np.generic, np.ndarray)):
         value = value.tolist()
@@ -167,6 +215,21 @@ def _text(key: str, value: Settable) -> str:
     if isinstance(value, (str, int)):
         return str(value)
     if isinstance(value, Sequence):
-        return ", ".join(_text(key, item) for item in value)
+        return ", ".join(entry_text(key, item) for item in value)
     raise TypeError(f"{key}: a value must be a string, a number, a Boolean, a sequence of numbers or None, not "
                     f"{type(value).__name__}")
+
+
+def _recorded(text: str) -> EntryValue:
+    """Value of an entry in `run.json`, whose type its text alone shows."""
+    if text in _WORDS:
+        return _WORDS[text]
+    for convert in (int, float):
+        try:
+            return convert(text)
+        except ValueError:
+            pass
+    try:
+        return [float(number) for number in text.split(",")]
+    except ValueError:
+        return text

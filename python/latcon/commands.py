@@ -3,9 +3,12 @@ from __future__ import annotations
 
 import os
 import pathlib
+import threading
 
 from .case import Case
-from .program import Progress, run
+from .errors import Interrupted
+from .folder import absolute
+from .program import Process, Progress, progress_indicator, run
 from .results import Run, open_run
 
 CaseLike = Case | str | os.PathLike[str]
@@ -13,7 +16,8 @@ Directory = str | os.PathLike[str]
 
 
 def fracture(case: CaseLike, directory: Directory, *, threads: int | None = None, resume: bool = False,
-             skip_verification: bool = False, report: bool = True, yes: bool = False, progress: Progress = True) -> Run:
+             skip_verification: bool = False, report: bool = True, yes: bool = False, progress: Progress = True,
+             side: str = "lattice") -> Run:
     """Verifies the material and the pre-stretch of a case, then runs its crack (``latcon fracture``).
 
     Parameters
@@ -36,6 +40,8 @@ def fracture(case: CaseLike, directory: Directory, *, threads: int | None = None
     progress
         True: a progress indicator on standard error, tqdm if it is installed. False: none. A function: called with each
         progress line of the program.
+    side
+        ``"lattice"`` or ``"continuum"``: what breaks, the latter the nonlocal continuum of the case.
 
     Returns
     -------
@@ -49,7 +55,7 @@ def fracture(case: CaseLike, directory: Directory, *, threads: int | None = None
     Interrupted
         After Ctrl-C or another signal: a checkpoint and all results are written.
     """
-    options = ["--skip-verification"] * skip_verification + ["--no-report"] * (not report)
+    options = ["--side", side] + ["--skip-verification"] * skip_verification + ["--no-report"] * (not report)
     return _run("fracture", case, directory, threads, resume, yes, progress, options)
 
 
@@ -69,6 +75,82 @@ def continuum(case: CaseLike, directory: Directory, *, threads: int | None = Non
     Parameters, result and errors are those of :func:`fracture`.
     """
     return _run("continuum", case, directory, threads, resume, yes, progress)
+
+
+def start(case: CaseLike, directory: Directory, *, command: str = "fracture", threads: int | None = None, resume: bool = False,
+          skip_verification: bool = False, report: bool = True, yes: bool = False) -> Job:
+    """Starts a run in the background.
+
+    Parameters
+    ----------
+    command
+        ``"fracture"``, ``"lattice"`` or ``"continuum"``.
+    case, directory, threads, resume, skip_verification, report, yes
+        As in :func:`fracture`; `skip_verification` and `report` apply to cracks.
+
+    Returns
+    -------
+    Job
+        The run, which continues if Python ends.
+    """
+    options = ["--skip-verification"] * skip_verification + ["--no-report"] * (not report) if command == "fracture" else []
+    return Job(Process(run_words(command, as_case(case), directory, threads, resume, yes, options), absolute(directory)))
+
+
+class Job:
+    """Run in the background, as :func:`start` returns it.
+
+    Parameters
+    ----------
+    process
+        The program.
+
+    Attributes
+    ----------
+    directory : pathlib.Path
+        Output directory.
+    """
+
+    def __init__(self, process: Process) -> None:
+        self.directory = process.directory
+        self._process = process
+        self._reader = threading.Thread(target=process.follow, args=(progress_indicator(False),), daemon=True)
+        self._reader.start()
+
+    @property
+    def progress(self) -> str:
+        """Last progress line; empty before the first."""
+        return self._process.progress
+
+    @property
+    def is_running(self) -> bool:
+        """Whether the run has not ended."""
+        return self._process.is_running
+
+    def wait(self, timeout: float | None = None) -> Run:
+        """Waits for the end of the run, at most `timeout` [s], and returns its results. Ctrl-C ends the waiting, not the run.
+
+        Raises
+        ------
+        TimeoutError
+            If the run has not ended.
+        ProgramError, Interrupted
+            If the exit code of the program is not 0.
+        """
+        self._reader.join(timeout)
+        if self._reader.is_alive():
+            raise TimeoutError(f"{self.directory}: the run has not ended")
+        self._process.end()
+        return open_run(self.directory)
+
+    def stop(self) -> Run:
+        """Stops the run, which writes a checkpoint and its results, and returns them. Errors are those of :meth:`wait`."""
+        if self.is_running:
+            self._process.interrupt()
+        try:
+            return self.wait()
+        except Interrupted:
+            return open_run(self.directory)
 
 
 def verify(*claims: str, directory: Directory, case: CaseLike | None = None, quick: bool = False,
@@ -97,19 +179,20 @@ def verify(*claims: str, directory: Directory, case: CaseLike | None = None, qui
     """
     words = ["verify", *claims, *["--quick"] * quick]
     if case is not None:
-        case = _case(case)
+        case = as_case(case)
         words += ["--case", os.fspath(case.file), *case.arguments()]
-    run([*words, *_common_words(directory, threads)], pathlib.Path(directory).absolute(), progress)
+    run([*words, *common_words(directory, threads)], absolute(directory), progress)
     return open_run(directory)
 
 
-def _case(case: CaseLike) -> Case:
+def as_case(case: CaseLike) -> Case:
+    """Returns a case, or that of a file."""
     return case if isinstance(case, Case) else Case(case)
 
 
 def _run(command: str, case: CaseLike, directory: Directory, threads: int | None, resume: bool, yes: bool, progress: Progress,
          options: list[str] | None = None) -> Run:
-    run(run_words(command, _case(case), directory, threads, resume, yes, options or []), pathlib.Path(directory).absolute(), progress)
+    run(run_words(command, as_case(case), directory, threads, resume, yes, options or []), absolute(directory), progress)
     return open_run(directory)
 
 
@@ -117,9 +200,9 @@ def run_words(command: str, case: Case, directory: Directory, threads: int | Non
               ) -> list[str]:
     """Returns the words of a command of the program that runs a case."""
     return [command, os.fspath(case.file), *case.arguments(), *options, *["--resume"] * resume, *["--yes"] * yes,
-            *_common_words(directory, threads)]
+            *common_words(directory, threads)]
 
 
-def _common_words(directory: Directory, threads: int | None) -> list[str]:
-    path = pathlib.Path(directory).absolute()  # of use after a change of folder
-    return ["--output-dir", os.fspath(path), *([] if threads is None else ["--threads", str(threads)])]
+def common_words(directory: Directory, threads: int | None) -> list[str]:
+    """Returns the options of all commands that run."""
+    return ["--output-dir", os.fspath(absolute(directory)), *([] if threads is None else ["--threads", str(threads)])]

@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from .errors import UnreadableFile
+from .errors import CLAIM_FAILED, DONE, UnreadableFile
 from .files import read_columns, read_json
 from .folder import write_file
 from .frames import Floats
 from .quantities import quantity_text
 from .study.outcome import measured_values, unfit_rows
 from .study.output import shortest
-from .study.program import CLAIM_FAILED, DONE, InputError, Program
+from .study.program import InputError, Program
 from .study.record import Printed, Record, draw_page, json_text
 
 SIDES = ("first", "second")

@@ -1,8 +1,16 @@
 """Exceptions of the package. Those of a run contain the program's message and exit code."""
 from __future__ import annotations
 
+import importlib
 import os
 import pathlib
+from typing import Any
+
+DONE, INTERNAL_ERROR, BAD_INPUT, CLAIM_FAILED, SOLVER_FAILED, OUTPUT_FAILED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 130
+"""Exit codes of the program."""
+
+PACKAGES_MISSING = 69
+"""Exit code of `report/__main__.py`, which has named the packages."""
 
 
 class LatconError(Exception):
@@ -28,6 +36,14 @@ class UnreadableFile(LatconError):
         super().__init__(f"{path}: {problem}")
         self.path = pathlib.Path(path)
         self.problem = problem
+
+
+def optional_package(module: str, purpose: str, package: str) -> Any:
+    """Imports a module of a package that not every user has; otherwise raises LatconError with the name of the package."""
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        raise LatconError(f"{purpose} the Python package {package}: {error}") from error
 
 
 class _EndOfProgram(BaseException):
@@ -94,7 +110,8 @@ class Interrupted(_EndOfProgram, KeyboardInterrupt):
 
 
 _BY_EXIT_CODE: dict[int, type[ProgramError] | type[Interrupted]] = {
-    1: InternalError, 2: BadInput, 3: ClaimFailed, 4: DidNotConverge, 5: OutputFailed, 130: Interrupted}
+    INTERNAL_ERROR: InternalError, BAD_INPUT: BadInput, CLAIM_FAILED: ClaimFailed, SOLVER_FAILED: DidNotConverge,
+    OUTPUT_FAILED: OutputFailed, INTERRUPTED: Interrupted}
 
 
 def error_of(exit_code: int, message: str, directory: pathlib.Path | None = None) -> ProgramError | Interrupted:

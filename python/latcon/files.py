@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
 import pathlib
 from collections.abc import Callable, Mapping, Sequence
@@ -52,8 +51,44 @@ def read_json(path: pathlib.Path) -> dict[str, Any]:
     return value
 
 
+def read_rows(path: pathlib.Path) -> list[dict[str, Any]]:
+    """Returns the rows of a `results.json`: claim, quantity, unit and verdict; numbers, None where they do not apply.
+
+    Raises
+    ------
+    UnreadableFile
+        If it is missing or damaged.
+    """
+    rows = read_json(path).get("claims")
+    if not isinstance(rows, list):
+        raise UnreadableFile(path, 'the list "claims" is missing')
+    found = []
+    for number, row in enumerate(rows, start=1):
+        where = f"row {number} of \"claims\""
+        try:
+            texts = {key: row[key] for key in ("claim", "quantity", "unit", "verdict")}
+            numbers = {key: checked_number(path, f"{where}: {key}", row[key])
+                       for key in ("lattice", "continuum", "theory", "error", "tolerance")}
+        except (KeyError, TypeError) as error:
+            raise UnreadableFile(path, f"{where} lacks {error}") from error
+        for key, value in texts.items():
+            if not isinstance(value, str):
+                raise UnreadableFile(path, f"{where}: {key} is {value!r}, not a string")
+        found.append({**texts, **numbers})
+    return found
+
+
+def checked_number(path: pathlib.Path, what: str, value: Any) -> float | None:
+    """Returns a number as the program writes it: null for none, the strings "nan", "inf", "-inf" for those that are not finite."""
+    if value is None:
+        return None
+    if value in ("nan", "inf", "-inf") or isinstance(value, (int, float)) and not isinstance(value, bool):
+        return float(value)
+    raise UnreadableFile(path, f"{what} is {value!r}, not a number")
+
+
 def read_table(path: pathlib.Path, units: Mapping[str, str]) -> pd.DataFrame:
-    """Returns the table in a CSV file of numbers.
+    """Returns the table in a CSV file of numbers; columns of whole numbers are integers.
 
     Parameters
     ----------
@@ -68,33 +103,21 @@ def read_table(path: pathlib.Path, units: Mapping[str, str]) -> pd.DataFrame:
         If it is missing, a cell is not a number, or rows differ in length.
     """
     import pandas as pd
-    text = read_text(path)
-    lines = text.splitlines()
-    if not lines:
-        raise UnreadableFile(path, "empty")
-    columns = lines[0].count(",")
-    for number, line in enumerate(lines[1:], start=2):
-        if line.count(",") != columns:
-            raise UnreadableFile(path, f"line {number} has {line.count(',') + 1} fields, the header has {columns + 1}")
-    try:
-        # The default converter is fast and may be off by the last bit.
-        table = pd.read_csv(io.StringIO(text), float_precision="round_trip")
-    except ValueError as error:
-        raise UnreadableFile(path, f"not a table: {error}") from error
-    for name in table:
-        if len(table) and not pd.api.types.is_numeric_dtype(table[name]):
-            raise UnreadableFile(path, f"column {name!r} has a cell that is not a number")
+    columns = read_columns(path, None, finite=False)
+    whole = [name for name, values in columns.items() if (values == np.floor(values)).all() and (np.abs(values) < 2**53).all()]
+    table = pd.DataFrame(columns).astype(dict.fromkeys(whole, np.int64))
     table.attrs["units"] = {name: units[name] for name in table if name in units}
     return table
 
 
-def read_columns(path: pathlib.Path, columns: Sequence[str], texts: Sequence[str] = (), finite: bool = True) -> dict[str, Any]:
+def read_columns(path: pathlib.Path, columns: Sequence[str] | None, texts: Sequence[str] = (), finite: bool = True
+                 ) -> dict[str, Any]:
     """Returns columns of a CSV file as arrays by name; other columns are ignored.
 
     Parameters
     ----------
     columns
-        Columns of numbers, all finite if `finite`.
+        Columns of numbers, all finite if `finite`; None: all.
     texts
         Columns of words.
 
@@ -104,22 +127,26 @@ def read_columns(path: pathlib.Path, columns: Sequence[str], texts: Sequence[str
         If it is missing, lacks a column, or a cell is not such a number.
     """
     rows = list(csv.reader(read_text(path).splitlines()))
-    header = rows[0] if rows else []
+    if not rows:
+        raise UnreadableFile(path, "empty")
+    header = rows[0]
+    columns = header if columns is None else columns
     if missing := [name for name in (*texts, *columns) if name not in header]:
         raise UnreadableFile(path, f"has no column {missing[0]!r}")
-    places = [header.index(name) for name in columns]
-    values = np.empty((len(rows) - 1, len(columns)))
     for line, row in enumerate(rows[1:], start=2):
         if len(row) != len(header):
             raise UnreadableFile(path, f"line {line} has {len(row)} fields, the header has {len(header)}")
+    cells = dict(zip(header, zip(*rows[1:]))) if rows[1:] else dict.fromkeys(header, ())
+    found: dict[str, Any] = {name: np.array(cells[name], dtype=object) for name in texts}
+    for name in columns:
         try:
-            values[line - 2] = [float(row[place]) for place in places]
+            found[name] = np.array(cells[name], dtype=float)
         except ValueError as error:
-            raise UnreadableFile(path, f"line {line}: {error}") from error
-        if finite and not np.isfinite(values[line - 2]).all():
+            raise UnreadableFile(path, f"column {name!r}: {error}") from error
+        if finite and not np.isfinite(found[name]).all():
+            line = 2 + int(np.argmin(np.isfinite(found[name])))
             raise UnreadableFile(path, f"line {line} holds a number that is not finite")
-    words = {name: np.array([row[header.index(name)] for row in rows[1:]], dtype=object) for name in texts}
-    return {**words, **dict(zip(columns, values.T))}
+    return found
 
 
 def if_present(read: Callable[..., Result], path: pathlib.Path, *arguments: Any, **options: Any) -> Result | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import os
+import pathlib
 import re
 import secrets
 import shutil
@@ -90,6 +91,11 @@ class FolderLock:
             if os.fstat(self._file).st_nlink == 1:
                 os.ftruncate(self._file, 0)
                 os.pwrite(self._file, os.fsencode(owner), 0)
+
+
+def absolute(path: str | os.PathLike[str]) -> pathlib.Path:
+    """Returns a path that is of use after a change of folder, with the home in place of a leading ``~``, as in a shell."""
+    return pathlib.Path(path).expanduser().absolute()
 
 
 def prepare_run(folder: str, is_begun: Callable[[], bool]) -> bool:

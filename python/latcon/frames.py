@@ -1,20 +1,24 @@
-"""Readers of fields in VTK files: frames of a lattice, and mean fields near the tip of a crack."""
+"""Fields in VTK files: frames of a lattice or a continuum, and mean fields near the tip of a crack."""
 from __future__ import annotations
 
 import dataclasses
 import os
 import pathlib
+import re
 from collections.abc import Collection, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import LatconError, UnreadableFile
+from .errors import UnreadableFile, optional_package
 from .files import read_series
 
 if TYPE_CHECKING:
     import xarray
+
+_UNITS = re.compile(rb'<P?DataArray [^>]*Name="(\w+)"[^>]* units="([^"]+)"')
+_READERS = {".vtu": "vtkXMLUnstructuredGridReader", ".pvtu": "vtkXMLPUnstructuredGridReader"}
 
 Floats = NDArray[np.float64]
 Field = NDArray[np.generic]
@@ -22,27 +26,29 @@ Field = NDArray[np.generic]
 
 @dataclasses.dataclass(frozen=True)
 class Frame:
-    """Sites and bonds of a lattice at one time.
+    """Sites and bonds of a lattice, or nodes and cells of a continuum, at one time.
 
     Attributes
     ----------
     time : float
-        Time t [s]; for a relaxed sheet 0 before and 1 after relaxation.
+        Time t [s]; for a relaxed sheet 0 before and 1 after relaxation; for an equilibrium of the continuum the load factor.
     reference : ndarray, shape (sites, 2)
-        Undeformed positions X, Y [m].
+        Undeformed positions X, Y of the sites or nodes [m]. Cells of finite elements have nodes of their own.
     position : ndarray, shape (sites, 2)
         Current positions x, y [m].
     bonds : ndarray of int, shape (bonds, 2)
-        Sites at the ends of each bond, as rows of `reference`. Reduced frames of a motion have no bonds.
+        Sites at the ends of each bond, as rows of `reference`. Reduced frames of a motion, and a continuum, have no bonds.
     stretch : ndarray, shape (bonds,)
         Current over undeformed length λ.
     fields : dict of ndarray
-        Fields at the sites, with the names of docs/reference-files.md. Vectors have shape (sites, 2), tensors (sites, 2, 2)
+        Fields at the sites or nodes, with the names of docs/reference-files.md. Vectors have shape (sites, 2), tensors (sites, 2, 2)
         with the current index first: the in-plane components.
     bond_fields : dict of ndarray
         Fields of the bonds, likewise.
     units : dict
         SI units of the fields that are quantities.
+    cells : ndarray of int, shape (cells, nodes per cell)
+        Nodes of each cell of a continuum, as rows of `reference` in the order of VTK: the four corners first. A lattice has none.
     """
 
     time: float
@@ -53,6 +59,26 @@ class Frame:
     fields: dict[str, Field]
     bond_fields: dict[str, Field]
     units: dict[str, str]
+    cells: NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.empty((0, 0), dtype=np.int64))
+
+    def to_pyvista(self) -> Any:
+        """Returns a `pyvista.PolyData` of sites and bonds or a `pyvista.UnstructuredGrid` of cells, undeformed, in SI units."""
+        return optional_package("pyvista", "to_pyvista needs", "pyvista").wrap(_data_set(self))
+
+    def to_meshio(self) -> Any:
+        """Returns a `meshio.Mesh` of bonds or cells, undeformed, in SI units; fields have the shapes of `fields`, `bond_fields`."""
+        meshio = optional_package("meshio", "to_meshio needs", "meshio (Debian: python3-meshio)")
+        kind = {3: "triangle", 4: "quad"}.get(self.cells.shape[1], "VTK_LAGRANGE_QUADRILATERAL")
+        return meshio.Mesh(self.reference, [(kind, self.cells) if len(self.cells) else ("line", self.bonds)], dict(self.fields),
+                           {name: [values] for name, values in self.bond_fields.items()})
+
+    def to_ase(self) -> Any:
+        """Returns `ase.Atoms` of type X at the current positions [Å], with `arrays` of the fields in SI units and `info["time"]` [s]."""
+        ase = optional_package("ase", "to_ase needs", "ase (Debian: python3-ase)")
+        atoms = ase.Atoms(numbers=np.zeros(len(self.position), int), positions=_spatial(1e10 * self.position), info={"time": self.time})
+        for name, values in self.fields.items():
+            atoms.set_array(name, np.asarray(values).copy())
+        return atoms
 
 
 class Frames(Sequence[Frame]):
@@ -96,59 +122,92 @@ class Frames(Sequence[Frame]):
 
 
 def read_frame(path: pathlib.Path, time: float, only: Collection[str] | None = None) -> Frame:
-    """Reads a frame of a lattice, a `.vtp` file; `only`: the fields to read, None for all.
+    """Reads a frame of a lattice, a `.vtp` file, or of a continuum, also `.vtu`; `only`: the fields to read, None for all.
 
     Raises
     ------
     UnreadableFile
-        If the file is missing or damaged, or is not a frame of a lattice.
+        If the file is missing or damaged, or is not a frame.
     """
-    sheet = read_vtk(path, "vtkXMLPolyDataReader", only)
+    sheet = read_vtk(path, _READERS.get(path.suffix, "vtkXMLPolyDataReader"), only)
     if sheet.GetNumberOfPoints() == 0:  # VTK's result for a damaged file
         raise UnreadableFile(path, "truncated, damaged, or without sites")
-    numpy_of = _converter()
     fields, units = arrays_of(sheet.GetPointData())
     if "displacement" not in fields:
-        raise UnreadableFile(path, "not a frame of a lattice: the field 'displacement' is missing")
+        raise UnreadableFile(path, "not a frame: the field 'displacement' is missing")
     cell_fields, cell_units = arrays_of(sheet.GetCellData())
-    sites = sheet.GetNumberOfVerts()  # cell data begin with the vertices
+    is_grid = sheet.IsA("vtkUnstructuredGrid")
+    cells = _nodes(path, sheet.GetCells() if is_grid else sheet.GetPolys())
+    ends = np.empty((0, 2), dtype=np.int64) if is_grid else _nodes(path, sheet.GetLines())
+    sites = sheet.GetNumberOfCells() if len(cells) else sheet.GetNumberOfVerts()  # cell data begin with the vertices
     bond_fields = {name: values[sites:] for name, values in cell_fields.items()}
-    ends = np.empty((0, 2), dtype=np.int64)
-    if sheet.GetNumberOfLines():
-        ends = numpy_of(sheet.GetLines().GetConnectivityArray()).astype(np.int64).reshape(-1, 2)
-    reference = numpy_of(sheet.GetPoints().GetData())[:, :2].astype(float)
+    reference = _converter()(sheet.GetPoints().GetData())[:, :2].astype(float)
     position, stretch = reference + fields["displacement"], bond_fields.get("stretch", np.empty(0))
     if len(ends) != len(stretch) or not np.isfinite(position).all() or not np.isfinite(stretch).all():
         raise UnreadableFile(path, "damaged: its bonds or positions are inconsistent")
-    return Frame(time, reference, position, ends, stretch, fields, bond_fields, {**cell_units, **units})
+    if is_grid and not units:  # deal.II writes them where VTK does not read them
+        units = {name.decode(): unit.decode() for name, unit in _UNITS.findall(path.read_bytes())}
+    return Frame(time, reference, position, ends, stretch, fields, bond_fields, {**cell_units, **units}, cells)
+
+
+def _nodes(path: pathlib.Path, cells: Any) -> NDArray[np.int64]:
+    if not (count := cells.GetNumberOfCells()):
+        return np.empty((0, 2), dtype=np.int64)
+    connectivity = _converter()(cells.GetConnectivityArray()).astype(np.int64)
+    if len(connectivity) % count:
+        raise UnreadableFile(path, "damaged, or with cells of different kinds")
+    return connectivity.reshape(count, -1)
 
 
 def write_frame(path: str | os.PathLike[str], frame: Frame) -> None:
-    """Writes a frame of a lattice as a `.vtp` file, which :func:`read_frame` reads."""
-    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-    from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
-    sheet, points, sites, bonds = vtkPolyData(), vtkPoints(), vtkCellArray(), vtkCellArray()
-    points.SetData(numpy_to_vtk(np.column_stack((frame.reference, np.zeros(len(frame.reference)))), deep=True))
-    sites.SetData(1, numpy_to_vtkIdTypeArray(np.arange(len(frame.reference)), deep=True))
-    bonds.SetData(2, numpy_to_vtkIdTypeArray(frame.bonds.astype(np.int64).ravel(), deep=True))
-    sheet.SetPoints(points)
-    sheet.SetVerts(sites)
-    sheet.SetLines(bonds)
-    of_cells: dict[str, Any] = {"stretch": np.concatenate((np.ones(len(frame.reference)), frame.stretch))}  # vertices first
-    of_sites: dict[str, Any] = frame.fields
-    for data, fields in ((sheet.GetPointData(), of_sites), (sheet.GetCellData(), of_cells)):
-        for name, values in fields.items():
-            three = np.column_stack((values, np.zeros(len(values)))) if values.ndim == 2 else values
-            array = numpy_to_vtk(np.ascontiguousarray(three), deep=True)
-            array.SetName(name)
-            data.AddArray(array)
-    writer = vtkXMLPolyDataWriter()
+    """Writes a frame of a lattice as a `.vtp` file, of a continuum as `.vtu`, which :func:`read_frame` reads."""
+    from vtkmodules.vtkIOXML import vtkXMLDataSetWriter
+    writer = vtkXMLDataSetWriter()
     writer.SetFileName(os.fsencode(path))
-    writer.SetInputData(sheet)
+    writer.SetInputData(_data_set(frame))
     if not writer.Write():
         raise OSError(5, "the frame cannot be written", os.fspath(path))
+
+
+def _data_set(frame: Frame) -> Any:
+    """Returns the undeformed frame with its fields as VTK holds it: vertices and lines, or cells."""
+    from vtkmodules import vtkCommonDataModel as vtk
+    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+    from vtkmodules.vtkCommonCore import vtkDataArray, vtkPoints
+
+    def cells(nodes: Any) -> Any:
+        array = vtk.vtkCellArray()
+        array.SetData(nodes.shape[1], numpy_to_vtkIdTypeArray(nodes.astype(np.int64).ravel(), deep=True))
+        return array
+
+    count, points = len(frame.reference), vtkPoints()
+    points.SetData(numpy_to_vtk(_spatial(frame.reference), deep=True))
+    if len(frame.cells):
+        sheet, n_nodes = vtk.vtkUnstructuredGrid(), frame.cells.shape[1]
+        kind = {3: vtk.VTK_TRIANGLE, 4: vtk.VTK_QUAD}.get(n_nodes, vtk.VTK_LAGRANGE_QUADRILATERAL)
+        sheet.SetCells(kind, cells(frame.cells))
+    else:
+        sheet = vtk.vtkPolyData()
+        sheet.SetVerts(cells(np.arange(count)[:, None]))
+        sheet.SetLines(cells(frame.bonds))
+    sheet.SetPoints(points)
+    # Cell data begin with the vertices.
+    of_cells = {name: np.concatenate((np.full((count, *values.shape[1:]), 1.0 if name == "stretch" else 0.0), values))
+                for name, values in frame.bond_fields.items()}
+    for data, fields in ((sheet.GetPointData(), frame.fields), (sheet.GetCellData(), of_cells)):
+        for name, values in fields.items():
+            array = numpy_to_vtk(_spatial(values), deep=True)
+            array.SetName(name)
+            if name in frame.units:
+                array.GetInformation().Set(vtkDataArray.UNITS_LABEL(), frame.units[name])
+            data.AddArray(array)
+    return sheet
+
+
+def _spatial(values: Field) -> Field:
+    """Pads vectors and tensors in the plane with zeros, to three and nine components."""
+    padded = np.pad(values, [(0, 0)] + [(0, 1)] * (values.ndim - 1))
+    return np.ascontiguousarray(padded.reshape(len(values), -1) if values.ndim == 3 else padded)
 
 
 def read_near_tip(path: pathlib.Path) -> xarray.Dataset:
@@ -167,14 +226,12 @@ def read_near_tip(path: pathlib.Path) -> xarray.Dataset:
     LatconError
         If xarray is not installed.
     """
-    try:
-        import xarray
-    except ImportError as error:
-        raise LatconError("fields near the tip need the Python package xarray (Debian: python3-xarray)") from error
+    library = optional_package("xarray", "fields near the tip need", "xarray (Debian: python3-xarray)")
     X, Y, fields, units, samples = read_image(path)
     dimensions = ("Y", "X", "i", "J")
-    data = xarray.Dataset({name: (dimensions[:values.ndim], values, {"units": units[name]} if name in units else {})
-                           for name, values in fields.items()}, {"X": X, "Y": Y})
+    data: xarray.Dataset = library.Dataset(
+        {name: (dimensions[:values.ndim], values, {"units": units[name]} if name in units else {})
+         for name, values in fields.items()}, {"X": X, "Y": Y})
     for name in "XY":
         data[name].attrs["units"] = "m"
     if samples is not None:
@@ -204,11 +261,8 @@ def read_image(path: pathlib.Path) -> tuple[Floats, Floats, dict[str, Any], dict
 
 def read_vtk(path: pathlib.Path, reader_name: str, only: Collection[str] | None = None) -> Any:
     """Returns the data set in a VTK file, with the arrays of some names, or all."""
-    try:
-        from vtkmodules import vtkIOXML
-        from vtkmodules.vtkCommonCore import vtkObject
-    except ImportError as error:
-        raise LatconError("frames need the Python package vtk (Debian: python3-vtk9)") from error
+    vtkIOXML = optional_package("vtkmodules.vtkIOXML", "frames need", "vtk (Debian: python3-vtk9)")
+    from vtkmodules.vtkCommonCore import vtkObject
     if not path.exists():
         raise UnreadableFile(path, "no such file")
     vtkObject.GlobalWarningDisplayOff()  # the callers report damaged files

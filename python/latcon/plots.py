@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .errors import LatconError
+from .errors import optional_package
 from .frames import Floats, Frame
 
 if TYPE_CHECKING:
@@ -19,32 +19,29 @@ _AXES = {"x": 0, "y": 1}
 def _axes(ax: matplotlib.axes.Axes | None) -> matplotlib.axes.Axes:
     if ax is not None:
         return ax
-    try:
-        import matplotlib.pyplot as plt
-    except ImportError as error:
-        raise LatconError("plots need the Python package matplotlib (Debian: python3-matplotlib)") from error
+    plt = optional_package("matplotlib.pyplot", "plots need", "matplotlib (Debian: python3-matplotlib)")
     return plt.subplots(figsize=(10, 5), layout="constrained")[1]
 
 
-def draw_path(run: Run, ax: matplotlib.axes.Axes | None) -> matplotlib.axes.Axes:
-    """Draws the path of the tip and the broken bonds in the undeformed sheet."""
+def draw_path(run: Run, ax: matplotlib.axes.Axes | None, **style: Any) -> matplotlib.axes.Axes:
+    """Draws the path of the tip, in a style of matplotlib's lines, and the broken bonds in the undeformed sheet."""
     ax = _axes(ax)
     broken = run.broken_bonds
     ax.scatter(100 * broken["X"], 100 * broken["Y"], s=2, color="0.6", linewidths=0, label="broken bonds")
-    ax.plot(100 * run.path["X"], 100 * run.path["Y"], label=f"tip, {run.crack.speed_lagrangian}")
+    ax.plot(100 * run.path["X"], 100 * run.path["Y"], **{"label": f"tip, {run.crack.speed_lagrangian}", **style})
     ax.set(xlabel="X, undeformed [cm]", ylabel="Y, undeformed [cm]", title=f"crack path: {run.crack.pattern}")
     ax.legend(loc="best")
     return ax
 
 
-def draw_sheet(frame: Frame, color: str, ax: matplotlib.axes.Axes | None) -> matplotlib.axes.Axes:
-    """Draws the bonds of a frame, coloured by a field."""
+def draw_sheet(frame: Frame, color: str, ax: matplotlib.axes.Axes | None, **style: Any) -> matplotlib.axes.Axes:
+    """Draws the bonds of a frame, coloured by a field, in a style of matplotlib's LineCollection."""
     from matplotlib.collections import LineCollection
     ax = _axes(ax)
     values = bond_values(frame, color)
     order = np.argsort(values)  # the largest on top
-    lines = LineCollection(list(100 * frame.position[frame.bonds[order]]), array=values[order], linewidths=0.5,
-                           rasterized=True)
+    lines = LineCollection(list(100 * frame.position[frame.bonds[order]]), array=values[order],
+                           **{"linewidths": 0.5, "rasterized": True, **style})
     ax.add_collection(lines)
     ax.autoscale_view()
     ax.set(aspect="equal", xlabel="x [cm]", ylabel="y [cm]", title=f"t = {1e3 * frame.time:.4g} ms")

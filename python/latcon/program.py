@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import IO
 
-from .errors import ProgramNotFound, error_of
+from .errors import OUTPUT_FAILED, PACKAGES_MISSING, ProgramNotFound, error_of
 
 Progress = bool | Callable[[str], None]
 
@@ -71,10 +71,31 @@ def ask(*arguments: str) -> str:
     ProgramError
         If the program ends with an error.
     """
-    ended = subprocess.run([find_program(), *arguments], capture_output=True, text=True, encoding="utf-8", errors="replace",
-                           stdin=subprocess.DEVNULL, check=False)
+    return _output([find_program(), *arguments])
+
+
+def draw_report(directory: pathlib.Path) -> None:
+    """Draws `report.html` of an output directory, in a process of its own.
+
+    Raises
+    ------
+    ProgramError
+        If that fails; with exit code 5 also if a package is missing.
+    """
+    _output(page_command("report", directory))
+
+
+def page_command(kind: str, directory: str | os.PathLike[str]) -> list[str | os.PathLike[str]]:
+    """Returns the command that draws a page, see `report/__main__.py`, without modules of the user."""
+    return [sys.executable, "-sP", pathlib.Path(__file__).parent / "report" / "__main__.py", kind, directory, "--quiet"]
+
+
+def _output(command: Sequence[str | os.PathLike[str]]) -> str:
+    ended = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", errors="replace", stdin=subprocess.DEVNULL,
+                           check=False)
     if ended.returncode != 0:
-        raise error_of(ended.returncode, _message(ended.stderr.strip(), ended.stdout))
+        code = OUTPUT_FAILED if ended.returncode == PACKAGES_MISSING else ended.returncode
+        raise error_of(code, _message(ended.stderr.strip(), ended.stdout))
     return ended.stdout
 
 
@@ -98,45 +119,86 @@ def run(arguments: Sequence[str], directory: pathlib.Path, progress: Progress) -
     ProgramError, Interrupted
         If the exit code of the program is not 0.
     """
-    reading, writing = os.pipe()
     indicator = progress_indicator(progress)
-    with open(reading, "rb") as updates, tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
+    job = Process(arguments, directory)
+    _running.append(job)
+    try:
+        job.follow(indicator)
+    finally:
+        _running.remove(job)
+        if job.is_running:  # an exception of the progress function
+            job.interrupt()
+            job.child.wait()
+        indicator.close()
+    job.end()
+
+
+_running: list[Process] = []  # by run
+
+
+def interrupt_runs(directory: pathlib.Path) -> None:
+    """Interrupts the runs that threads of this process have begun for a directory; a Ctrl-C reaches the main thread alone."""
+    for job in list(_running):
+        if job.directory == directory and job.is_running:
+            job.interrupt()
+
+
+class Process:
+    """Command of the program that runs in a session of its own.
+
+    Attributes
+    ----------
+    progress : str
+        Last progress line; empty before the first.
+    """
+
+    def __init__(self, arguments: Sequence[str], directory: pathlib.Path) -> None:
+        self.directory, self.progress = directory, ""
+        reading, writing = os.pipe()
+        self._updates, self._output, self._errors = open(reading, "rb"), tempfile.TemporaryFile(), tempfile.TemporaryFile()
         try:
-            child = subprocess.Popen([find_program(), *arguments], stdin=subprocess.DEVNULL, stdout=output, stderr=errors,
-                                     env=os.environ | {"LATCON_PROGRESS": str(writing)}, pass_fds=[writing], start_new_session=True)
+            self.child = subprocess.Popen(
+                [find_program(), *arguments], stdin=subprocess.DEVNULL, stdout=self._output, stderr=self._errors,
+                env=os.environ | {"LATCON_PROGRESS": str(writing)}, pass_fds=[writing], start_new_session=True)
         finally:
             os.close(writing)
-        try:
-            _follow(child, updates, indicator)
-        finally:
-            if child.poll() is None:  # an exception of the progress function
-                child.send_signal(signal.SIGINT)
-                child.wait()
-            indicator.close()
-        errors.seek(0)
-        lines = _COLOUR.sub("", errors.read().decode("utf-8", "replace")).splitlines()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether the program has not ended."""
+        return self.child.poll() is None
+
+    def interrupt(self) -> None:
+        """Sends SIGINT, on which the program writes a checkpoint and all results, and ends."""
+        self.child.send_signal(signal.SIGINT)
+
+    def follow(self, indicator: _Shower) -> None:
+        """Shows the progress of the program until it has ended."""
+        interrupted = False
+        while True:
+            try:
+                if not (line := self._updates.readline()):
+                    self.child.wait()
+                    return
+                update = json.loads(line)
+                self.progress = update["text"]
+                indicator.line(**update)
+            except KeyboardInterrupt:
+                if interrupted:
+                    self.child.kill()
+                elif self.is_running:
+                    self.interrupt()
+                interrupted = True
+
+    def end(self) -> None:
+        """Prints the messages of the program that has ended, or raises the error."""
+        self._errors.seek(0)
+        lines = _COLOUR.sub("", self._errors.read().decode("utf-8", "replace")).splitlines()
         messages = "\n".join(line.rstrip() for line in lines if line.strip())
-        if child.returncode != 0:
-            raise error_of(child.returncode, _message(messages, _tail(output)), directory)
-    if messages:
-        print(messages, file=sys.stderr)
-
-
-def _follow(child: subprocess.Popen[bytes], updates: IO[bytes], indicator: _Shower) -> None:
-    """Shows the progress of the program until it has ended."""
-    interrupted = False
-    while True:
-        try:
-            if not (line := updates.readline()):
-                child.wait()
-                return
-            indicator.line(**json.loads(line))
-        except KeyboardInterrupt:
-            if interrupted:
-                child.kill()
-            elif child.poll() is None:
-                child.send_signal(signal.SIGINT)
-            interrupted = True
+        if self.child.returncode != 0:
+            raise error_of(self.child.returncode, _message(messages, _tail(self._output)), self.directory)
+        if messages:
+            print(messages, file=sys.stderr)
 
 
 def _tail(output: IO[bytes]) -> str:

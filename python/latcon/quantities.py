@@ -10,7 +10,8 @@ _UNCERTAINTY = "_uncertainty"
 
 _TABLE = (
     ("1", "zeta"), ("m/s", "speed_lagrangian+ speed_laboratory+"), ("m", "wavelength+"), ("1", "wavelength_over_d+"), ("m", "amplitude+"),
-    ("1", "amplitude_over_d+"), ("m", "crest_amplitude+"), ("1", "crest_amplitude_over_d+ periods"), ("m", "window_begin window_end"),
+    ("1", "amplitude_over_d+"), ("m", "crest_amplitude+"), ("1", "crest_amplitude_over_d+ periods"), ("m", "path_rms window_begin window_end"),
+    ("1/m", "path_growth+"), ("J/m^2", "viscous_per_area broken_per_area"),
     ("1", "branched_fraction bonds_broken detached_sites detached_fragments largest_fragment overstretched_bonds"),
     ("m", "bridged_length flank_damage_depth"), ("1", "flank_damage_share"), ("s", "end_time"), ("1", "energy_imbalance samples"),
     ("m^2", "negative_zone_area+ negative_zone_area_of_samples+"), ("m", "negative_zone_length+ negative_zone_distance+"),
@@ -27,7 +28,7 @@ _TABLE = (
 RECORDED: dict[str, str] = {name: unit for unit, words in _TABLE for word in words.split()
                             for name in ((word[:-1], word[:-1] + _UNCERTAINTY) if word[-1] == "+" else (word,))}
 """SI units of the quantities that a study records of a run, in the order of `study.csv`: numbers in `crack.json` and
-`near_tip.json`, and zeta and lengths over d, which follow from those and the case."""
+`near_tip.json`, and those that follow from these, the case and the tables: zeta, lengths over d, numbers of the path, energies per area."""
 UNITS: dict[str, str] = RECORDED | dict.fromkeys(("X", "Y", "sampled_from", "sampled_to"), "m")
 """SI units of the numbers in `crack.json` and `near_tip.json`; all others are pure numbers."""
 
@@ -67,13 +68,28 @@ class Value:
 
 def quantity_text(value: float, uncertainty: float | None, unit: str) -> str:
     """Formats a number with a readable unit: lengths in cm, areas in mm², times in ms."""
-    scale, shown = SHOWN.get(unit, (1.0, "" if unit == "1" else unit))
-    number = number_text(scale * value, None if uncertainty is None else scale * uncertainty)
-    return number + ("" if shown in ("", "°") else " ") + shown
+    scale, shown = shown_unit(unit)
+    return number_text(value, uncertainty, scale=scale) + ("" if shown in ("", "°") else " ") + shown
 
 
-def number_text(value: float, uncertainty: float | None, sign: str = "±") -> str:
-    """Formats a number to the digits that its uncertainty justifies, "20.06 ± 0.23"; four digits if there is none."""
+def shown_unit(unit: str) -> tuple[float, str]:
+    """Returns the readable unit of a quantity, with the factor to it from its SI unit; empty for a pure number."""
+    return SHOWN.get(unit, (1.0, "" if unit == "1" else unit))
+
+
+def number_text(value: float, uncertainty: float | None, sign: str = "±", scale: float = 1.0) -> str:
+    """Formats a number to the digits that its uncertainty justifies, "20.06 ± 0.23"; four digits if there is none.
+
+    Parameters
+    ----------
+    value, uncertainty
+        Number and one standard deviation.
+    sign
+        Between both.
+    scale
+        Factor for both.
+    """
+    value, uncertainty = scale * value, None if uncertainty is None else scale * uncertainty
     if uncertainty is None or not 1e-12 * abs(value) < uncertainty < math.inf:  # of equal values it is round-off
         return f"{value:.4g}"
     digits = min(max(1 - math.floor(math.log10(uncertainty)), 0), 12)

@@ -7,10 +7,11 @@ import pathlib
 from typing import TYPE_CHECKING, Any
 
 from .case import Case
-from .errors import UnreadableFile
-from .files import read_json, read_table
+from .errors import ProgramNotFound, UnreadableFile
+from .files import read_json, read_rows, read_table, read_text
+from .folder import absolute
 from .frames import Frames, read_near_tip
-from .program import ask
+from .program import draw_report, find_program
 from .quantities import Quantities
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class Run:
     """
 
     def __init__(self, directory: str | os.PathLike[str]) -> None:
-        self.directory = pathlib.Path(directory).absolute()  # of use after a change of folder
+        self.directory = absolute(directory)
         self.info  # raises if the directory is not that of a run
 
     def __repr__(self) -> str:
@@ -60,10 +61,14 @@ class Run:
 
     @functools.cached_property
     def case(self) -> Case:
-        """The resolved case."""
+        """The resolved case. Without the program, values are those of `run.json`."""
         path = self.directory / "case.prm"
         if not path.is_file():
             raise UnreadableFile(path, "no such file")
+        try:
+            find_program()
+        except ProgramNotFound:
+            return Case.of_run(path, self.info.get("entries", {}), read_text(path))
         return Case(path)
 
     @functools.cached_property
@@ -111,20 +116,14 @@ class Run:
         ``verdict`` (``holds``, ``fails``, ``reported``); numbers that do not apply are NaN. The first three numbers are in
         ``unit``, error and tolerance as the claim defines them.
         """
-        import pandas as pd
-        path = self.directory / "results.json"
-        rows = read_json(path).get("claims")
-        if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-            raise UnreadableFile(path, "has no list 'claims'")
-        table = pd.DataFrame(rows, columns=list(_RESULT_COLUMNS))
-        for name in ("lattice", "continuum", "theory", "error", "tolerance"):
-            table[name] = table[name].astype(float)
-        return table
+        return results_table(self.directory / "results.json")
 
     @functools.cached_property
     def frames(self) -> Frames:
-        """Frames of the lattice, `lattice.pvd`: ``run.frames[-1]`` is the last :class:`Frame`."""
-        return Frames(self.directory / "lattice.pvd")
+        """Frames of the lattice, `lattice.pvd`, otherwise of the continuum: ``run.frames[-1]`` is the last :class:`Frame`."""
+        continuum = self.directory / "continuum.pvd"
+        lattice = self.directory / "lattice.pvd"
+        return Frames(continuum if continuum.exists() and not lattice.exists() else lattice)
 
     @functools.cached_property
     def motion(self) -> Frames:
@@ -146,19 +145,21 @@ class Run:
         """
         return read_near_tip(self.directory / f"near_tip{'_folded' if folded else ''}.vti")
 
-    def plot_path(self, ax: matplotlib.axes.Axes | None = None) -> matplotlib.axes.Axes:
+    def plot_path(self, ax: matplotlib.axes.Axes | None = None, **style: Any) -> matplotlib.axes.Axes:
         """Draws the path of the tip and the broken bonds in the undeformed sheet [cm].
 
         Parameters
         ----------
         ax
             Axes to draw in; default: those of a new figure.
+        **style
+            Arguments of matplotlib's ``Axes.plot`` for the path, such as ``color`` or ``label``.
         """
         from .plots import draw_path
-        return draw_path(self, ax)
+        return draw_path(self, ax, **style)
 
-    def plot_sheet(self, frame: int = -1, color: str = "stretch", ax: matplotlib.axes.Axes | None = None
-                   ) -> matplotlib.axes.Axes:
+    def plot_sheet(self, frame: int = -1, color: str = "stretch", ax: matplotlib.axes.Axes | None = None,
+                   **style: Any) -> matplotlib.axes.Axes:
         """Draws the bonds of the sheet in the current configuration [cm].
 
         Parameters
@@ -171,19 +172,21 @@ class Run:
             ``"cauchy_stress yy"``.
         ax
             Axes to draw in; default: those of a new figure.
+        **style
+            Arguments of matplotlib's ``LineCollection``, such as ``cmap``, ``clim`` or ``linewidths``.
         """
         from .plots import draw_sheet
-        return draw_sheet(self.frames[frame], color, ax)
+        return draw_sheet(self.frames[frame], color, ax, **style)
 
     def to_html(self) -> pathlib.Path:
-        """Creates `report.html` with ``latcon report`` and returns its path.
+        """Creates `report.html` as ``latcon report`` does and returns its path.
 
         Raises
         ------
         ProgramError
             If the report cannot be made.
         """
-        ask("report", os.fspath(self.directory), "--quiet")
+        draw_report(self.directory)
         return self.directory / "report.html"
 
 
@@ -196,3 +199,9 @@ def open_run(directory: str | os.PathLike[str]) -> Run:
         If the directory is not that of a run.
     """
     return Run(directory)
+
+
+def results_table(path: pathlib.Path) -> pd.DataFrame:
+    """Returns the rows of a `results.json` as :attr:`Run.results`."""
+    import pandas as pd
+    return pd.DataFrame(read_rows(path), columns=list(_RESULT_COLUMNS)).astype(dict.fromkeys(_RESULT_COLUMNS[3:8], float))

@@ -15,6 +15,9 @@ from .program import ask, find_program
 EntryValue = Union[float, int, bool, str, list[float], None]
 """Value of an entry in SI units; None is ``auto``."""
 
+SEED_ENTRY = "Lattice/noise seed"
+"""Entry that the seeds of a run set."""
+
 _FORMAT_VERSION = 1
 
 

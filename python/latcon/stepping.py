@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .case import Case
-from .commands import CaseLike
+from .commands import CaseLike, as_case
 from .errors import LatconError
 from .folder import write_atomically
 from .frames import Floats, Frame, write_frame
@@ -61,7 +61,7 @@ class Simulation:
                  side: str = "lattice") -> None:
         if side not in ("lattice", "continuum"):
             raise ValueError(f"side must be lattice or continuum, not {side!r}")
-        self.case = case if isinstance(case, Case) else Case(case)
+        self.case = as_case(case)
         self._sheet = _module().Sheet(self.case.text(), side == "continuum")
         if checkpoint is not None:
             with np.load(checkpoint, allow_pickle=False) as stored:

@@ -29,7 +29,7 @@ TEST(DynamicSolver, NewtonIsQuadraticWithViscosityAtFiniteStrain)
   DynamicSettings settings{2e-3}; // long, so that the predictor is poor
   settings.degree = 2;
   settings.rule = NewmarkParameters::generalised_alpha(0.7);
-  const FibreViscosity viscosity = network_viscosity(200.);
+  const FibreViscosity viscosity = network_viscosity(200., 0.01);
   DynamicSolver solver(mesh, Constitution(problem.law, problem.gradient), problem.conditions(), {density, 0.01},
                        settings, &viscosity, Problem::load_factor);
   solver.start();
@@ -55,7 +55,7 @@ TEST(DynamicSolver, NewtonIsQuadraticWithViscosityAtFiniteStrain)
 TEST(DynamicSolver, GmresAgreesWithTheDirectSolver)
 {
   const Problem problem;
-  const FibreViscosity viscosity = network_viscosity(200.);
+  const FibreViscosity viscosity = network_viscosity(200., 0.01);
   const auto moved = [&](const dealii::types::global_dof_index direct_limit)
   {
     Mesh mesh(MPI_COMM_SELF);

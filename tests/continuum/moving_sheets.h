@@ -37,14 +37,14 @@ inline std::shared_ptr<Field> wave(const Tensor<1, 2> &polarisation)
   return std::make_shared<Field>([=](const Point<2> &X) { return std::cos(k_wave * X[0]) * polarisation; });
 }
 
-// Dashpots along the bonds of rubber_network.
-inline latcon::continuum::FibreViscosity network_viscosity(const double eta)
+// Dashpots along the bonds of rubber_network; with a micro-inertia length, also their gradient part, of bonds
+// between neighbours at 1/0.6 of that length.
+inline latcon::continuum::FibreViscosity network_viscosity(const double eta, const double micro_length = 0.)
 {
-  const latcon::continuum::CauchyBorn network = rubber_network();
   std::vector<latcon::continuum::FibreDashpot> dashpots;
-  for (const auto &family : network.families())
-    dashpots.push_back({family.direction, family.weight, eta});
-  return latcon::continuum::FibreViscosity(dashpots);
+  for (const auto &bond : rubber_bonds(micro_length / 0.6))
+    dashpots.push_back({bond.fibre.direction, bond.fibre.weight, eta, bond.length});
+  return latcon::continuum::FibreViscosity(dashpots, micro_length);
 }
 
 // Maxwell branches of equal moduli along the bonds of rubber_network.
@@ -60,12 +60,13 @@ inline latcon::continuum::FibreMemory network_memory(const double modulus, const
   }
   return latcon::continuum::FibreMemory(families);
 }
-// Problem with all features: a moving held edge, a traction, a weak normal gradient, a gradient law, viscosity.
+// Problem with all features: a moving held edge, a traction, a weak normal gradient, a gradient law, viscosity
+// with a gradient part.
 struct Problem
 {
   latcon::continuum::CauchyBorn law = rubber_network();
   latcon::continuum::IsotropicGradient gradient{5e5, 0.02};
-  latcon::continuum::FibreViscosity viscosity = network_viscosity(20.);
+  latcon::continuum::FibreViscosity viscosity = network_viscosity(20., 0.01);
 
   latcon::continuum::BoundaryConditions conditions() const
   {

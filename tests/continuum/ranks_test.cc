@@ -265,16 +265,16 @@ struct Motion
   Tensor<1, 2> momentum;
 };
 
-// Sheet with a shaken edge, a gradient law, viscosity, loads and generalised-alpha; solved directly if the sheet is
+// Sheet with a shaken edge, a gradient law, viscosity with a gradient part, loads and generalised-alpha; solved directly if the sheet is
 // periodic across, otherwise by GMRES.
 Motion motion(const MPI_Comm communicator, const bool is_periodic)
 {
   const continuum::CauchyBorn law = rubber_network();
   const continuum::IsotropicGradient gradient(5e5, 0.01);
   std::vector<continuum::FibreDashpot> dashpots;
-  for (const auto &family : law.families())
-    dashpots.push_back({family.direction, family.weight, 50.});
-  const continuum::FibreViscosity viscosity(dashpots);
+  for (const auto &bond : rubber_bonds(0.015))
+    dashpots.push_back({bond.fibre.direction, bond.fibre.weight, 50., bond.length});
+  const continuum::FibreViscosity viscosity(dashpots, 0.01);
   Mesh mesh(communicator);
   continuum::make_rectangle(mesh, {length, height, 8, 6, false, is_periodic});
   continuum::BoundaryConditions conditions;

@@ -15,11 +15,12 @@ SITE = BUILD / "docs" / "html"
 THEORY = sorted((ROOT / "docs").glob("theory*.md"))
 
 # Script that writes to the title of a page, once its formulas are typeset: their number, those that MathJax does not know, and
-# equations and code that are wider than their boxes.
+# equations and code that are wider than their boxes, and a page that is wider than the window.
 MEASURE = """<script>addEventListener("load", () => MathJax.Hub.Queue(() => {
   const shown = [...document.querySelectorAll(".MathJax_Display")];
   const wrong = [...document.querySelectorAll(".merror, .MathJax_Error, .MathJax [mathcolor='red']")];
   const cut = [...document.querySelectorAll("div.math, div.highlight pre")].filter(box => box.scrollWidth > box.clientWidth + 1);
+  if (document.documentElement.scrollWidth > innerWidth + 1) cut.push(document.querySelector("h1"));
   document.title = [shown.length, ...[...wrong, ...cut].map(box => box.textContent.slice(0, 60))].join("|");
 }));</script>"""
 
@@ -96,6 +97,7 @@ def test_equations_are_typeset_and_fit_a_laptop(pages):
         count, found = shown(f"{path.stem}.html", 1280)
         assert count == pages[f"{path.stem}.html"].count("math notranslate nohighlight\"") - len(
             re.findall(r'<span class="math', pages[f"{path.stem}.html"])) and found == [], path.stem
+    assert shown("model.html", 1100)[1] == []  # beside the narrowest sidebar
     assert shown("theory.html", 600)[1] != []  # boxes that do not fit are detected
     (SITE / "wrong.html").write_text(pages["theory.html"].replace(r"\rho", r"\rhoo"), encoding="utf-8")
     try:

@@ -87,38 +87,3 @@ def test_folder_of_somebody_else(tmp_path):
 def whole_run(module_path):
     """Folder and results of an undisturbed crack."""
     return module_path / "out", victims.undisturbed(PROGRAM, CRACK, module_path / "out")[0]
-
-
-def test_a_good_run_is_whole(whole_run):
-    out, expected = whole_run
-    assert whole.check(out) > 10
-    kills.compare("crack", out, expected)
-
-
-def cut(path):
-    path.write_bytes(path.read_bytes()[:2 * path.stat().st_size // 3])
-
-
-def flip_a_bit(path):
-    content = bytearray(path.read_bytes())
-    content[len(content) // 2] ^= 1
-    path.write_bytes(content)
-
-
-@pytest.mark.parametrize("pattern, damage", [
-    *((name, cut) for name in ("crack.csv", "crack.json", "lattice.pvd", "lattice-0001.vtp", "near_tip.json", "checkpoints/*.h5")),
-    ("checkpoints/*.h5", flip_a_bit)])
-def test_a_file_that_is_not_whole_is_seen(pattern, damage, whole_run, tmp_path):
-    out = shutil.copytree(whole_run[0], tmp_path / "out")
-    damage(max(out.glob(pattern)))
-    with pytest.raises(whole.Broken):
-        whole.check(out)
-
-
-@pytest.mark.parametrize("change", [lambda path: path.write_text(path.read_text().replace("1", "2", 1)), lambda path: path.unlink()],
-                         ids=["another", "none"])
-def test_another_result_is_seen(change, whole_run, tmp_path):
-    out = shutil.copytree(whole_run[0], tmp_path / "out")
-    change(out / "crack.csv")
-    with pytest.raises(kills.Failure):
-        kills.compare("crack", out, whole_run[1])

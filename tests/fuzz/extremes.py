@@ -13,9 +13,7 @@ import math
 import pathlib
 import random
 import re
-import shutil
 import sys
-import tempfile
 
 sys.dont_write_bytecode = True
 import vtk
@@ -138,32 +136,20 @@ def not_finite(folder):
     return found
 
 
-class Runner:
+class Extremes(mutate.Subject):
     def __init__(self, options):
-        self.options = options
-        self.work = pathlib.Path(tempfile.mkdtemp(prefix="latcon-extremes-"))
-        self.server = mutate.started(options.server, self.work)
-        self.counts = collections.Counter()
-        self.failures = []
-        outcome, _, printed = self.run(["schema", str(BASE)])
+        super().__init__(options)
+        outcome, _, printed, _ = self.run(["schema", str(BASE)])
         if outcome != "exit 0":
             raise SystemExit(f"no list of entries: {outcome}")
         self.schema = json.loads(printed)
-
-    def run(self, arguments):
-        """@return outcome, standard error, standard output"""
-        folder = self.work / "run"
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir()
-        outcome = self.server.run(arguments, folder, self.options.limit)
-        return outcome, self.server.stderr(), self.server.stdout()
 
     def arguments(self, command, chosen):
         return [command[0], str(BASE), *command[1:], *(word for key, value in chosen.items() for word in ("--set", f"{key}={value}"))]
 
     def check(self, number):
         command, chosen = make(self.schema, self.options.seed, number)
-        dry, said, printed = self.run([*self.arguments(command, chosen), "--dry-run"])
+        dry, said, printed, _ = self.run([*self.arguments(command, chosen), "--dry-run"])
         # A limited number of steps, whatever their length.
         step = re.search(r"time step:? (\S+) s", printed)
         if (dry == "exit 0" or "--yes" in said) and step and "Time/end" in chosen:
@@ -171,15 +157,13 @@ class Runner:
                                           MOST_STEPS * float(step[1])))
             if float(chosen["Time/end"]) > 0.:
                 chosen["Output/frame interval"] = repr(0.4 * float(chosen["Time/end"]))
-            dry, said, printed = self.run([*self.arguments(command, chosen), "--dry-run"])
+            dry, said, printed, _ = self.run([*self.arguments(command, chosen), "--dry-run"])
         seconds = re.search(r"^# time: about (\S+) s", printed, re.M)
         if dry == "exit 0" and seconds and float(seconds[1]) > mutate.SHORT:
             self.counts["too long to run, as the dry run says"] += 1
             return
         arguments = [*self.arguments(command, chosen), "--output-dir", "out", "--threads", "1", "--quiet"]
-        outcome, said, _ = self.run(arguments)
-        folder = self.work / "run"
-        left = sorted(path.name for path in folder.iterdir())
+        outcome, said, _, left = self.run(arguments)
         finding = ""
         if outcome not in ENDS or any(alarm in said for alarm in mutate.ALARMS):
             finding = outcome
@@ -189,23 +173,12 @@ class Runner:
             finding = "exit 2 with files: " + " ".join(left)
         elif outcome in ("exit 2", "exit 4", "exit 5") and not said.strip():
             finding = f"{outcome} without a word"
-        elif outcome == "exit 0" and (found := not_finite(folder)):
+        elif outcome == "exit 0" and (found := not_finite(self.work / "input")):
             finding = "exit 0, not finite: " + " ".join(found)
         self.counts[outcome] += 1
         if finding:
-            self.failures.append(number)
-            place = pathlib.Path(self.options.failures) / f"extreme-{self.options.seed}-{number}"
-            shutil.rmtree(place, ignore_errors=True)
-            place.mkdir(parents=True)
-            words = " ".join("'" + word + "'" for word in arguments)
-            (place / "command.txt").write_text(f"{finding}\nlatcon {words}\n{said}")
-            own = {key: value for key, value in chosen.items() if TINY.get(key) != value}
-            print(f"run {number}: {finding}: {command[0]} {own}: {said.strip()[:200]}; see {place}", flush=True)
-
-    def close(self):
-        self.server.close()
-        shutil.rmtree(self.work, ignore_errors=True)
+            self.save(number, finding, arguments)
 
 
 if __name__ == "__main__":
-    sys.exit(mutate.campaign(__doc__.splitlines()[0], "runs", 3000, 20., Runner))
+    sys.exit(mutate.campaign(__doc__.splitlines()[0], "runs", 3000, 20., Extremes))

@@ -13,6 +13,7 @@ import json
 import os
 import pathlib
 import random
+import shlex
 import shutil
 import sys
 import tempfile
@@ -76,190 +77,141 @@ class Mutator:
 
     def typo(self, word):
         at = self.random.randrange(len(word) + 1)
-        letter = self.pick("abcxyz /=#-_é")
-        return self.pick([word[:at] + letter + word[at:], word[:at] + word[at + 1:], word.upper(), word + " ", word[::-1], ""])
+        return self.pick([word[:at] + self.pick("abcxyz /=#-_é") + word[at:], word[:at] + word[at + 1:], word.upper(), word + " ", word[::-1], ""])
 
     def value(self, old):
-        words = old.split()
-        number = words[0] if words else "1"
+        number, *unit = old.split() or ["1"]
         if self.random.random() < 0.5:  # a plausible value
             try:
                 changed = float(number) * self.pick([0.5, 0.9, 0.99, 1., 1.01, 1.1, 1.5, 2.])
-                return " ".join([f"{changed:.6g}" if "." in number or "e" in number else str(round(changed)), *words[1:]])
             except ValueError:
                 return self.pick([old, self.pick(WORDS), self.pick(["true", "false", "0", "0.01*x", "1e-4*cos(100*y)"])])
-        return self.pick([lambda: self.pick(NUMBERS), lambda: self.pick(NUMBERS), lambda: self.pick(EXPRESSIONS),
-                          lambda: number + " " + self.pick(UNITS), lambda: self.pick(NUMBERS) + " " + self.pick(UNITS),
-                          lambda: self.pick(self.full)[2], lambda: self.typo(old), lambda: "-" + old, lambda: old + ", " + old,
-                          lambda: old + "0", lambda: old.replace(".", ","), lambda: "1" + old])()
+            return " ".join([f"{changed:.6g}" if "." in number or "e" in number else str(round(changed)), *unit])
+        number_of_any_kind = self.pick(NUMBERS)
+        return self.pick([number_of_any_kind, number_of_any_kind, self.pick(EXPRESSIONS), f"{number} {self.pick(UNITS)}",
+                          f"{number_of_any_kind} {self.pick(UNITS)}", self.pick(self.full)[2], self.typo(old), "-" + old, f"{old}, {old}",
+                          old + "0", old.replace(".", ","), "1" + old])
 
     def entries(self, entries):
         """A mutation that respects the structure of a case."""
-        entries = list(entries)
-        at = self.random.randrange(len(entries)) if entries else 0
+        entries = list(entries) or [self.pick(self.full)]
+        at, other = self.random.randrange(len(entries)), self.random.randrange(len(entries))
+        (section, name, old), own = entries[at], self.pick(self.full)
         kind = self.random.randrange(9)
-        if kind == 0 or not entries:
-            section, name, old = self.pick(self.full)
-            entries.append((section, name, self.value(old)))
-        elif kind <= 3:
-            section, name, old = entries[at]
-            entries[at] = (section, name, self.value(old))
+        if kind == 0:
+            entries.append((*own[:2], self.value(own[2])))
         elif kind == 4:
             del entries[at]
         elif kind == 5:
-            entries.insert(self.random.randrange(len(entries)), entries[at])
+            entries.insert(other, entries[at])
         elif kind == 6:
-            other = self.random.randrange(len(entries))
-            (s, n, v), (s2, n2, v2) = entries[at], entries[other]
-            entries[at], entries[other] = (s, n, v2), (s2, n2, v)
-        elif kind == 7:
-            entries[at] = (self.pick(self.full)[0],) + entries[at][1:]
+            entries[at], entries[other] = (section, name, entries[other][2]), (*entries[other][:2], old)
         else:
-            section, name, old = entries[at]
-            entries[at] = self.pick([(self.typo(section), name, old), (section, self.typo(name), old)])
+            entries[at] = {7: (own[0], name, old), 8: self.pick([(self.typo(section), name, old), (section, self.typo(name), old)])}.get(
+                kind, (section, name, self.value(old)))
         return entries
 
     def bytes(self, data):
         """A mutation of arbitrary bytes."""
         at = self.random.randrange(len(data) + 1)
         end = min(len(data), at + self.pick([1, 1, 2, 10, 100]))
-        return self.pick([lambda: data[:at] + self.pick(BYTES) + data[at:], lambda: data[:at] + data[end:], lambda: data[:at],
-                          lambda: data[:at] + bytes([self.random.randrange(256)]) + data[end:], lambda: data[:end] + data[at:],
-                          lambda: data.replace(b"\n", b"\r\n"), lambda: data.replace(b"=", b" = = ", 1)])()
-
-    def json_value(self, value):
-        """A JSON value of any kind that replaces another."""
-        text = str(value)
-        return self.pick([lambda: self.value(text), lambda: None, lambda: True, lambda: [], lambda: {}, lambda: [value, value],
-                          lambda: {"a": value}, lambda: self.pick([0, -1, 1e300, 1e-300, 2**63, 2**64, 0.1, -0.0]),
-                          lambda: [text, 1, [2]], lambda: text, lambda: [1, 2, 3]])()
-
-    def json_of_case(self, entries):
-        document = {}
-        for section, name, value in entries:
-            document.setdefault(section, {})[name] = value
-        if self.random.random() < 0.5:
-            section = self.pick(list(document) or ["Sheet"])
-            if self.random.random() < 0.2:
-                document[section] = self.json_value(document.get(section))
-            elif document.get(section):
-                name = self.pick(list(document[section]))
-                document[section][name] = self.json_value(document[section][name])
-        return json.dumps(document)
+        return self.pick([data[:at] + self.pick(BYTES) + data[at:], data[:at] + data[end:], data[:at],
+                          data[:at] + bytes([self.random.randrange(256)]) + data[end:], data[:end] + data[at:],
+                          data.replace(b"\n", b"\r\n"), data.replace(b"=", b" = = ", 1)])
 
     def tree(self, value):
-        """A JSON tree with a value changed, removed, renamed or moved somewhere in it."""
-        if isinstance(value, dict) and value and self.random.random() < 0.85:
-            value = dict(value)
-            key = self.pick(list(value))
+        """A JSON tree with a value changed, removed, renamed or repeated somewhere in it."""
+        if isinstance(value, (dict, list)) and value and self.random.random() < 0.85:
+            value = value.copy()
+            key = self.pick(list(value) if isinstance(value, dict) else range(len(value)))
             kind = self.random.random()
             if kind < 0.8:
                 value[key] = self.tree(value[key])
+            elif isinstance(value, list):
+                value.insert(key, self.pick(value))
             elif kind < 0.9:
                 del value[key]
             else:
                 value[self.typo(key)] = value.pop(key)
             return value
-        if isinstance(value, list) and value and self.random.random() < 0.85:
-            value = list(value)
-            at = self.random.randrange(len(value))
-            if self.random.random() < 0.85:
-                value[at] = self.tree(value[at])
-            else:
-                value.insert(at, value[self.random.randrange(len(value))])
-            return value
-        return self.json_value(value)
+        text = str(value)
+        return self.pick([self.value(text), None, True, [], {}, [value, value], {"a": value}, [text, 1, [2]], text, [1, 2, 3],
+                          self.pick([0, -1, 1e300, 1e-300, 2**63, 2**64, 0.1, -0.0])])
 
-    def override(self):
-        section, name, old = self.pick(self.full)
-        good = f"{section}/{name}={self.value(old)}"
-        if self.random.random() < 0.7:
-            return good
-        return self.pick([f"{section}/{name}", f"{section}={old}", f"{name}={old}", self.typo(good), "/", "=", "/=",
-                          f"{section}/{self.typo(name)}={old}", "A/B=C", f" {section} / {name} = {old} "])
+    def overrides(self, number):
+        """Options that set entries, some of them misspelt."""
+        for _ in range(number):
+            section, name, old = self.pick(self.full)
+            good = f"{section}/{name}={self.value(old)}"
+            yield "--set"
+            yield good if self.random.random() < 0.7 else self.pick(
+                [f"{section}/{name}", f"{section}={old}", f"{name}={old}", self.typo(good), "/", "=", "/=",
+                 f"{section}/{self.typo(name)}={old}", "A/B=C", f" {section} / {name} = {old} "])
 
-    def steps(self, step, what, likely):
+    def repeat(self, step, what, likely):
         """Applies `step` a random number of times, mostly once."""
         for _ in range(self.pick(likely)):
             what = step(what)
         return what
 
 
-Input = collections.namedtuple("Input", "files arguments")
+def encoded(text):
+    return text.encode("utf8", "surrogateescape")
 
 
 def case_input(mutator):
-    random_ = mutator.random
+    """@return files and arguments"""
+    chance = mutator.random.random
     case = mutator.pick(CASES)
-    base = case_lines(case.read_text())
-    if random_.random() < 0.25:
-        base = list(mutator.full)
-    entries = mutator.steps(mutator.entries, base, [0, 1, 1, 1, 2, 3])
-    name = "case.prm"
-    data = prm(entries).encode("utf8", "surrogateescape")
-    if random_.random() < 0.25:
+    base = list(mutator.full) if chance() < 0.25 else case_lines(case.read_text())
+    entries = mutator.repeat(mutator.entries, base, [0, 1, 1, 1, 2, 3])
+    name, data = "case.prm", encoded(prm(entries))
+    if chance() < 0.25:
+        document = collections.defaultdict(dict)
+        for section, entry, value in entries:
+            document[section][entry] = value
         name = mutator.pick(["case.json", "case.json", "case.JSON"])
-        data = mutator.json_of_case(entries).encode("utf8", "surrogateescape")
-    if random_.random() < 0.1:
-        data = mutator.steps(mutator.bytes, data, [1, 1, 2, 4])
+        data = encoded(json.dumps(mutator.repeat(mutator.tree, dict(document), [0, 1])))
+    if chance() < 0.1:
+        data = mutator.repeat(mutator.bytes, data, [1, 1, 2, 4])
     # Mostly a command for which the case is intended.
-    command = mutator.pick(["lattice", "continuum", "fracture", "verify"] if random_.random() < 0.2 else
+    command = mutator.pick(["lattice", "continuum", "fracture", "verify"] if chance() < 0.2 else
                            {"hole": ["lattice", "continuum"], "shear_layer": ["continuum"]}.get(case.stem, ["lattice", "continuum", "fracture"]))
-    arguments = [command, "case.prm"] if command != "verify" else [command, "--case", "case.prm"]
-    arguments[-1] = name
-    for _ in range(mutator.pick([0, 0, 0, 1, 1, 2])):
-        arguments += ["--set", mutator.override()]
-    if command in ("lattice", "continuum") and random_.random() < 0.4:
-        arguments += ["--set", ("Lattice" if command == "lattice" else "Continuum") + "/solution=motion", "--set", "Time/end=0.01 ms"]
-    if command == "fracture" and random_.random() < 0.5:
+    arguments = [command, *["--case"] * (command == "verify"), name, *mutator.overrides(mutator.pick([0, 0, 0, 1, 1, 2]))]
+    if command in ("lattice", "continuum") and chance() < 0.4:
+        arguments += ["--set", command.capitalize() + "/solution=motion", "--set", "Time/end=0.01 ms"]
+    if command == "fracture" and chance() < 0.5:
         arguments.append("--skip-verification")
-    return Input({name: data}, arguments)
+    return {name: data}, arguments
 
 
 def study_input(mutator):
+    """@return files and arguments"""
     document = json.loads(mutator.pick(STUDIES).read_text())
-    sweeps = "sweep" in document
-    names = [] if sweeps else list(document["runs"])
-    kept = set(mutator.random.sample(names, min(3, len(names))))
-    is_short = mutator.random.random() < 0.7  # so that the runs are planned soon
-    if is_short and sweeps:
-        document["sweep"] = document["sweep"][:1]
-    elif is_short:
-        document["runs"] = {name: run for name, run in document["runs"].items() if name in kept}
-        document["claims"] = [dict(claim, rows=rows) for claim in document["claims"]
-                              if (rows := [row for row in claim["rows"] if set(row.get("runs", [row.get("run")])) <= kept])]
-        document["pictures"] = [name for name in document.get("pictures", []) if name in kept] or list(kept)[:1]
-    document["base"] = "case.prm"
-    document["seeds"] = [1]
-    document = mutator.steps(mutator.tree, document, [0, 1, 1, 1, 2, 3])
-    data = json.dumps(document).encode("utf8", "surrogateescape")
+    if mutator.random.random() < 0.7:  # short, so that the runs are planned soon
+        if "sweep" in document:
+            document["sweep"] = document["sweep"][:1]
+        else:
+            kept = set(mutator.random.sample(list(document["runs"]), min(3, len(document["runs"]))))
+            document["runs"] = {name: run for name, run in document["runs"].items() if name in kept}
+            document["claims"] = [dict(claim, rows=rows) for claim in document["claims"]
+                                  if (rows := [row for row in claim["rows"] if set(row.get("runs", [row.get("run")])) <= kept])]
+            document["pictures"] = [name for name in document.get("pictures", []) if name in kept] or sorted(kept)[:1]
+    document.update(base="case.prm", seeds=[1])
+    data = encoded(json.dumps(mutator.repeat(mutator.tree, document, [0, 1, 1, 1, 2, 3])))
     if mutator.random.random() < 0.2:
-        data = mutator.steps(mutator.bytes, data, [1, 1, 2])
-    arguments = ["study", "study.json", "--dry-run"] + mutator.pick([[], ["--quick"]])
-    for _ in range(mutator.pick([0, 0, 0, 1])):
-        arguments += ["--set", mutator.override()]
-    return Input({"study.json": data, "case.prm": mutator.pick(CASES[:1] + CASES[2:3]).read_bytes()}, arguments)
+        data = mutator.repeat(mutator.bytes, data, [1, 1, 2])
+    return {"study.json": data, "case.prm": mutator.pick(CASES[:1] + CASES[2:3]).read_bytes()}, [
+        "study", "study.json", "--dry-run", *mutator.pick([[], ["--quick"]]), *mutator.overrides(mutator.pick([0, 0, 0, 1]))]
 
 
 def odd_input(mutator):
-    """Options and files that do not exist."""
+    """Options and files that do not exist. @return files and arguments"""
     words = ["", "-", "--", "--set", "--set=", "--threads", "0", "-1", "1e9", "--threads=0", "--output-dir", "--output-dir=", "--quiet",
              "--dry-run", "--case", ".", "/", "/dev/null", "none.prm", "case.prm", "lattice", "continuum", "fracture", "verify", "study",
              "compare", "paper", "energy", "--quick", "--help", "--version", "--tolerance", "displacement=1", "--time", "nan",
              "\xff", "a" * 5000, "--resume", "--skip-verification", "--no-report"]
-    files = {"case.prm": CASES[0].read_bytes()}
-    return Input(files, [mutator.pick(words) for _ in range(mutator.pick([1, 2, 3, 4, 6]))] + ["--dry-run"])
-
-
-def make_input(seed, number, full):
-    random_ = random.Random(f"{seed}/{number}")
-    mutator = Mutator(random_, full)
-    kind = random_.random()
-    if kind < 0.05:
-        return odd_input(mutator), False
-    if kind < 0.17:
-        return study_input(mutator), False
-    return case_input(mutator), random_.random() < 0.2
+    return {"case.prm": CASES[0].read_bytes()}, [*mutator.random.choices(words, k=mutator.pick([1, 2, 3, 4, 6])), "--dry-run"]
 
 
 def started(program, folder):
@@ -270,38 +222,55 @@ def started(program, folder):
                                     UBSAN_OPTIONS=f"print_stacktrace=1:suppressions={suppressions}"))
 
 
-class Fuzzer:
+class Subject:
+    """Program that is given inputs, and the findings."""
+
     def __init__(self, options):
         self.options = options
         self.work = pathlib.Path(tempfile.mkdtemp(prefix="latcon-fuzz-"))
         self.server = started(options.server, self.work)
-        self.limit = options.limit
         self.counts = collections.Counter()
         self.failures = []
-        self.full = self.all_entries()
 
-    def all_entries(self):
-        folder = self.folder_of({"case.prm": CASES[0].read_bytes()})
-        self.server.run(["verify", "--case", "case.prm", "--dry-run"], folder, 10 * self.limit)
-        entries = case_lines(self.server.stdout())
-        if len(entries) < 50:
-            raise SystemExit("no resolved case:\n" + self.server.stderr())
-        return entries
-
-    def folder_of(self, files):
+    def run(self, arguments, files=()):
+        """@return outcome, standard error, standard output, names of files that are left"""
         folder = self.work / "input"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
-        for name, data in files.items():
+        for name, data in dict(files).items():
             (folder / name).write_bytes(data)
-        return folder
+        outcome = self.server.run(arguments, folder, self.options.limit)
+        return outcome, self.server.stderr(), self.server.stdout(), sorted({path.name for path in folder.iterdir()} - set(files))
 
-    def run_once(self, files, arguments):
-        """(outcome, finding or "", what it printed)"""
-        folder = self.folder_of(files)
-        outcome = self.server.run(arguments, folder, self.limit)
-        printed, error = self.server.stdout(), self.server.stderr()
-        left = sorted(path.name for path in folder.iterdir() if path.name not in files)
+    def save(self, number, finding, arguments, files=()):
+        folder = pathlib.Path(self.options.failures) / f"{type(self).__name__.lower()}-{self.options.seed}-{number}"
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        for name, data in dict(files).items():
+            (folder / name).write_bytes(data)
+        (folder / "stdout").write_text(self.server.stdout())
+        (folder / "stderr").write_text(self.server.stderr())
+        (folder / "command.txt").write_text(f"{finding}\ncd {folder.resolve()} && latcon {shlex.join(arguments)}\n", errors="surrogateescape")
+        self.failures.append(number)
+        print(f"{number}: {finding}: {self.server.stderr().strip()[:200]}; see {folder}", flush=True)
+
+    def close(self):
+        self.server.close()
+        shutil.rmtree(self.work, ignore_errors=True)
+
+
+class Fuzzer(Subject):
+    def __init__(self, options):
+        super().__init__(options)
+        _, error, printed, _ = self.run(["verify", "--case", "case.prm", "--dry-run"], {"case.prm": CASES[0].read_bytes()})
+        self.full = case_lines(printed)
+        if len(self.full) < 50:
+            raise SystemExit("no resolved case:\n" + error)
+
+    def judge(self, number, files, arguments):
+        """Runs an input. @return its outcome and what it printed, None if that is a finding"""
+        outcome, error, printed, left = self.run(arguments, files)
+        self.counts[outcome] += 1
         finding = ""
         if outcome not in ALLOWED:
             finding = outcome
@@ -309,31 +278,29 @@ class Fuzzer:
             finding = "alarm"
         elif left and (outcome == "exit 2" or "--dry-run" in arguments):
             finding = "files: " + " ".join(left)
-        elif outcome != "exit 0" and not error.strip() and outcome != "exit 3":
+        elif outcome not in ("exit 0", "exit 3") and not error.strip():
             finding = "no word of what is wrong"
-        self.counts[outcome] += 1
-        return outcome, finding, printed
+        if finding:
+            self.save(number, finding, arguments, files)
+            return None
+        return outcome, printed
 
     def check(self, number):
-        made, really = make_input(self.options.seed, number, self.full)
-        arguments = made.arguments
-        if really:
-            command = arguments + [word for entry in TINY if not any(entry.split("=")[0] in word for word in arguments)
-                                   for word in ("--set", entry)] + ([word for word in ["--no-report", "--skip-verification"] if word not in arguments] if arguments[0] == "fracture" else [])
-            if arguments[0] in ("verify",):
-                command = arguments + ["--dry-run"]
-            outcome, finding, printed = self.run_once(made.files, command + ["--dry-run"])
-            if not finding and outcome == "exit 0" and self.is_short(printed) and arguments[0] != "verify":
-                arguments = command
-                self.counts["real runs"] += 1
-                _, finding, _ = self.run_once(made.files, arguments)
-            else:
-                arguments = command + ["--dry-run"]
-        else:
-            arguments = arguments + [word for word in ["--dry-run", "--quiet"] if word not in arguments]
-            _, finding, _ = self.run_once(made.files, arguments)
-        if finding:
-            self.save(number, made.files, arguments, finding)
+        random_ = random.Random(f"{self.options.seed}/{number}")
+        mutator, kind = Mutator(random_, self.full), random_.random()
+        files, arguments = (odd_input if kind < 0.05 else study_input if kind < 0.17 else case_input)(mutator)
+        if kind < 0.17 or arguments[0] == "verify" or random_.random() > 0.2:
+            self.judge(number, files, [*arguments, *[word for word in ("--dry-run", "--quiet") if word not in arguments]])
+            return
+        for entry in TINY:
+            if not any(entry.split("=")[0] in word for word in arguments):
+                arguments += ["--set", entry]
+        if arguments[0] == "fracture":
+            arguments += [word for word in ("--no-report", "--skip-verification") if word not in arguments]
+        dry = self.judge(number, files, [*arguments, "--dry-run"])
+        if dry and dry[0] == "exit 0" and self.is_short(dry[1]):
+            self.counts["real runs"] += 1
+            self.judge(number, files, arguments)
 
     @staticmethod
     def is_short(printed):
@@ -343,24 +310,6 @@ class Fuzzer:
         frames = [line.split("=")[1].split("#")[0].strip() for line in printed.splitlines() if "set frame interval" in line]
         return bool(words) and float(words[0][3]) <= SHORT and max(steps, default=0.) < 1e5 and (not frames or float(frames[0]) == 0. or
                                                                                               float(frames[0]) > 1e-6)
-
-    def save(self, number, files, arguments, finding):
-        folder = pathlib.Path(self.options.failures) / f"{self.options.seed}-{number}"
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir(parents=True)
-        for name, data in files.items():
-            (folder / name).write_bytes(data)
-        (folder / "stdout").write_text(self.server.stdout())
-        (folder / "stderr").write_text(self.server.stderr())
-        (folder / "command.txt").write_text(f"{finding}\ncd {folder.resolve()} && latcon " +
-                                            " ".join("'" + word.replace("'", "'\\''") + "'" for word in arguments) + "\n",
-                                            errors="surrogateescape")
-        self.failures.append((number, finding))
-        print(f"input {number}: {finding}; see {folder}", flush=True)
-
-    def close(self):
-        self.server.close()
-        shutil.rmtree(self.work, ignore_errors=True)
 
 
 def campaign(description, words, default, limit, make):

@@ -2,11 +2,8 @@
 import functools
 import gzip
 import json
-import os
-import pty
 import re
 import subprocess
-import threading
 
 import pytest
 
@@ -20,28 +17,6 @@ def complete(*words):
     script = f'source {BUILD}/latcon.bash; COMP_WORDS=(latcon "$@"); COMP_CWORD=$#; _latcon; printf "%s\\n" "${{COMPREPLY[@]}}"'
     done = subprocess.run(["bash", "-c", script, "bash", *words], cwd=FOLDER, capture_output=True, text=True, check=True)
     return [line for line in done.stdout.split("\n") if line]
-
-
-def arguments_typed(line):
-    """Arguments of latcon in a line, in which tabs complete, typed at the prompt of bash."""
-    (FOLDER / "cache").mkdir(exist_ok=True)
-    got = FOLDER / "cache" / "arguments"
-    keyboard, terminal = pty.openpty()
-    bash = subprocess.Popen(["bash", "--norc", "-i"], cwd=FOLDER, stdin=terminal, stdout=terminal, stderr=terminal,
-                            start_new_session=True, env=dict(os.environ, INPUTRC="/dev/null", TERM="dumb", HISTFILE=""))
-    os.close(terminal)
-    os.write(keyboard, f"source {BUILD}/latcon.bash; latcon() {{ printf '%s\\n' \"$@\" > {got}; }}\n{line}\nexit\n".encode())
-    killer = threading.Timer(30, bash.kill)  # of a shell that waits for the rest of a line
-    killer.start()
-    try:
-        while os.read(keyboard, 4096):
-            pass
-    except OSError:  # bash has closed the terminal
-        pass
-    bash.wait()
-    killer.cancel()
-    os.close(keyboard)
-    return got.read_text().splitlines()
 
 
 @functools.cache
@@ -96,8 +71,3 @@ def test_completes_commands_and_claims(commands):
     assert complete("") == commands
     assert complete("verify", "") == [claim["name"] for claim in json.loads(run(LATCON, "schema"))["claims"]]
     assert set(complete("study", "")) - {"cache", "my case.prm"} == {path.stem for path in (SOURCE / "verification/studies").glob("*.json")}
-
-
-def test_completes_at_the_prompt():
-    assert arguments_typed("latcon fracture fig1-\t --set Next-\tpres\tt\t --set 'Near\t tip/ha\t") == (
-        ["fracture", "fig1-wide", "--set", "Next-nearest neighbours/present=true", "--set", "Near tip/half height="])

@@ -7,7 +7,7 @@ from folders import SOURCE
 
 
 @pytest.mark.parametrize("file, pattern", [
-    ("CITATION.cff", r"^version: (\S+)"), ("python/pyproject.toml", r'^version = "(\S+)"'), ("packaging/conda/meta.yaml", r"^  version: (\S+)"),
+    ("CITATION.cff", r"^version: (\S+)"), ("python/latcon/__init__.py", r'^__version__ = "(\S+)"'), ("packaging/conda/meta.yaml", r"^  version: (\S+)"),
     ("packaging/spack/packages/latcon/package.py", r'^    version\("(\S+)"\)')])
 def test_version_is_that_of_the_project(file, pattern):
     version, = re.findall(r"project\(latcon VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text())

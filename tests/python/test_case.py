@@ -36,6 +36,19 @@ def test_set_returns_another_case():
     assert base.overrides == {}
 
 
+def test_cases_are_compared_by_their_values_and_made_of_a_dictionary():
+    base = latcon.Case("quick")
+    changed = base.set({"Sheet/height": "2 cm", "Time/step": 1e-8})
+    assert changed == base.set("Sheet/height", 0.02).set("Time/step", "10 ns") != base and changed != "quick"
+    assert base.diff(changed) == {"Sheet/height": (0.025, 0.02), "Time/step": (None, 1e-8)} and base.diff(base) == {}
+    assert latcon.Case.from_dict(changed.resolved()) == changed
+    with pytest.raises(latcon.UnknownEntry, match="Sheet/height"):
+        base.set({"Sheet/length": 1, "Sheet/heigth": 1})
+    for wrong in (("Sheet/height",), ({"Sheet/height": 1}, 2)):
+        with pytest.raises(TypeError, match="mapping"):
+            base.set(*wrong)
+
+
 @pytest.mark.parametrize("key, value, read", [
     ("Sheet/height", 0.03, 0.03), ("Sheet/height", np.float64(0.1) * 0.3, 0.1 * 0.3), ("Lattice/noise seed", np.int64(3), 3),
     ("Contact/present", False, False), ("Contact/present", np.bool_(False), False), ("Time/step", None, None),

@@ -299,9 +299,9 @@ def test_a_directory_holds_one_fit_at_a_time(small_fit, crack, base, tmp_path):
             small_fit(tmp_path / "fit", evaluations=4, **change)
     with pytest.raises(latcon.LatconError, match="different: case"):
         small_fit(tmp_path / "fit", case=base.set("Sheet/height", "2 cm"))
-    held = open(tmp_path / "fit" / "fit.lock")
+    held = open(tmp_path / "fit" / ".latcon.lock")
     fcntl.flock(held, fcntl.LOCK_EX)
-    with pytest.raises(latcon.LatconError, match="another process works on the fit"):
+    with pytest.raises(latcon.LatconError, match="fit is in use by another process"):
         small_fit(tmp_path / "fit", evaluations=4)
     held.close()
     assert len(crack.runs) == 8

@@ -38,7 +38,7 @@ def test_docstrings_describe_all_parameters():
         if len(parameters) > 1 and not elsewhere:
             section = text.partition("Parameters\n----------\n")[2]
             for parameter in parameters:
-                assert re.search(rf"^(?:.*, )?\*?{parameter}\b", section.replace("\\*", "*"), re.M), f"{name}: {parameter}"
+                assert re.search(rf"^(?:.*, )?\**{parameter}\b", section.replace("\\*", "*"), re.M), f"{name}: {parameter}"
 
 
 def test_parameters_and_results_are_annotated():

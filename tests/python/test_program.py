@@ -105,6 +105,8 @@ def test_results_are_found_after_a_change_of_folder(stand_in, tmp_path, monkeypa
     run = latcon.commands._run("lattice", case, "out", None, False, False, False)
     monkeypatch.chdir("/")
     assert run.directory == latcon.results.Run(tmp_path / "out").directory == tmp_path / "out"
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert latcon.open("~/out").directory == tmp_path / "out"
 
 
 def test_progress_is_shown_in_place_in_a_terminal_and_sparsely_in_a_log(stand_in, tmp_path, monkeypatch):
@@ -154,6 +156,29 @@ def test_ctrl_c_stops_the_program_and_waits_for_its_end(stand_in, tmp_path):
     thread.join()
     assert (caught.value.exit_code, caught.value.message) == (130, "saved")
     assert count.read_text() == "x"  # one signal
+
+
+def test_a_run_in_the_background_is_stopped_or_waited_for(stand_in, tmp_path):
+    count, ready, out = tmp_path / "count", tmp_path / "ready", tmp_path / "out"
+    out.mkdir()
+    (out / "run.json").write_text("{}")
+    case = tmp_path / "a.prm"
+    case.touch()
+    stand_in(PROGRESS + STOPPABLE.format(count=str(count), ready=str(ready)))
+    job = latcon.start(case, out)
+    while not ready.exists():
+        time.sleep(0.01)
+    with pytest.raises(TimeoutError, match="out"):
+        job.wait(0.1)
+    assert job.progress == "step 2, 4 s left" and job.is_running
+    assert job.stop().directory == job.directory == out and not job.is_running and count.read_text() == "x"
+    with pytest.raises(latcon.Interrupted, match="saved"):
+        job.wait()
+    stand_in("sys.exit(4)")
+    job = latcon.start(case, out)
+    for end in (job.wait, job.stop):
+        with pytest.raises(latcon.DidNotConverge):
+            end()
 
 
 def test_a_second_ctrl_c_kills_a_program_that_does_not_end(stand_in, tmp_path):

@@ -1,11 +1,14 @@
 """Tests that the results of a run of the program are read as they were written."""
 import csv
+import itertools
 import json
 import math
 import os
 import shutil
 import signal
 import subprocess
+import sys
+import types
 
 import numpy as np
 import pytest
@@ -38,14 +41,26 @@ def test_crack_has_values_uncertainties_and_units(crack):
         crack.crack.wavelenght
     assert str(latcon.Value(0.0243900138, 0.000292, "m")) == "0.02439 ± 0.00029 m"
     assert len(crack.near_tip) > 30
+    contour = latcon.Quantities({"width": 1e-3, "width_uncertainty": 1e-4, "upper_edge_wavelength": None, "centre_log_evidence": 3.0})
+    assert str(contour.width) == "0.00100 ± 0.00010 m"
+    assert (contour.upper_edge_wavelength.unit, contour.centre_log_evidence.unit) == ("m", "1")
 
 
 def test_recorded_quantities_are_those_of_the_files(crack):
     written = {name for file in ("crack", "near_tip") for name in json.loads((crack.directory / f"{file}.json").read_text())}
-    derived = {"zeta", *(name for name in RECORDED if "_over_d" in name)}
+    derived = {"zeta", *(name for name in RECORDED if "_over_d" in name or name.startswith("path_") or name.endswith("_per_area"))}
     assert set(RECORDED) - derived <= written and not derived & written
     others = {"pattern", "reason", "thresholds", "nearest_to_breaking", "skip_verification", "units", "sampled_from", "sampled_to"}
     assert written - set(RECORDED) == others
+
+
+def test_crack_of_the_nonlocal_continuum_is_read_alike(tmp_path):
+    case = tiny_case().set("Time/integrator", "runge-kutta-chebyshev").set("Time/end", "0.05 ms")
+    run = latcon.fracture(case, tmp_path / "out", skip_verification=True, report=False, progress=False, side="continuum")
+    assert run.info["side"] == run.crack["side"] == "continuum"
+    last = latcon.open(tmp_path / "out").frames[-1]
+    assert len(last.position) == 81 * 49  # twice as fine as the lattice
+    assert last.bonds.max() < len(last.position) and (last.stretch > 1).all()
 
 
 @pytest.mark.parametrize("file, name", [("crack.csv", "path"), ("energy.csv", "energy"), ("broken_bonds.csv", "broken_bonds")])
@@ -56,6 +71,7 @@ def test_tables_are_the_files_to_the_last_bit(crack, file, name):
     for column in table:
         assert (table[column].to_numpy(float) == [float(row[column]) for row in written]).all(), column
     assert table.attrs["units"]["t"] == "s"
+    assert all(table[column].dtype == np.int64 for column in table if column in ("site", "other_site", "bonds_broken"))
 
 
 def test_results_and_provenance(crack):
@@ -106,14 +122,17 @@ def test_fields_near_the_tip(crack):
 
 
 def test_plots_show_the_data(crack):
-    axes = crack.plot_path()
+    axes = crack.plot_path(color="red", label="own")
     (tip,) = axes.lines
+    assert (tip.get_color(), tip.get_label()) == ("red", "own")
     np.testing.assert_array_equal(tip.get_xdata(), 100 * crack.path["X"])
     frame = crack.frames[0]
     for color, values in (("stretch", frame.stretch),
                           ("velocity x", frame.fields["velocity"][frame.bonds].mean(axis=1)[:, 0]),
                           ("cauchy_stress xy", frame.fields["cauchy_stress"][frame.bonds].mean(axis=1)[:, 0, 1])):
-        axes = crack.plot_sheet(0, color)
+        axes = crack.plot_sheet(0, color, cmap="magma", clim=(0, 1), linewidths=2)
+        lines = axes.collections[0]
+        assert (lines.get_cmap().name, lines.get_clim(), lines.get_linewidths()) == ("magma", (0, 1), [2])
         np.testing.assert_array_equal(axes.collections[0].get_array(), np.sort(values))
     for color in ("mood", "velocity", "stretch x", "velocity z"):
         with pytest.raises(ValueError, match=color.split()[0]):
@@ -149,6 +168,57 @@ def test_damaged_and_missing_files_are_named(crack, tmp_path):
                 action(latcon.open(copy))
     with pytest.raises(latcon.UnreadableFile, match="run.json: No such file"):
         latcon.open(tmp_path)
+
+
+def test_a_run_is_read_where_the_program_is_not(crack, monkeypatch):
+    values, text = crack.case.resolved(), crack.case.text()
+    monkeypatch.setenv("LATCON", "/no/latcon")
+    run = latcon.open(crack.directory)
+    assert set(run.case.resolved()) == set(values)
+    assert all(run.case[key] == value or isinstance(value, (list, str)) for key, value in values.items())
+    assert run.case.text() == text
+    assert len(run.frames[-1].bonds) > 1000 and len(run.path) > 10 and run.crack.speed_lagrangian.value > 0
+    assert run.plot_path() and run.to_html().exists()
+    with pytest.raises(latcon.ProgramNotFound):
+        run.case.set("Sheet/height", 1)
+
+
+def library(monkeypatch, name, **functions):
+    monkeypatch.setitem(sys.modules, name, types.SimpleNamespace(**functions))
+
+
+def test_frames_of_both_sides_are_those_of_other_libraries(crack, tmp_path, monkeypatch):
+    sheet = tiny_case().set({"Continuum/cells x": 6, "Continuum/cells y": 4})
+    continuum = latcon.continuum(sheet, tmp_path / "continuum", progress=False).frames[-1]
+    lattice = crack.frames[-1]
+    assert len(continuum.cells) >= 24 and len(continuum.bonds) == 0 == len(lattice.cells) and continuum.units["displacement"] == "m"
+    corners = continuum.reference[continuum.cells[:, :4]]
+    area = 0.5 * sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] for a, b in ((corners[:, i - 1], corners[:, i]) for i in range(4)))
+    assert area.sum() == pytest.approx(np.prod(np.ptp(continuum.reference, axis=0)))
+    for frame, converter in itertools.product((lattice, continuum), ("pyvista", "meshio", "ase")):
+        monkeypatch.setitem(sys.modules, converter, None)
+        with pytest.raises(latcon.LatconError, match=f"to_{converter} needs the Python package {converter}"):
+            getattr(frame, f"to_{converter}")()
+    library(monkeypatch, "meshio", Mesh=lambda *arguments: arguments)
+    library(monkeypatch, "pyvista", wrap=lambda data: data)
+    fields = {}
+    library(monkeypatch, "ase", Atoms=lambda **options: types.SimpleNamespace(
+        set_array=lambda name, values: fields.update({name: values}), **options))
+    atoms = lattice.to_ase()
+    np.testing.assert_array_equal(atoms.positions[:, :2], 1e10 * lattice.position)
+    assert set(fields) == set(lattice.fields) and atoms.info == {"time": lattice.time} and not atoms.positions[:, 2].any()
+    for frame, kind, parts in ((lattice, "line", lattice.bonds), (continuum, "VTK_LAGRANGE_QUADRILATERAL", continuum.cells)):
+        points, ((name, cells),), fields, of_bonds = frame.to_meshio()
+        assert points is frame.reference and cells is parts and name in (kind, "quad") and fields == frame.fields
+        assert list(of_bonds) == list(frame.bond_fields)
+        assert frame.to_pyvista().GetNumberOfCells() == (len(frame.cells) or len(frame.reference) + len(frame.bonds))
+        write = tmp_path / ("frame.vtu" if len(frame.cells) else "frame.vtp")
+        latcon.frames.write_frame(write, frame)
+        read = latcon.frames.read_frame(write, frame.time)
+        assert read.units == {name: unit for name, unit in frame.units.items() if name in (*frame.fields, *frame.bond_fields)}
+        for one, same in ((frame.cells, read.cells), (frame.bonds, read.bonds), (frame.position, read.position),
+                          (frame.stretch, read.stretch), *((frame.fields[name], read.fields[name]) for name in frame.fields)):
+            np.testing.assert_array_equal(one, same)
 
 
 def test_page_is_made_by_the_program(crack, tmp_path):

@@ -1,5 +1,4 @@
 """Headless Chromium, controlled through its DevTools protocol on a pair of pipes."""
-import base64
 import json
 import os
 import subprocess
@@ -41,7 +40,7 @@ class Browser:
         self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
-        self.resize(*self.size)
+        self.call("Emulation.setDeviceMetricsOverride", width=self.size[0], height=self.size[1], deviceScaleFactor=1, mobile=False)
         return self
 
     def __exit__(self, *_):
@@ -91,16 +90,6 @@ class Browser:
             self.requested.append(values["request"]["url"])
         return message
 
-    def resize(self, width, height, phone=False):
-        """Size of the window [CSS pixels]."""
-        self.size = width, height
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=phone)
-
-    def dark(self, dark):
-        """Sets whether the reader prefers dark pages."""
-        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
-        self.call("Emulation.setEmulatedMedia", features=[scheme])
-
     def open(self, path):
         """Opens a file, until its viewers are ready."""
         self.call("Page.navigate", url=Path(path).resolve().as_uri())
@@ -125,8 +114,3 @@ class Browser:
     def mouse(self, kind, x, y, **more):
         """A mouse event at a point of the window."""
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
-
-    def picture(self, path, whole=False):
-        """PNG of the window, or of the whole page."""
-        data = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"]
-        Path(path).write_bytes(base64.b64decode(data))

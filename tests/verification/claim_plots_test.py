@@ -3,11 +3,9 @@ import contextlib
 import io
 import json
 import math
-import os
 import re
 import sys
 from pathlib import Path
-from unittest import mock
 
 import numpy as np
 import pytest
@@ -15,12 +13,10 @@ from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
-import made_up_claims
 from made_up_claims import DECAY, FIRST_ROW, RUN_ERROR, write_claims
 
 from latcon.errors import UnreadableFile
 from latcon.files import read_columns
-from latcon.report import pictures
 from latcon.report.__main__ import main
 from latcon.report.claim_plots import MODULES, TABLES, all_plots
 from latcon.report.claim_tables import fitted_order, groups, largest_text, range_text
@@ -61,27 +57,6 @@ def drawn_report(tmp_path, expect=0):
 def section_of(html, claim):
     """One claim's part of the page."""
     return re.search(rf'<section id="claim-{claim}">.*?</section>', html, re.S)[0]
-
-
-@pytest.mark.skipif("LATCON_FULL" not in os.environ, reason="in full only")
-def test_nothing_is_cut_off_at_the_edges_of_a_plot(tmp_path):
-    write_run(tmp_path, [check_row(claim, 0) for claim in CLAIMS])
-    with mock.patch.object(made_up_claims, "K", 0.3 * made_up_claims.K):  # numbers beside the axes get long
-        write_claims(tmp_path)
-    beyond = []
-
-    def measured(figure):
-        figure.canvas.draw()
-        box = figure.get_tightbbox(figure.canvas.get_renderer())  # [in]
-        width, height = figure.get_size_inches()
-        beyond.append(max(-box.x0, -box.y0, box.x1 - width, box.y1 - height))
-        return drawn(figure)
-
-    drawn = pictures.figure_pixels
-    with mock.patch.object(pictures, "figure_pixels", measured):
-        drawn_report(tmp_path)
-    assert len(beyond) == len(all_plots())
-    assert max(beyond) < 0
 
 
 def test_each_claim_has_its_text_plots_and_error_metrics(tmp_path):
@@ -190,21 +165,6 @@ def test_failing_rows_are_never_folded(tmp_path):
     assert section.index("wave-speeds holds 1") > section.index("<details>")
     assert "29 rows that do not fail" in section
     assert "<details open" not in section_of(html, "energy")
-
-
-def test_plots_of_several_runs(tmp_path):
-    for name in ("first", "same", "third"):
-        write_run(tmp_path / name, [check_row("intrinsic-length", 0)])
-        write_claims(tmp_path / name)
-        for table in TABLES:
-            if table != "edge_layer":
-                (tmp_path / name / f"{table}.csv").unlink()
-    path = tmp_path / "third" / "edge_layer.csv"
-    path.write_text("".join(line for line in path.read_text().splitlines(True) if not line.startswith("NN,")))
-    section = section_of(drawn_report(tmp_path)[0], "intrinsic-length")
-    assert section.count("<img ") == 2
-    assert "Run first." in section
-    assert re.search(r"<details><summary>The same of the run third</summary>", section)
 
 
 def test_order_is_that_of_the_smallest_points():

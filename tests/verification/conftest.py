@@ -1,6 +1,8 @@
 """Fixtures of tests of the program and of its report: processes in the background, a folder of runs."""
 import os
+import pathlib
 import subprocess
+import tempfile
 
 import pytest
 
@@ -30,3 +32,13 @@ def start():
             process.kill()
         process.wait()
         process.stderr.close()
+
+
+@pytest.fixture(scope="session")
+def tiny_study():
+    """Output directory of the study TINY, which has run to its end, without its page."""
+    from studies import run, write_study
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder) / "out"
+        run("study", write_study(pathlib.Path(folder)), "--output-dir", out, "--skip-verification", "--no-report")
+        yield out

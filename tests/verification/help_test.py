@@ -46,19 +46,6 @@ def test_a_missing_case_is_the_only_error():
     assert "nearest known key: Loading/strain y" in refused("lattice", "quick", "--set", "strain y=1")
 
 
-def test_every_command_has_the_shared_options_and_an_example():
-    commands = re.findall(r"^  ([a-z]+) ", latcon("--help").stdout.split("Subcommands:")[1], re.M)
-    shared = re.findall(r"^  (?:-[a-z],)?(--(?!version|help)[a-z-]+)", latcon("--help").stdout, re.M)
-    assert "--yes" in shared
-    for command in commands:
-        text = latcon(command, "--help").stdout
-        assert f"\nExample: latcon {command} " in text
-        line = text.split("(described by latcon --help): ")[1].split("Example")[0]
-        assert re.findall(r"--[a-z-]+", line) == shared
-        assert latcon("help", command).stdout == text
-    assert latcon("help").stdout == latcon("--help").stdout
-
-
 def test_shipped_cases_have_names(tmp_path):
     run = latcon("fracture", "quick", *SHORT, cwd=tmp_path)
     assert run.returncode == 0, run.stderr

@@ -7,16 +7,14 @@ import os
 import pathlib
 import shutil
 import subprocess
-import sys
 import tempfile
 import time
-import unittest
 import xml.etree.ElementTree
 
 from forked import ForkServer
 
 # latcon, or the fork server, which with arguments is latcon.
-LATCON = os.environ.get("LATCON") or sys.argv.pop(1)
+LATCON = os.environ["LATCON"]
 # Long versions of tests run too, and instead of short ones.
 FULL = "LATCON_FULL" in os.environ
 # Verdicts are cached for the duration of a test only, never in the user's cache. A fixture may have left verdicts to begin with.
@@ -113,29 +111,3 @@ def children(process):
         return [int(child) for child in pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()]
     except OSError:
         return []
-
-
-class TemporaryFolder(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        self.out = self.folder / "out"
-
-
-class Started(TemporaryFolder):
-    """Processes of latcon that run in the background and end with the test."""
-
-    def start(self, *arguments, launcher=(), **keywords):
-        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-        process = subprocess.Popen([*launcher, LATCON, *map(str, arguments)], stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE, text=True, env=environment, **keywords)
-        self.addCleanup(self.end, process)
-        return process
-
-    @staticmethod
-    def end(process):
-        if process.poll() is None:
-            process.kill()
-        process.wait()
-        process.stderr.close()

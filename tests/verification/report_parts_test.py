@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from report_test import (AMPLITUDE, BEGIN, END, FOLDER, HOLDS, MOTION_FRAMES, OFFSET, PHASE, PICTURES, SLOPE, WAVELENGTH, drawn,
-                         path_of_tip, read_page, write_fracture, write_verification)
+from report_test import (
+    AMPLITUDE, BEGIN, END, FOLDER, HOLDS, MOTION_FRAMES, OFFSET, PHASE, PICTURES, SLOPE, WAVELENGTH, drawn, path_of_tip, read_page, write_fracture)
 
 from latcon.quantities import number_text
 from latcon.report import animation, report
@@ -37,22 +37,9 @@ def refusal(error):
     return done.stderr
 
 
-def test_broken_package_is_not_called_absent():
-    assert "; PIL.Image: libjpeg.so.62: cannot open" in refusal("ImportError('libjpeg.so.62: cannot open')")
-    assert "; PIL.Image: No module named 'olefile'" in (
-        refusal("ModuleNotFoundError(\"No module named 'olefile'\", name='olefile')"))
-
-
 def test_absent_package_is_named_alone():
     absent = refusal("ModuleNotFoundError(\"No module named 'PIL.Image'\", name='PIL.Image')")
     assert absent.endswith("python3-matplotlib)\n"), absent
-
-
-def test_is_drawn_on_request_alone(runs):
-    write_fracture(runs, [HOLDS])
-    drawn(runs, "--quiet", expect=0)
-    assert list(runs.glob("animation.*")) == []
-    assert "nimation" not in read_page(runs)[1].text
 
 
 def test_has_all_frames_and_is_small(runs):
@@ -88,14 +75,6 @@ def test_has_all_frames_and_is_small(runs):
             assert film.n_frames == MOTION_FRAMES
 
 
-def test_needs_a_motion(runs):
-    write_fracture(runs, [HOLDS])
-    (runs / "motion.pvd").unlink()
-    drawn(runs, "--quiet", "--animation", expect=0)
-    assert not (runs / "animation.gif").exists()
-    assert "has no data for it: animation.gif" in read_page(runs)[1].text
-
-
 # Folders of other users, and without the usual places.
 def test_page_and_pictures_are_written_elsewhere(runs):
     write_fracture(runs / "fig", [HOLDS])
@@ -123,14 +102,6 @@ def test_a_name_that_is_no_text_is_shown_with_a_question_mark(runs):
     out, _ = drawn(folder, expect=0)
     assert "lat?1n/report.html" in out
     assert "latcon report: lat?1n" in read_page(folder)[1].text
-
-
-def test_a_user_without_a_home_gets_no_advice(runs):
-    write_verification(runs, [HOLDS])
-    environment = {name: value for name, value in os.environ.items() if name not in ("MPLCONFIGDIR", "XDG_CACHE_HOME", "XDG_CONFIG_HOME")}
-    done = subprocess.run([sys.executable, FOLDER / "__main__.py", "report", runs, "--quiet"], env=dict(environment, HOME="/dev/null"),
-                          capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_recovers_the_sinusoid():

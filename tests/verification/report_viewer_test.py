@@ -1,25 +1,21 @@
 """Tests of the report in Chromium: the viewer shows the values of the files, and plots and page respond to the reader."""
 import base64
 import hashlib
-import io
 import json
 import re
-import tempfile
 import time
-import unittest
 import zlib
 from dataclasses import replace
-from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
-from PIL import Image
+import pytest
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from browser import Browser
 from made_up_sheet import FRAMES, SPACING, write_torn_sheet
-from report_test import FAILS, FOLDER, HOLDS, REPORTED, main, write_verification
+from report_test import HOLDS, REPORTED, main, write_verification
 
 from latcon.report import sheet_data
 from latcon.report.motion import read_motion
@@ -62,29 +58,28 @@ def series(path):
     return [(float(d.attrib["timestep"]), path.parent / d.attrib["file"]) for d in ElementTree.parse(path).iter("DataSet")]
 
 
-class ViewerTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.runs = Path(folder.name) / "runs"
-        write_verification(cls.runs / "verify", [HOLDS, REPORTED])
-        write_torn_sheet(cls.runs / "torn")
-        cls.page = cls.runs / "report.html"
-        assert main(["report", str(cls.runs), "--quiet"]) == 0
-        cls.browser = cls.enterClassContext(Browser(1280, SCREEN))
+class TestViewer:
+    @pytest.fixture(scope="class")
+    def shown(self, module_path):
+        """The folder of a page, and a browser."""
+        runs = module_path / "runs"
+        write_verification(runs / "verify", [HOLDS, REPORTED])
+        write_torn_sheet(runs / "torn")
+        assert main(["report", str(runs), "--quiet"]) == 0
+        with Browser(1280, SCREEN) as browser:
+            yield runs, browser
 
-    def setUp(self):
+    @pytest.fixture(autouse=True)
+    def opened(self, shown):
+        """Opens the page, which asks for nothing outside of it and prints no error."""
+        self.runs, self.browser = shown
         self.browser.said.clear()
         self.browser.requested.clear()
-        self.browser.resize(1280, SCREEN)
-        self.browser.dark(False)
-        self.browser.open(self.page)
-
-    def tearDown(self):
-        self.assertEqual(self.browser.said, [])
-        own = ("data:", "blob:", self.page.resolve().as_uri())
-        self.assertEqual([url for url in self.browser.requested if not url.startswith(own)], [])
+        self.browser.open(self.runs / "report.html")
+        yield
+        assert self.browser.said == []
+        own = ("data:", "blob:", (self.runs / "report.html").resolve().as_uri())
+        assert [url for url in self.browser.requested if not url.startswith(own)] == []
 
     def canvas(self, name="sheet"):
         """Digest of what a canvas shows."""
@@ -116,38 +111,19 @@ class ViewerTest(unittest.TestCase):
 
     def test_the_slider_moves_the_sheet(self):
         times = [time for time, _ in series(self.runs / "torn" / "motion.pvd")]
-        self.assertEqual(self.text("time"), f"{1e3 * times[-1]:.3f} ms")
+        assert self.text("time") == f"{1e3 * times[-1]:.3f} ms"
         self.browser.value("document.querySelector('.viewer .slider').focus()")
         shown = {"sheet": [self.canvas()], "near-tip": [self.canvas("near-tip")]}
         self.key("Home")
         for number in range(3):
-            self.assertEqual(self.text("time"), f"{1e3 * times[number]:.3f} ms")
+            assert self.text("time") == f"{1e3 * times[number]:.3f} ms"
             for name, digests in shown.items():
                 digests.append(self.canvas(name))
             self.key("ArrowRight")
         self.key("End")
         for name, digests in shown.items():
-            self.assertEqual(len(set(digests)), 4, name)
-            self.assertEqual(self.canvas(name), digests[0], name)
-
-    def test_play_advances_to_the_end(self):
-        self.click(".viewer .play")
-        seen, end = [], time.monotonic() + 60
-        while time.monotonic() < end and self.text("play") != "▶":
-            seen.append(int(self.browser.value("document.querySelector('.viewer .slider').value")))
-        self.assertEqual(seen, sorted(seen))
-        self.assertGreaterEqual(len(set(seen)), 3)  # a slow machine skips some
-        self.assertEqual(int(self.browser.value("document.querySelector('.viewer .slider').value")), FRAMES - 1)
-        self.click(".viewer .play")
-        self.browser.value("""new Promise((done) => {
-          const pause = () => document.querySelector('.viewer .slider').value > 0
-            ? (document.querySelector('.viewer .play').click(), done()) : setTimeout(pause, 5);
-          pause();
-        })""")
-        paused = self.text("time")
-        time.sleep(1)
-        self.assertEqual(self.text("time"), paused)
-        self.assertEqual(self.text("play"), "▶")
+            assert len(set(digests)) == 4, name
+            assert self.canvas(name) == digests[0], name
 
     def hover(self, canvas):
         """Values below points of a canvas: [(pointer, match of VALUES), ...]."""
@@ -160,9 +136,9 @@ class ViewerTest(unittest.TestCase):
                 match = VALUES.match(self.text("values"))
                 if match:
                     found.append((pointer, match))
-        self.assertGreater(len(found), 10)
+        assert len(found) > 10
         self.browser.mouse("mouseMoved", 1, 1)
-        self.assertIn("Point at the sheet", self.text("values"))
+        assert "Point at the sheet" in self.text("values")
         return found
 
     def check_values(self, file, full, found, configuration):
@@ -175,83 +151,34 @@ class ViewerTest(unittest.TestCase):
             X, Y, x, y, speed, damage = map(float, numbers)
             point = file.point[int(site)]
             for shown, value in zip((X, Y), file.reference[point]):
-                self.assertAlmostEqual(shown / 100, value, delta=1.001 * PLACE[0])
+                assert shown / 100 == pytest.approx(value, abs=1.001 * PLACE[0])
             for shown, value in zip((x, y), file.place[point]):
-                self.assertAlmostEqual(shown / 100, value, delta=1.001 * sum(PLACE))
-            self.assertAlmostEqual(speed, file.speed[point], delta=1.001 * (SPEED + speed_step))
+                assert shown / 100 == pytest.approx(value, abs=1.001 * sum(PLACE))
+            assert speed == pytest.approx(file.speed[point], abs=1.001 * (SPEED + speed_step))
             pointers.append(pointer)
             places.append((file.reference if configuration == "undeformed" else file.place)[point])
             if first is not None:
                 a, b = file.point[int(first)], file.point[int(second)]
                 expected = np.hypot(*(file.place[a] - file.place[b])) / np.hypot(*(file.reference[a] - file.reference[b]))
-                self.assertAlmostEqual(float(stretch), expected, delta=1.001 * sum(STRETCH))
+                assert float(stretch) == pytest.approx(expected, abs=1.001 * sum(STRETCH))
             if full is not None:
-                self.assertAlmostEqual(damage, full.damage[point], delta=0.51e-3)
+                assert damage == pytest.approx(full.damage[point], abs=0.51e-3)
                 if first is not None:  # fails for a bond that has broken
-                    self.assertAlmostEqual(float(stretch), full.stretch[frozenset((int(first), int(second)))],
-                                           delta=1.001 * sum(STRETCH))
+                    assert float(stretch) == pytest.approx(full.stretch[frozenset((int(first), int(second)))], abs=1.001 * sum(STRETCH))
         pointers, places = np.array(pointers), np.array(places)
         x, y = (np.polyfit(places[:, axis], pointers[:, axis], 1) for axis in (0, 1))
-        self.assertAlmostEqual(x[0] / -y[0], 1, delta=0.02)
+        assert x[0] / -y[0] == pytest.approx(1, abs=0.02)
         away = np.hypot(np.polyval(x, places[:, 0]) - pointers[:, 0], np.polyval(y, places[:, 1]) - pointers[:, 1])
-        self.assertLess(np.median(away), 0.6 * x[0] * SPACING * 1.8)  # of a spacing, stretched
+        assert np.median(away) < 0.6 * x[0] * SPACING * 1.8  # of a spacing, stretched
 
-    def test_values_below_the_pointer_are_those_of_the_file(self):
+    @pytest.mark.parametrize("number, configuration, canvas", [
+        (FRAMES - 1, "deformed", "sheet"), (FRAMES - 1, "deformed", "near-tip"), (5, "undeformed", "sheet"), (0, "deformed", "sheet")])
+    def test_values_below_the_pointer_are_those_of_the_file(self, number, configuration, canvas):
         whole = File(self.runs / "torn" / "lattice-0001.vtp", None)
-        frames = series(self.runs / "torn" / "motion.pvd")
-        for number, configuration, canvas in ((FRAMES - 1, "deformed", "sheet"), (FRAMES - 1, "deformed", "near-tip"),
-                                              (5, "undeformed", "sheet"), (0, "deformed", "sheet")):
-            with self.subTest(frame=number, configuration=configuration, canvas=canvas):
-                self.choose("configuration", configuration)
-                self.browser.value(f"document.querySelector('.viewer').viewer.show({number})")
-                file = File(frames[number][1], whole.site)
-                self.check_values(file, whole if number == FRAMES - 1 else None, self.hover(canvas), configuration)
-
-    def site_at(self, x, y):
-        """Number of the site below a point of the window, and the distance of its mark from there [pixels]."""
-        self.browser.mouse("mouseMoved", x, y)
-        match = VALUES.match(self.text("values"))
-        left, top, *_ = self.place(".viewer .sheet")
-        url = self.browser.value("document.querySelector('.viewer .sheet').toDataURL()")
-        with Image.open(io.BytesIO(base64.b64decode(url.partition(",")[2]))) as picture:
-            marked = np.argwhere((np.asarray(picture.convert("RGB")) == MARK).all(axis=2))
-        middle = (marked.min(axis=0) + marked.max(axis=0))[::-1] / 2 + (left, top)
-        return int(match[1]), np.hypot(middle[0] - x, middle[1] - y)
-
-    def test_zoom_and_pan_keep_the_values_in_place(self):
-        before = self.canvas()
-        left, top, width, height = self.place(".viewer .sheet")
-        x, y = left + 0.3 * width, top + 0.25 * height
-        site, away = self.site_at(x, y)
-        spacing = width / 60  # about 60 sites along the sheet
-        self.assertLess(away, 1.5 * spacing)
-        for _ in range(2):
-            self.browser.mouse("mousePressed", x, y, button="left", clickCount=2)
-            self.browser.mouse("mouseReleased", x, y, button="left", clickCount=2)
-        closer, away = self.site_at(x, y)
-        self.assertEqual(closer, site)
-        self.assertLess(away, 1.5 * 4 * spacing)
-        enlarged = self.canvas()
-        for dx, dy in ((60, 0), (0, 40)):
-            self.browser.mouse("mousePressed", x, y, button="left", clickCount=1)
-            self.browser.mouse("mouseMoved", x + dx, y + dy, button="left", buttons=1)
-            self.browser.mouse("mouseReleased", x + dx, y + dy, button="left", clickCount=1)
-            x, y = x + dx, y + dy
-            self.assertEqual(self.site_at(x, y)[0], site)
-        for factor, button in ((1.6, "closer"), (1 / 1.6, "farther")):
-            scale = self.browser.value("(() => { const v = document.querySelector('.viewer').viewer;"
-                                       "return v.frameOf(v.views[0]).scale; })()")
-            self.click(f".viewer .{button}")
-            now = self.browser.value("(() => { const v = document.querySelector('.viewer').viewer;"
-                                     "return v.frameOf(v.views[0]).scale; })()")
-            self.assertAlmostEqual(now / scale, factor, places=6)
-        whole = File(self.runs / "torn" / "lattice-0001.vtp", None)
-        last = File(series(self.runs / "torn" / "motion.pvd")[-1][1], whole.site)
-        self.check_values(last, whole, self.hover("sheet"), "deformed")
-        self.assertNotEqual(enlarged, before)
-        self.click(".viewer .reset")
-        self.browser.mouse("mouseMoved", 1, 1)
-        self.assertEqual(self.canvas(), before)
+        self.choose("configuration", configuration)
+        self.browser.value(f"document.querySelector('.viewer').viewer.show({number})")
+        file = File(series(self.runs / "torn" / "motion.pvd")[number][1], whole.site)
+        self.check_values(file, whole if number == FRAMES - 1 else None, self.hover(canvas), configuration)
 
     def test_colours_and_configurations_differ(self):
         shown = set()
@@ -260,10 +187,10 @@ class ViewerTest(unittest.TestCase):
             for colour, words in (("speed", "[m/s]"), ("stretch", "stretch of bonds"), ("damage", "fraction of bonds broken")):
                 self.choose("colour", colour)
                 shown.add(self.canvas())
-                self.assertIn(words, self.text("colour-name"))
-        self.assertEqual(len(shown), 6)
+                assert words in self.text("colour-name")
+        assert len(shown) == 6
         self.browser.value("(() => { const s = document.querySelector('.viewer .sheet'); s.width = s.width; })()")  # wipes it
-        self.assertNotIn(self.canvas(), shown)
+        assert self.canvas() not in shown
 
     def test_plots_give_the_values_below_the_pointer(self):
         for name, columns in (("path", ("X", "Y")), ("energy", ("t", "broken"))):
@@ -276,40 +203,9 @@ class ViewerTest(unittest.TestCase):
             scale = (100, 1e3) if name == "path" else (1e3, 1)
             first, second = (scale[i] * table[column] for i, column in enumerate(columns))
             row = np.abs(first - float(shown[0])).argmin()
-            self.assertAlmostEqual(float(shown[0]) / first[row], 1, delta=0.5e-4)
+            assert float(shown[0]) / first[row] == pytest.approx(1, abs=0.5e-4)
             value = second[row] - (second[0] if name == "energy" else 0)
-            self.assertAlmostEqual(float(shown[1 if name == "path" else 2]) / value, 1, delta=0.5e-4)
-
-    def test_is_short_and_its_contents_stay(self):
-        self.assertLessEqual(self.browser.value("document.documentElement.scrollHeight"), 3 * SCREEN)
-        self.assertLess(self.place(".plot.path")[1], SCREEN)
-        self.browser.value("document.querySelector('nav a[href=\"#inputs\"]').click()")
-        self.browser.wait("scrollY > 400")
-        self.assertEqual(self.browser.value("document.querySelector('nav').getBoundingClientRect().top"), 0)
-        self.assertEqual(self.browser.value("[...document.querySelectorAll('details')].filter((d) => d.open && !d.parentElement"
-                                            ".closest('details')).length"), 0)
-        self.browser.value("location.hash = 'claim-energy'")
-        self.browser.wait("document.querySelector('#claim-energy > details').open")
-
-    def test_figures_are_dark_on_dark_pages(self):
-        self.browser.value("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
-        selectors = [".viewer .sheet", ".plot.path", ".plot.energy",
-                     *(f"#stills-{self.number()} figure:nth-of-type({i}) .picture" for i in (1, 2, 3, 4))]
-        for dark in (False, True):
-            self.browser.dark(dark)
-            for selector in selectors:
-                left, top, width, height = self.place(selector)
-                data = self.browser.call("Page.captureScreenshot", format="png")["data"]
-                with Image.open(io.BytesIO(base64.b64decode(data))) as picture:
-                    grey = np.asarray(picture.convert("L"), dtype=float)
-                # The corner of a figure is its background.
-                corner = grey[max(0, int(top) + 3):int(top) + 6, int(left) + 3:int(left) + 6]
-                if corner.size:
-                    (self.assertLess if dark else self.assertGreater)(corner.mean(), 60 if dark else 230, f"{selector}, {dark}")
-
-    def number(self):
-        """Number of the crack in the page."""
-        return self.browser.value("document.querySelector('[id^=stills-]').id.split('-')[1]")
+            assert float(shown[1 if name == "path" else 2]) / value == pytest.approx(1, abs=0.5e-4)
 
 
 def report_ranges(folder):
@@ -318,112 +214,89 @@ def report_ranges(folder):
     return sheet_data.sheet_data(run, read_motion(run), 10**9).contents["ranges"]
 
 
-class ComparisonTest(unittest.TestCase):
-    """The page of two cracks."""
+def test_both_sheets_show_the_same_time(tmp_path):
+    folder = tmp_path
+    for run in ("one", "other"):
+        write_torn_sheet(folder / run)
+    record = folder / "other" / "run.json"
+    record.write_text(record.read_text().replace('"3"', '"3.5"'))
+    listed = folder / "other" / "motion.pvd"
+    frames = re.findall(r"<DataSet[^>]*>", listed.read_text())
+    fewer = [frame for i, frame in enumerate(frames) if i % 3 != 1]
+    listed.write_text("<VTKFile><Collection>" + "".join(fewer) + "</Collection></VTKFile>")
+    times = [[time for time, _ in series(folder / run / "motion.pvd")] for run in ("one", "other")]
+    quantity = {"name": "wavelength", "unit": "m", "first": 0.02, "first_uncertainty": 1e-4, "second": 0.0212,
+                "second_uncertainty": None, "difference": 0.0012, "difference_over_uncertainty": None}
+    document = {"first": "one", "second": "other", "first_folder": "../one", "second_folder": "../other",
+                "failed_checks": {"first": "", "second": "energy"},
+                "pattern": {"first": "oscillating", "second": "straight"}, "quantities": [quantity],
+                "entries": [{"key": "Loading/strain y", "unit": "1", "first": "1.8", "second": "1.9"}], "paths": None}
+    (folder / "compare").mkdir()
+    (folder / "compare" / "compare.json").write_text(json.dumps(document))
+    assert main(["compare", str(folder / "compare"), "--quiet"]) == 0
+    with Browser(1280, SCREEN) as browser:
+        browser.open(folder / "compare" / "compare.html")
+        browser.wait("document.querySelectorAll('.viewer.ready').length === 2")
 
-    def test_both_sheets_show_the_same_time(self):
-        with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            for run in ("one", "other"):
-                write_torn_sheet(folder / run)
-            record = folder / "other" / "run.json"
-            record.write_text(record.read_text().replace('"3"', '"3.5"'))
-            listed = folder / "other" / "motion.pvd"
-            frames = re.findall(r"<DataSet[^>]*>", listed.read_text())
-            fewer = [frame for i, frame in enumerate(frames) if i % 3 != 1]
-            listed.write_text("<VTKFile><Collection>" + "".join(fewer) + "</Collection></VTKFile>")
-            times = [[time for time, _ in series(folder / run / "motion.pvd")] for run in ("one", "other")]
-            quantity = {"name": "wavelength", "unit": "m", "first": 0.02, "first_uncertainty": 1e-4, "second": 0.0212,
-                        "second_uncertainty": None, "difference": 0.0012, "difference_over_uncertainty": None}
-            document = {"first": "one", "second": "other", "first_folder": "../one", "second_folder": "../other",
-                        "failed_checks": {"first": "", "second": "energy"},
-                        "pattern": {"first": "oscillating", "second": "straight"}, "quantities": [quantity],
-                        "entries": [{"key": "Loading/strain y", "unit": "1", "first": "1.8", "second": "1.9"}], "paths": None}
-            (folder / "compare").mkdir()
-            (folder / "compare" / "compare.json").write_text(json.dumps(document))
-            self.assertEqual(main(["compare", str(folder / "compare"), "--quiet"]), 0)
-            with Browser(1280, SCREEN) as browser:
-                browser.open(folder / "compare" / "compare.html")
-                browser.wait("document.querySelectorAll('.viewer.ready').length === 2")
+        def shown():
+            return browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.frame)")
 
-                def shown():
-                    return browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.frame)")
-
-                for moved in (0, 1):
-                    for frame, time in enumerate(times[moved]):
-                        browser.value(f"(() => {{ const s = document.querySelectorAll('.viewer .slider')[{moved}];"
-                                      f"s.value = {frame}; s.dispatchEvent(new Event('input', {{bubbles: true}})); }})()")
-                        nearest = [int(np.abs(np.array(all_times) - time).argmin()) for all_times in times]
-                        self.assertEqual(shown(), nearest)
-                browser.value("(() => { const s = document.querySelectorAll('.viewer .colour')[1]; s.value = 'damage';"
-                              "s.dispatchEvent(new Event('change', {bubbles: true})); })()")
-                self.assertEqual(browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.quantity)"),
-                                 ["damage", "damage"])
-                ranges = browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.sheet.ranges)")
-                own = [report_ranges(folder / run) for run in ("one", "other")]
-                self.assertNotEqual(own[0], own[1])
-                for name, (low, high) in ranges[0].items():
-                    self.assertEqual([low, high], [min(one[name][0] for one in own), max(one[name][1] for one in own)])
-                    self.assertEqual(ranges[1][name], [low, high])
-                text = browser.value("document.body.innerText")
-                self.assertEqual(browser.said, [])
-        for words in (f"{len(fewer)} frames", "2.000 ± 0.010", "2.12", "oscillating", "straight", "Loading/strain y",
-                      "other failed its checks"):
-            self.assertIn(words, text)
-
-    def test_a_damaged_comparison_is_bad_input(self):
-        with tempfile.TemporaryDirectory() as name:
-            self.assertEqual(main(["compare", name]), 2)
-            (Path(name) / "compare.json").write_text('{"first": "one"}')
-            self.assertEqual(main(["compare", name]), 2)
-            self.assertFalse((Path(name) / "compare.html").exists())
+        for moved in (0, 1):
+            for frame, time in enumerate(times[moved]):
+                browser.value(f"(() => {{ const s = document.querySelectorAll('.viewer .slider')[{moved}];"
+                              f"s.value = {frame}; s.dispatchEvent(new Event('input', {{bubbles: true}})); }})()")
+                nearest = [int(np.abs(np.array(all_times) - time).argmin()) for all_times in times]
+                assert shown() == nearest
+        browser.value("(() => { const s = document.querySelectorAll('.viewer .colour')[1]; s.value = 'damage';"
+                      "s.dispatchEvent(new Event('change', {bubbles: true})); })()")
+        assert browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.quantity)") == ["damage", "damage"]
+        ranges = browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.sheet.ranges)")
+        own = [report_ranges(folder / run) for run in ("one", "other")]
+        assert own[0] != own[1]
+        for name, (low, high) in ranges[0].items():
+            assert [low, high] == [min(one[name][0] for one in own), max(one[name][1] for one in own)]
+            assert ranges[1][name] == [low, high]
+        text = browser.value("document.body.innerText")
+        assert browser.said == []
+    for words in (f"{len(fewer)} frames", "2.000 ± 0.010", "2.12", "oscillating", "straight", "Loading/strain y",
+              "other failed its checks"):
+        assert words in text
 
 
-class SizeTest(unittest.TestCase):
-    def test_a_sheet_takes_no_more_than_it_may(self):
-        """Random displacements do not compress: frames are dropped until they fit."""
-        with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            write_torn_sheet(folder / "run")
-            run = read_run(folder / "run")
-            motion = read_motion(run)
-            generator, step = np.random.default_rng(5), SPACING / sheet_data.STEPS_PER_SPACING
-            motion = replace(motion, frames=[
-                replace(frame, time=frame.time + 1e-6 * copy,
-                        position=frame.position + step * generator.integers(-512, 512, frame.position.shape))
-                for frame in motion.frames for copy in range(4)])
-            all_frames = sheet_data.sheet_data(run, motion, 10**9)
-            sites = len(motion.whole.reference)
-            # At least the 10 random bits of a coordinate; base64 has 4 letters for 3 bytes.
-            self.assertGreater(len(all_frames.text), len(motion.frames) * 2 * sites * 10 / 8 * 4 / 3)
-            most = len(all_frames.text) // 3
-            fewer = sheet_data.sheet_data(run, motion, most)
-            self.assertLessEqual(len(fewer.text), most)
-            self.assertGreaterEqual(len(fewer.contents["times"]), sheet_data.FEWEST_FRAMES)
-            for end in (0, -1):
-                self.assertEqual(fewer.contents["times"][end], motion.frames[end].time)
-            self.assertIsNone(sheet_data.sheet_data(run, motion, most // 20))
-
-    def test_fig_1_is_below_8_megabytes(self):
-        """Checks the limits of a page. For Fig. 1 see published_test.py, which checks that its pictures are below 3 MB."""
-        scripts = sum(path.stat().st_size for path in [*FOLDER.glob("templates/*.js"),
-                                                       Path("/usr/share/javascript/dygraphs/dygraph.min.js")])
-        self.assertLess(sheet_data.LARGEST_SHEETS + scripts + 3_000_000, 8_000_000)
-
-    def test_stored_numbers_are_read_back(self):
-        generator = np.random.default_rng(3)
-        for values in (generator.integers(-2**29, 2**29, (3, 50)), np.arange(7), np.zeros((2, 0), dtype=int)):
-            packed = sheet_data.packed(values)
-            planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["data"])), dtype=np.uint8)
-            steps = planes.reshape(4, -1).T.copy().view("<u4").reshape(packed["shape"]).astype(np.int64)
-            np.testing.assert_array_equal(np.cumsum((steps >> 1) ^ -(steps & 1), axis=-1), values)
+def test_a_damaged_comparison_is_bad_input(tmp_path):
+    for text in ("", '{"first": "one"}'):
+        (tmp_path / "compare.json").write_text(text)
+        assert main(["compare", str(tmp_path)]) == 2
+    assert not (tmp_path / "compare.html").exists()
 
 
-class FoldedTest(unittest.TestCase):
-    def test_claims_that_fail_are_open(self):
-        with tempfile.TemporaryDirectory() as name:
-            write_verification(Path(name) / "verify", [HOLDS, FAILS])
-            self.assertEqual(main(["report", name, "--quiet"]), 3)
-            html = (Path(name) / "report.html").read_text(encoding="utf-8")
-        for claim, opened in (("energy", ""), ("prestretch", " open")):
-            self.assertIn(f'<section id="claim-{claim}"><details class="claim"{opened}><summary>', html)
+def test_a_sheet_takes_no_more_than_it_may(tmp_path):
+    """Random displacements do not compress: frames are dropped until they fit."""
+    write_torn_sheet(tmp_path / "run")
+    run = read_run(tmp_path / "run")
+    motion = read_motion(run)
+    generator, step = np.random.default_rng(5), SPACING / sheet_data.STEPS_PER_SPACING
+    motion = replace(motion, frames=[
+        replace(frame, time=frame.time + 1e-6 * copy,
+                position=frame.position + step * generator.integers(-512, 512, frame.position.shape))
+        for frame in motion.frames for copy in range(4)])
+    all_frames = sheet_data.sheet_data(run, motion, 10**9)
+    sites = len(motion.whole.reference)
+    # At least the 10 random bits of a coordinate; base64 has 4 letters for 3 bytes.
+    assert len(all_frames.text) > len(motion.frames) * 2 * sites * 10 / 8 * 4 / 3
+    most = len(all_frames.text) // 3
+    fewer = sheet_data.sheet_data(run, motion, most)
+    assert len(fewer.text) <= most
+    assert len(fewer.contents["times"]) >= sheet_data.FEWEST_FRAMES
+    for end in (0, -1):
+        assert fewer.contents["times"][end] == motion.frames[end].time
+    assert sheet_data.sheet_data(run, motion, most // 20) is None
+
+
+def test_stored_numbers_are_read_back():
+    generator = np.random.default_rng(3)
+    for values in (generator.integers(-2**29, 2**29, (3, 50)), np.arange(7), np.zeros((2, 0), dtype=int)):
+        packed = sheet_data.packed(values)
+        planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["data"])), dtype=np.uint8)
+        steps = planes.reshape(4, -1).T.copy().view("<u4").reshape(packed["shape"]).astype(np.int64)
+        np.testing.assert_array_equal(np.cumsum((steps >> 1) ^ -(steps & 1), axis=-1), values)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Tests of the page and the gallery of a synthetic study: checks, pictures of runs, numbers, choice of the cracks."""
 import contextlib
 import csv
@@ -6,27 +5,23 @@ import io
 import json
 import re
 import sys
-import tempfile
-import unittest
 from pathlib import Path
 from unittest import mock
 
 import numpy as np
+import pytest
 from matplotlib.collections import LineCollection
-from matplotlib.colors import to_rgb
 from PIL import Image
 
-sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "pictures"))
 
 import gallery
 from near_tip_plots_test import write_field
-from report_test import MOTION_FRAMES, Page, main, write_fracture
+from report_test import Page, main, write_fracture
 
 from latcon.report import phase_map, study, study_plots
-from latcon.report.pictures import shrink
 from latcon.report.study_plots import draw_sweep
 from latcon.report.study_quantities import MEASURED, NEAR_TIP, PATH, asked_quantities
 from latcon.report.study_runs import read_study
@@ -71,11 +66,10 @@ def made_up_study():
     }
 
 
-class MadeUpStudy(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
+class MadeUpStudy:
+    @pytest.fixture(autouse=True)
+    def set_up(self, tmp_path):
+        self.folder = tmp_path
         self.document = made_up_study()
         for name in ("wavy-2", "calm-1", "along-1", "across-1"):
             write_fracture(self.folder / "runs" / name, [])
@@ -89,44 +83,40 @@ class MadeUpStudy(unittest.TestCase):
         """The parsed page with the pictures of some runs, and its HTML."""
         self.document["pictures"] = list(pictures)
         self.read()
-        self.assertEqual(main(["study", str(self.folder), "--quiet"]), 0)
+        assert main(["study", str(self.folder), "--quiet"]) == 0
         html = (self.folder / "study.html").read_text(encoding="utf-8")
         page = Page(html)
-        self.assertEqual(page.open, [])
+        assert page.open == []
         return page, html
 
-    def near(self, png, colour):
-        """Number of pixels of a colour."""
-        pixels = np.asarray(Image.open(png).convert("RGB"), dtype=float)
-        return np.count_nonzero(np.abs(pixels - colour).max(axis=2) < 30)
 
-
-class StudyPage(MadeUpStudy):
+class TestStudyPage(MadeUpStudy):
     def test_pictures_of_a_run_are_of_its_first_measured_seed_and_small(self):
         page, _ = self.page(["wavy", "calm"])
         pictures = self.folder / "pictures"
         for run in ("wavy", "calm"):
             for kind in ("sheet", "velocity", "stress"):
-                self.assertTrue((pictures / f"{run}-{kind}.png").exists(), run)
-        self.assertIn("wavy, seed 2", page.text)
+                assert (pictures / f"{run}-{kind}.png").exists(), run
+        assert "wavy, seed 2" in page.text
         largest = max(png.stat().st_size for png in pictures.glob("wavy-*.png"))
         with mock.patch.object(study, "LARGEST_PICTURE", largest // 2):
             self.page(["wavy"])
         for png in pictures.glob("wavy-*.png"):
-            self.assertLessEqual(png.stat().st_size, largest // 2)
+            assert png.stat().st_size <= largest // 2
 
     def test_numbers_of_runs_are_means_over_seeds(self):
         page, _ = self.page()
         for words in ("2.20 ± 0.14 (2 of 3)", "14.0 ± 1.4 (2 of 3)", "1.75 (1 of 3)", "1.07 (1)", "33 (1)", "0.15 (1 of 3)"):
-            self.assertIn(words, page.text)
+            assert words in page.text
 
     def sweep(self, row, *quantities):
         """Points drawn for a sweep, and the labels of its panels."""
         labels = []
         with mock.patch.object(study_plots, "save", wraps=study_plots.save) as saved:
-            self.assertTrue(draw_sweep(self.read(), row, quantities, self.folder / "sweep.png"))
+            assert draw_sweep(self.read(), row, quantities, self.folder / "sweep.png")
             labels = [(axes.get_xlabel(), axes.get_ylabel()) for axes in saved.call_args.args[0].axes]
         return np.asarray(Image.open(self.folder / "sweep.png").convert("RGB"), dtype=float), labels
+
     def banner(self):
         """Class and head of the banner of a study whose rows were all judged."""
         self.document["seeds"] = [seed for seed in self.document["seeds"] if seed["state"] == "measured"]
@@ -134,31 +124,22 @@ class StudyPage(MadeUpStudy):
 
     def test_is_green_only_if_everything_was_verified_measured_and_holds(self):
         self.document["verified"] = True
-        self.assertEqual(self.banner(), ("holds", "✓ Holds: all 2 rows"))
+        assert self.banner() == ("holds", "✓ Holds: all 2 rows")
         for verified in (False, None, "yes"):
             self.document["verified"] = verified
-            self.assertEqual(self.banner(), ("warns", "! Not verified: all 2 rows hold, but not every run was verified"))
+            assert self.banner() == ("warns", "! Not verified: all 2 rows hold, but not every run was verified")
         del self.document["verified"]
-        self.assertEqual(self.banner()[0], "warns")
+        assert self.banner()[0] == "warns"
         self.document["verified"] = True
         rows = self.document["claims"][0]["rows"]
         rows[0]["verdict"], self.document["claims"][0]["verdict"] = "not measured", "incomplete"
-        self.assertEqual(self.banner(), ("warns", "! Incomplete: 1 row holds, but not everything was measured"))
+        assert self.banner() == ("warns", "! Incomplete: 1 row holds, but not everything was measured")
         page, html = self.page()
-        self.assertIn("! incomplete", page.text)
-        self.assertIn('<tr class="warns"><td class="verdict">! not measured</td>', html)
+        assert "! incomplete" in page.text
+        assert '<tr class="warns"><td class="verdict">! not measured</td>' in html
         for row in rows:
             row["verdict"] = "reported"
-        self.assertEqual(self.banner(), ("reported", "· Reported: no row has a rule"))
-
-    def test_sweeps_show_both_amplitudes(self):
-        row = self.document["claims"][0]["rows"][1]
-        pictures = []
-        for crest in (1.5e-3, None):
-            self.document["seeds"][1]["values"]["crest_amplitude"] = crest
-            pictures.append(self.sweep(row, *PATH)[0])
-        columns = np.nonzero(np.abs(pictures[0] - pictures[1]).max(axis=(0, 2)) > 30)[0]
-        self.assertGreater(columns.min(), 0.6 * pictures[0].shape[1])
+        assert self.banner() == ("reported", "· Reported: no row has a rule")
 
     def test_sweeps_show_what_is_asked_for_with_units(self):
         row = made_up_row(["calm", "wavy"], "speed_lagrangian", against="Near tip/interval", against_unit="s")
@@ -168,32 +149,14 @@ class StudyPage(MadeUpStudy):
             self.document["seeds"][3]["values"]["speed_lagrangian"] = 21.0
             picture, labels = self.sweep(row, "speed_lagrangian", "end_time")
             pictures.append(picture)
-        self.assertEqual(labels, [("Near tip/interval [ms]", "speed [m/s]"), ("Near tip/interval [ms]", "end time [ms]")])
+        assert labels == [("Near tip/interval [ms]", "speed [m/s]"), ("Near tip/interval [ms]", "end time [ms]")]
         changed = np.nonzero(np.abs(pictures[0] - pictures[1]).max(axis=(0, 2)) > 30)[0]
-        self.assertGreater(len(changed), 5)
-        self.assertLess(changed.max(), 0.5 * pictures[0].shape[1])
-        self.assertEqual(asked_quantities([row, made_up_row([], "pattern"), made_up_row([], "wavelength")]),
-                         ["speed_lagrangian", *PATH])
-
-    def test_page_shows_a_picture_for_each_sweep(self):
-        rows = self.document["claims"][0]["rows"]
-        for run, speed in ((1, 20.0), (3, 21.0)):
-            self.document["seeds"][run]["values"]["speed_lagrangian"] = speed
-        rows += [made_up_row(["calm", "wavy"], "speed_lagrangian", against="zeta"),
-                 made_up_row(["calm", "wavy"], "speed_lagrangian", against="Loading/strain y")]
-        page, _ = self.page()
-        self.assertIn("Wavelength, speed lagrangian against zeta: mean", page.text)
-        self.assertIn("Speed lagrangian against Loading/strain y: mean", page.text)
-        self.assertEqual(sorted(path.name for path in (self.folder / "pictures").glob("sweep-*")),
-                         ["sweep-1-1.png", "sweep-1-2.png"])
-
-    def test_a_claim_of_one_s_own_needs_no_paper(self):
-        self.assertIn("Paper:", self.page()[0].text)
-        self.document["claims"][0]["paper"] = ""
-        self.assertNotIn("Paper:", self.page()[0].text)
+        assert len(changed) > 5
+        assert changed.max() < 0.5 * pictures[0].shape[1]
+        assert asked_quantities([row, made_up_row([], "pattern"), made_up_row([], "wavelength")]) == ["speed_lagrangian", *PATH]
 
 
-class Maps(MadeUpStudy):
+class TestMaps(MadeUpStudy):
     """Pages of studies that vary one entry or two: a grid of 3 x 2 cells with two seeds."""
 
     def vary(self, entries, patterns):
@@ -208,39 +171,6 @@ class Maps(MadeUpStudy):
     GRID = {"Sheet/width": [0.01, 0.01, 0.02, 0.02, 0.03, 0.03], "Sheet/depth": [1.0, 2.0] * 3}
     WAVY, CALM = ("oscillating", "oscillating"), ("straight", "straight")
 
-    def drawn(self, patterns):
-        """Axes, texts of the legend and caption of the map."""
-        self.vary(self.GRID, patterns)
-        with mock.patch.object(phase_map, "save", wraps=phase_map.save) as saved:
-            caption = study_plots.draw_map(self.read(), self.folder / "map.png")
-            figure = saved.call_args.args[0]
-        return figure.axes[0], [text.get_text() for text in figure.legends[0].get_texts()], caption
-
-    def test_map_has_a_cell_per_case_with_units_and_contours(self):
-        axes, legend, caption = self.drawn([self.CALM] * 2 + [self.WAVY] * 4)
-        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("Sheet/width [cm]", "Sheet/depth [cm]"))
-        boxes = [patch.get_bbox().bounds for patch in axes.patches]
-        np.testing.assert_allclose(boxes, [(x, y, 1, 100) for x in (0.5, 1.5, 2.5) for y in (50, 150)])
-        self.assertEqual([patch.get_facecolor()[:3] for patch in axes.patches],
-                         [phase_map.shaded("straight")] * 2 + [phase_map.shaded("oscillating")] * 4)
-        self.assertEqual({patch.get_alpha() for patch in axes.patches}, {None})  # opaque: cells of a refinement lie on others
-        lightest = min(to_rgb(phase_map.COLOURS["straight"])), min(phase_map.shaded("straight"))
-        self.assertAlmostEqual(1 - lightest[1], phase_map.SHADE * (1 - lightest[0]))
-        self.assertEqual(legend, ["oscillating", "straight", "boundary"])
-        self.assertEqual(axes.get_title(loc="left"), "contours: wavelength [cm]")
-        self.assertIn("Patterns over Sheet/width and Sheet/depth", caption)
-
-    def test_patterns_have_the_colours_of_the_map_in_all_plots(self):
-        self.assertEqual({pattern: colour for pattern, (_, colour) in study_plots.PATTERNS.items()}, phase_map.COLOURS)
-
-    def test_map_divides_and_marks_cells_whose_seeds_disagree(self):
-        axes, legend, _ = self.drawn([self.CALM] * 3 + [("straight", "oscillating"), (None, None), self.WAVY])
-        widths = [round(patch.get_width(), 9) for patch in axes.patches]
-        self.assertEqual(widths, [1, 1, 1, 0.5, 0.5, 1])  # the fifth cell was not measured
-        (mixed, unmeasured) = axes.lines[-2:]
-        self.assertEqual((mixed.get_xydata().tolist(), unmeasured.get_xydata().tolist()), ([[2, 200]], [[3, 100]]))
-        self.assertEqual(legend[2:], ["boundary", "seeds disagree", "not measured"])
-
     def test_map_shows_points_of_a_refinement_and_the_boundary(self):
         grid, middle = list(self.GRID.values()), ([0.015, 0.015, 0.02], [1.0, 2.0, 1.5])
         self.vary({name: values + more for name, values, more in zip(self.GRID, grid, middle)},
@@ -252,13 +182,13 @@ class Maps(MadeUpStudy):
         axes = saved.call_args.args[0].axes[0]
         boxes = [tuple(round(number, 9) for number in patch.get_bbox().bounds) for patch in axes.patches]
         # The cells of the grid are those of the map without the refinement; a cell whose seeds disagree is divided.
-        self.assertEqual(boxes[:6], [(x, y, 1, 100) for x in (0.5, 1.5, 2.5) for y in (50, 150)])
-        self.assertEqual(boxes[6:], [(1.25, 75, 0.5, 50), (1.25, 175, 0.25, 50), (1.5, 175, 0.25, 50), (1.75, 125, 0.5, 50)])
+        assert boxes[:6] == [(x, y, 1, 100) for x in (0.5, 1.5, 2.5) for y in (50, 150)]
+        assert boxes[6:] == [(1.25, 75, 0.5, 50), (1.25, 175, 0.25, 50), (1.5, 175, 0.25, 50), (1.75, 125, 0.5, 50)]
         # At the depth of 100 cm between 1.5 and 2 cm, at 200 cm between 1 and 2 cm, since the point between them is mixed.
         bars = [segment for collection in axes.collections if isinstance(collection, LineCollection)
                 for segment in collection.get_segments()]
         np.testing.assert_allclose(bars, [[[1.5, 100], [2, 100]], [[1, 200], [2, 200]]])
-        self.assertIn("boundary", [text.get_text() for text in axes.figure.legends[0].get_texts()])
+        assert "boundary" in [text.get_text() for text in axes.figure.legends[0].get_texts()]
 
     def brackets(self, patterns, values=(0, 1, 2, 3, 4), levels=None):
         cells = [phase_map.Cell(x, 5.0, dict.fromkeys(both, 1), level=level)
@@ -267,12 +197,11 @@ class Maps(MadeUpStudy):
 
     def test_boundary_lies_between_the_nearest_points_that_are_clear(self):
         a, b, mixed, unclear, none = {"straight"}, {"oscillating"}, {"straight", "oscillating"}, {"undecided"}, {}
-        self.assertEqual(self.brackets([a, a, b, b]), [(1, 2, "straight", "oscillating")])
-        self.assertEqual(self.brackets([a, mixed, unclear, b, a]), [(0, 3, "straight", "oscillating"),
-                                                                    (3, 4, "oscillating", "straight")])
-        self.assertEqual(self.brackets([a, a, mixed, a]), [])
-        self.assertEqual(self.brackets([a, none, b]), [])  # nothing was measured in between
-        self.assertEqual(self.brackets([a, b, b], (0, 1, 0.5), (0, 0, 1)), [(0, 0.5, "straight", "oscillating")])
+        assert self.brackets([a, a, b, b]) == [(1, 2, "straight", "oscillating")]
+        assert self.brackets([a, mixed, unclear, b, a]) == [(0, 3, "straight", "oscillating"), (3, 4, "oscillating", "straight")]
+        assert self.brackets([a, a, mixed, a]) == []
+        assert self.brackets([a, none, b]) == []  # nothing was measured in between
+        assert self.brackets([a, b, b], (0, 1, 0.5), (0, 0, 1)) == [(0, 0.5, "straight", "oscillating")]
 
     def test_sweep_shows_the_power_law_of_a_row(self):
         self.vary({"Sheet/width": [0.01, 0.02, 0.03]}, [self.CALM, self.WAVY, self.WAVY])
@@ -291,79 +220,30 @@ class Maps(MadeUpStudy):
     def test_study_of_two_entries_shows_the_map_and_needs_no_claim(self):
         self.vary(self.GRID, [self.CALM] * 3 + [self.WAVY] * 3)
         page, html = self.page()
-        self.assertIn("Patterns over Sheet/width and Sheet/depth", page.text)
-        self.assertNotIn('id="summary"', html)
-        self.assertTrue((self.folder / "pictures" / "map.png").exists())
+        assert "Patterns over Sheet/width and Sheet/depth" in page.text
+        assert 'id="summary"' not in html
+        assert (self.folder / "pictures" / "map.png").exists()
         first = self.document["varied"][0]["values"]
         for index, value in ((0, "auto"), (0, 0.02), (2, 0.01)):  # not a number; the points of other cells
             self.document["varied"][0]["values"] = first[:index] + [value] + first[index + 1:]
-            self.assertIsNone(study_plots.draw_map(self.read(), self.folder / "map.png"))
+            assert study_plots.draw_map(self.read(), self.folder / "map.png") is None
         self.document["varied"][0]["values"] = first
-        self.assertIsNotNone(study_plots.draw_map(self.read(), self.folder / "map.png"))
+        assert study_plots.draw_map(self.read(), self.folder / "map.png") is not None
         self.document["varied"].append({"entry": "Sheet/orientation", "unit": "", "values": ["a"] * 5 + ["b"]})
-        self.assertIsNone(study_plots.draw_map(self.read(), self.folder / "map.png"))
+        assert study_plots.draw_map(self.read(), self.folder / "map.png") is None
         del self.document["varied"][2]
         self.document["swept"] = []  # named runs, which happen to vary two entries
-        self.assertNotIn("Patterns over", self.page()[0].text)
-
-    def test_study_of_one_entry_shows_quantities_against_it(self):
-        self.vary({"Sheet/width": [0.01, 0.02, 0.03]}, [self.CALM, self.WAVY, self.WAVY])
-        page, _ = self.page()
-        self.assertIn("Speed, wavelength and amplitudes against Sheet/width: mean and standard deviation", page.text)
-        self.assertTrue((self.folder / "pictures" / "sweep.png").exists())
-        self.document["claims"] = [{"claim": "It does", "paper": "", "note": "", "verdict": "not measured",
-                                    "rows": [made_up_row(["r0", "r1"], "wavelength", against="Sheet/width")]}]
-        self.assertNotIn("Speed, wavelength and amplitudes against", self.page()[0].text)  # the claim has the plot
-
-    def test_page_names_few_of_the_runs_that_a_quick_sweep_omits(self):
-        self.document["left_out"] = [f"r{number}" for number in range(1, 31)]
-        page, _ = self.page()
-        self.assertIn("omitted in the quick version: r1, ", page.text)
-        self.assertIn("r20, ... (30 in all)", page.text)
-
-    def test_studies_of_many_entries_have_neither(self):
-        self.vary(dict(self.GRID, **{"Sheet/third": [1.0, 2, 3, 4, 5, 6]}), [self.CALM] * 6)
-        self.page()
-        self.assertEqual([name for name in ("map.png", "sweep.png") if (self.folder / "pictures" / name).exists()], [])
+        assert "Patterns over" not in self.page()[0].text
 
 
-class Pictures(MadeUpStudy):
-    def size(self, png):
-        with Image.open(png) as picture:
-            return picture.size
-
-    def test_shrinks_as_far_as_asked_and_no_further(self):
-        png = self.folder / "noise.png"
-        Image.fromarray(np.random.default_rng(1).integers(0, 255, (300, 900, 3), np.uint8)).save(png)
-        shrink(png, 10**7)
-        self.assertEqual(self.size(png), (900, 300))
-        shrink(png, 150_000)
-        self.assertLessEqual(png.stat().st_size, 150_000)
-        width, height = self.size(png)
-        self.assertGreater(width, 400)
-        self.assertAlmostEqual(width / height, 3, delta=0.02)
-
-
-class Gallery(MadeUpStudy):
+class TestGallery(MadeUpStudy):
     def gallery(self, expect=0, options=()):
         """@return the page, and what was printed as an error"""
         error = io.StringIO()
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(error):
-            self.assertEqual(gallery.main([str(self.folder), str(self.folder / "docs"), *options]), expect)
+            assert gallery.main([str(self.folder), str(self.folder / "docs"), *options]) == expect
         path = self.folder / "docs" / "gallery.md"
         return path.read_text(encoding="utf-8") if path.exists() else "", error.getvalue()
-
-    def shown(self):
-        return [(heading, seed.run, seed.seed) for heading, seed, _ in gallery.cases_of(self.read())]
-
-    def test_shows_the_first_run_of_each_kind(self):
-        self.assertEqual(self.shown(), [("Oscillating", "wavy", 2), ("Straight, with next-nearest neighbours", "calm", 1),
-                                        ("Without next-nearest neighbours", "across", 1)])
-        self.document["seeds"][3]["pattern"] = "undecided"  # calm: not known to be straight
-        self.document["seeds"][5]["pattern"] = "branching"  # across: so that none is straight there
-        self.assertEqual(self.shown(), [("Oscillating", "wavy", 2), ("Without next-nearest neighbours", "along", 1)])
-        self.document["seeds"][2]["pattern"] = "branching"  # wavy 3
-        self.assertEqual(self.shown()[2:], [("Branching", "wavy", 3)])
 
     def test_states_the_numbers_of_the_study(self):
         self.read()
@@ -373,59 +253,15 @@ class Gallery(MadeUpStudy):
                       "wavelength 2.1 cm (2.20 ± 0.14 cm)", "bridged length 1.75 cm",
                       "area of the negative-velocity zone 13 mm² (14.0 ± 1.4 mm²)",
                       "peak of the opening stress at 4 d over the value straight ahead 1.07", "wedge angle 33°", "exponent 0.77"):
-            self.assertIn(words, text)
-        self.assertIn("| It winds | holds | calm …, `wavelength`: exponent 0.77", text)
+            assert words in text
+        assert "| It winds | holds | calm …, `wavelength`: exponent 0.77" in text
         with (self.folder / "docs" / "gallery-paper.csv").open(encoding="utf-8", newline="") as file:
             rows = [[row["statement"], row["verdict"], row["runs"], row["quantity"], row["measured"]] for row in csv.DictReader(file)]
-        self.assertEqual(rows, [[claim["claim"], row["verdict"], ", ".join(row["runs"]), row["quantity"], row["measured"]]
-                                for claim in self.document["claims"] for row in claim["rows"]])
-
-    def test_statements_are_decided_by_the_row_that_fails_or_by_a_number(self):
-        row = {"runs": ["a"], "quantity": "pattern", "verdict": "holds", "measured": "straight 2/2"}
-        speed = dict(row, quantity="speed", measured="19 m/s (2)")
-        self.assertEqual(gallery.deciding([row, speed]), speed)
-        self.assertEqual(gallery.deciding([speed, dict(row, verdict="not measured")])["verdict"], "not measured")
-        self.assertEqual(gallery.deciding([dict(speed, verdict="reported"), row]), row)
-        self.assertEqual(gallery.brief("rise: p < 0.0001; exponent 0.2; 1.621: not measured; 2.1: 3"), "rise: p < 0.0001; exponent 0.2")
-
-    def test_pictures_are_those_of_the_page_and_small(self):
-        self.read()
-        pictures = self.folder / "docs" / "pictures"
-        pictures.mkdir(parents=True)
-        for name in ("stale.png", "tutorial.png"):  # of the previous gallery, and of another page
-            (pictures / name).write_bytes(b"")
-        (self.folder / "docs" / "gallery.md").write_text("![before](pictures/stale.png)")
-        text, _ = self.gallery()
-        named = re.findall(r"!\[[^]]*\]\((.*?)\)", text)
-        self.assertEqual(len(named), 3 * 4 + 1)
-        self.assertEqual({f"pictures/{png.name}" for png in pictures.glob("*")}, {*named, "pictures/tutorial.png"})
-        self.assertLessEqual(max(png.stat().st_size for png in pictures.glob("*")), 250_000)
-
-    def test_runs_what_is_missing(self):
-        log, program = self.folder / "log", self.folder / "latcon"
-        write_fracture(self.folder / "made up", [])
-        program.write_text(f"#!/bin/sh\nwhile [ $1 != --output-dir ]; do printf '%s ' ${{1##*/}} >>'{log}'; shift; done\n"
-                           f"echo >>'{log}'; mkdir -p \"$(dirname $2)\"; cp -r '{self.folder}/made up' \"$2\"; exit 3\n")
-        program.chmod(0o755)
-        self.read()
-        text, _ = self.gallery(options=["--latcon", str(program)])
-        self.assertEqual(log.read_text().splitlines(), ["fracture fig1.prm --no-report --quiet "] * 2)
-        self.assertLess(text.index("## Animation of Fig. 1"), text.index("## Oscillating: `wavy`"))
-        self.assertIn("## Oscillating: `arrested`", text)  # the pattern that was measured, whatever the name
-        with Image.open(self.folder / "docs" / "pictures" / "fig1.gif") as film:
-            self.assertEqual(film.n_frames, MOTION_FRAMES)
-        self.gallery(options=["--latcon", str(program)])
-        self.assertEqual(len(log.read_text().splitlines()), 2)  # nothing is run twice
-        program.write_text("#!/bin/sh\nexit 4\n")
-        (self.folder / "study.json").unlink()
-        self.assertIn("latcon failed", self.gallery(options=["--latcon", str(program)], expect=4)[1])
+        assert rows == (
+            [[claim["claim"], row["verdict"], ", ".join(row["runs"]), row["quantity"], row["measured"]] for claim in self.document["claims"] for row in claim["rows"]])
 
     def test_without_a_study_it_says_what_makes_one(self):
         text, error = self.gallery(expect=2)
-        self.assertEqual(text, "")
-        self.assertIn("study.json: No such file or directory; `latcon study paper` makes one", error)
-        self.assertFalse((self.folder / "docs").exists())
-
-
-if __name__ == "__main__":
-    unittest.main()
+        assert text == ""
+        assert "study.json: No such file or directory; `latcon study paper` makes one" in error
+        assert not (self.folder / "docs").exists()

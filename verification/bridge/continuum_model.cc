@@ -86,6 +86,11 @@ ContinuumModel::ContinuumModel(const input::Case &input)
   make_conditions(input);
 }
 
+double ContinuumModel::viscous_gradient_length() const
+{
+  return dynamic_cast<const continuum::LatticeGradient *>(gradient_.get()) != nullptr ? inertia_length_ : 0.;
+}
+
 void ContinuumModel::make_mesh(const input::Case &input)
 {
   // The lattice rounds its size to whole rows; use the rounded size, so that both sheets are the same.

@@ -115,19 +115,20 @@ continuum::IsotropicNetwork isotropic_network(const lattice::TriangularLattice &
 }
 
 std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::TriangularLattice &lattice,
-                                                            const lattice::Material &material)
+                                                            const lattice::Material &material,
+                                                            double gradient_length)
 {
   std::vector<continuum::FibreDashpot> dashpots;
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
     if (const lattice::Shell *shell = material.shell(kind); shell && shell->viscosity > 0.)
     {
       const Eigen::Vector2d direction = lattice.bond_vector(kind).normalized();
-      dashpots.push_back(
-        {dealii::Tensor<1, 2>({direction.x(), direction.y()}), bond_weight(lattice, *shell, kind), shell->viscosity});
+      dashpots.push_back({dealii::Tensor<1, 2>({direction.x(), direction.y()}), bond_weight(lattice, *shell, kind),
+                          shell->viscosity, lattice.rest_length(kind)});
     }
   if (dashpots.empty())
     return nullptr;
-  return std::make_unique<continuum::FibreViscosity>(std::move(dashpots));
+  return std::make_unique<continuum::FibreViscosity>(std::move(dashpots), gradient_length);
 }
 
 GradientLengths gradient_lengths(const lattice::TriangularLattice &lattice, const lattice::Material &material)

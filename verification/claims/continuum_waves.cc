@@ -3,10 +3,37 @@
 #include <algorithm>
 #include <cmath>
 
+#include "continuum/gradient_viscosity.h"
 #include "verification/bridge/homogenisation.h"
 
 namespace latcon::claims
 {
+namespace
+{
+
+// Of the forces on a sheet at rest, per rate of displacement.
+Eigen::Matrix2d gradient_damping(const continuum::GradientViscosity &law, const Eigen::Matrix2d &F,
+                                 const Eigen::Vector2d &K)
+{
+  continuum::FieldDerivatives u{};
+  for (int i = 0; i < 2; ++i)
+    for (int J = 0; J < 2; ++J)
+      u[i][J] = F(i, J) - (i == J ? 1. : 0.);
+  continuum::PointIntegrand density;
+  continuum::clear(density, continuum::Order::second);
+  law.cell_density(u, {}, continuum::Order::second, 1., density);
+  const double second[] = {K[0] * K[0], K[1] * K[1], K[0] * K[1]};
+  Eigen::Matrix2d damping = Eigen::Matrix2d::Zero();
+  for (int i = 0; i < 2; ++i)
+    for (int k = 0; k < 2; ++k)
+      for (unsigned int c = 0; c < 3; ++c)
+        for (unsigned int e = 0; e < 3; ++e)
+          damping(i, k) +=
+            second[c] * second[e] * density.second[i][k][0][continuum::n_first + c][0][continuum::n_first + e];
+  return damping;
+}
+
+} // namespace
 
 SubjectContinua::SubjectContinua(const bridge::Subject &subject)
   : local{{subject.cauchy_born}, {subject.material.density}}, gradient{{subject.cauchy_born, *subject.lattice_gradient},
@@ -42,6 +69,8 @@ bridge::WaveMatrices continuum_matrices(const WaveContinuum &medium, const Eigen
             for (unsigned int N = 0; N < 2; ++N)
               matrices.stiffness(i, k) += C[i][J][L][k][M][N] * K[J] * K[L] * K[M] * K[N];
         }
+  if (medium.viscosity != nullptr && medium.viscosity->gradient() != nullptr)
+    matrices.damping += gradient_damping(*medium.viscosity->gradient(), F, K);
   const double mass = medium.inertia.density * (1. + medium.inertia.length * medium.inertia.length * K.squaredNorm());
   matrices.stiffness /= mass;
   matrices.damping /= mass;

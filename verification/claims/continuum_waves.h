@@ -66,6 +66,11 @@ double discretisation_bound(const WaveMesh &mesh);
 std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Eigen::Matrix2d &F,
                                            const Eigen::Vector2d &K, const WaveMesh &mesh);
 
+/// Damped waves in the finite elements, of tangent, viscosity and mass in the space of the two waves without damping;
+/// polarisations are those in this space. @throws continuum::LinearSolverFailed
+std::array<bridge::PlaneWave, 2> discrete_damped_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
+                                                       const Eigen::Vector2d &K, const WaveMesh &mesh);
+
 /// Frequencies and decays of both waves, measured on the moving finite element sheet as lattice_waves does on the
 /// lattice: average acceleration, extrapolated from two time steps. Every rank computes all of it.
 /// @throws std::runtime_error if a wave does not oscillate; what DynamicSolver throws

@@ -3,6 +3,8 @@
 #include <complex>
 #include <stdexcept>
 
+#include <Eigen/Cholesky>
+
 #include "support/dense.h"
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"
@@ -214,10 +216,14 @@ ElementWave measure(const WaveContinuum &medium, const Eigen::Matrix2d &F, const
   return {found, imbalance.error(), 0.};
 }
 
-} // namespace
+// Matrices of the finite elements in the space of two waves.
+struct RitzMatrices
+{
+  Eigen::Matrix2d stiffness, damping, mass;
+};
 
-std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Eigen::Matrix2d &F,
-                                           const Eigen::Vector2d &K, const WaveMesh &resolution)
+RitzMatrices ritz_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
+                           const WaveMesh &resolution)
 {
   continuum::Sheet::Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, one_wavelength(K, resolution.cells));
@@ -251,20 +257,44 @@ std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Ei
     sheet.conformity_constraints().distribute(y);
   }
   // The errors of the eigenvalues in the space of the two vectors are the squares of those of the vectors.
-  Eigen::Matrix2d K2, M2;
+  continuum::Sheet::Matrix damping;
+  sheet.make_matrix(sheet.conformity_constraints(), damping);
+  continuum::ViscousForces(sheet, medium.viscosity)
+    .add_tangent(u, sheet.make_ghosted(), 0., 1., sheet.conformity_constraints(), damping);
+  RitzMatrices ritz;
   for (std::size_t v = 0; v < 2; ++v)
     for (std::size_t w = 0; w < 2; ++w)
     {
-      K2(v, w) = wave_sheet.form(stiffness, x[v], x[w]);
-      M2(v, w) = wave_sheet.form(wave_sheet.mass(), x[v], x[w]);
+      ritz.stiffness(v, w) = wave_sheet.form(stiffness, x[v], x[w]);
+      ritz.damping(v, w) = wave_sheet.form(damping, x[v], x[w]);
+      ritz.mass(v, w) = wave_sheet.form(wave_sheet.mass(), x[v], x[w]);
     }
-  if (!K2.allFinite() || !M2.allFinite())
+  if (!ritz.stiffness.allFinite() || !ritz.damping.allFinite() || !ritz.mass.allFinite())
     throw std::runtime_error("the finite elements have no waves: their tangent is not finite");
+  return ritz;
+}
+
+} // namespace
+
+std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Eigen::Matrix2d &F,
+                                           const Eigen::Vector2d &K, const WaveMesh &resolution)
+{
+  const auto [K2, C2, M2] = ritz_matrices(medium, F, K, resolution);
   const support::SymmetricModes ritz = support::symmetric_modes(K2, M2);
   const auto frequency = [&](int i) { return std::sqrt(support::one_sided(ritz.values[i])); };
   const bool first_is_longitudinal =
     std::abs(ritz.vectors(0, 0)) * std::sqrt(M2(0, 0)) > std::abs(ritz.vectors(1, 0)) * std::sqrt(M2(1, 1));
   return {frequency(first_is_longitudinal ? 0 : 1), frequency(first_is_longitudinal ? 1 : 0)};
+}
+
+std::array<bridge::PlaneWave, 2> discrete_damped_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
+                                                       const Eigen::Vector2d &K, const WaveMesh &resolution)
+{
+  const RitzMatrices ritz = ritz_matrices(medium, F, K, resolution);
+  // Unit mass: M = L L^T.
+  const Eigen::Matrix2d inverse = Eigen::LLT<Eigen::Matrix2d>(ritz.mass).matrixL().solve(Eigen::Matrix2d::Identity());
+  return bridge::plane_waves(
+    {inverse * ritz.stiffness * inverse.transpose(), inverse * ritz.damping * inverse.transpose()}, {1., 0.});
 }
 
 std::array<Oscillation, 2> finite_element_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,

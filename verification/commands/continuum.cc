@@ -200,7 +200,8 @@ struct MovingSheet
   // @throws InputError, continuum::InvalidInput for what start() would refuse
   MovingSheet(const input::Case &input, bridge::ContinuumModel &model)
     : settings(dynamic_settings(input, model)),
-      viscosity(bridge::homogenised_viscosity(input.lattice(), model.subject().material)),
+      viscosity(
+        bridge::homogenised_viscosity(input.lattice(), model.subject().material, model.viscous_gradient_length())),
       memory(bridge::homogenised_memory(input.lattice(), model.subject().material)),
       solver(model.mesh(), model.constitution(), model.conditions(), {input.density, model.inertia_length()}, settings,
              viscosity.get(), {}, memory.get()),
@@ -357,6 +358,8 @@ private:
     archive("frames", frames_);
     if (Archive::loads && !(frames_.last_time() <= solver_.time()))
       throw support::InputError("the last frame is of a later time");
+    if (Archive::loads && !(record_.last_time() <= solver_.time()))
+      throw support::InputError("the last energies are of a later time");
   }
 
   const bridge::ContinuumModel &model_;

@@ -39,7 +39,8 @@ inline void set_unit(vtkDataArray &field)
 }
 
 /// Appends a field with its unit to the data of n points, cells, or a whole frame. ParaView expects three components of
-/// vectors and nine of tensors. @param value(i) number, Eigen::Vector2d or Eigen::Matrix2d at point i
+/// vectors and nine of tensors.
+/// @param value called with a point's index; returns a number, Eigen::Vector2d or Eigen::Matrix2d
 template <class Array, class Value>
 void add_field(vtkFieldData &data, const char *name, std::size_t n, const Value &value)
 {

@@ -51,7 +51,7 @@ private:
   std::vector<std::pair<std::string, double>> times_;
 };
 
-/// Returns the version of latcon, for example "0.1.0".
+/// Returns the version of latcon, for example "1.0.0".
 [[nodiscard]] std::string program_version();
 
 /// Returns the Git commit from which the program was built, 40 digits, with the suffix "-dirty" if tracked files were

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import LatconError
+from ..errors import optional_package
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -31,18 +31,15 @@ def write_page(fit: Fit, path: pathlib.Path) -> pathlib.Path:
     LatconError
         If matplotlib or jinja2 is missing.
     """
-    try:
-        from ..report import pages
-        progress, pairs = _png(_draw_progress(fit)), _png(_draw_pairs(fit))
-    except ImportError as error:
-        raise LatconError("the page of a fit needs the Python packages matplotlib and jinja2 (Debian: python3-matplotlib, "
-                          "python3-jinja2)") from error
+    for package in ("matplotlib", "jinja2"):
+        optional_package(package, "the page of a fit needs", f"{package} (Debian: python3-{package})")
+    from ..report import pages
     points = fit.points
     lost = points[points["ended"] != "done"]
     pages.write_page(
         path, "fit.html", title="Fit of a case to observations", with_viewer=False, with_plots=False, summary=str(fit),
         observations=_table(fit.observations), parameters=_table(fit.parameters), directions=_table(fit.directions),
-        progress=progress, pairs=pairs, n_near=len(fit.near_equal), n_lost=len(lost),
+        progress=_png(_draw_progress(fit)), pairs=_png(_draw_pairs(fit)), n_near=len(fit.near_equal), n_lost=len(lost),
         near=_table(fit.near_equal.drop(columns=["message", "ended"]).head(_LISTED)),
         lost=_table(lost.drop(columns=["misfit", "stage", *fit.observations.index]).head(_LISTED)))
     return path

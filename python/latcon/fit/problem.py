@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 
 from ..case import Case, Settable
-from ..commands import CaseLike
+from ..commands import CaseLike, as_case
 from ..frames import Floats
 from ..quantities import Quantities, Value
 from ..results import Run
-from ..schema import schema
+from ..schema import SEED_ENTRY, schema
 
-SEED = "Lattice/noise seed"
 COMMANDS = ("fracture", "lattice", "continuum")
 
 Measurement = tuple[float | str | bool, float]
@@ -194,7 +193,7 @@ def resolve_problem(case: CaseLike, parameters: Sequence[Parameter], observation
     BadInput
         If the case or a bound is wrong.
     """
-    base = case if isinstance(case, Case) else Case(case)
+    base = as_case(case)
     if command not in COMMANDS:
         raise ValueError(f"command {command!r}: must be one of {', '.join(COMMANDS)}")
     for what, names in (("parameter", [parameter.key for parameter in parameters]),
@@ -203,11 +202,11 @@ def resolve_problem(case: CaseLike, parameters: Sequence[Parameter], observation
             raise ValueError(f"a fit needs at least one {what}")
         if twice := {name for name in names if names.count(name) > 1}:
             raise ValueError(f"{what} {min(twice)!r} is given twice")
-    if seeds is not None and SEED in [parameter.key for parameter in parameters]:
-        raise ValueError(f"{SEED} cannot be a parameter: the means are over seeds")
+    if seeds is not None and SEED_ENTRY in [parameter.key for parameter in parameters]:
+        raise ValueError(f"{SEED_ENTRY} cannot be a parameter: the means are over seeds")
     for observation in observations:
         _check(observation, command)
-    own_seed = base[SEED]
+    own_seed = base[SEED_ENTRY]
     chosen = [own_seed] if seeds is None else list(seeds)
     if not chosen or len(set(chosen)) < len(chosen) or not all(isinstance(seed, int) for seed in chosen):
         raise ValueError("seeds must be different integers, at least one")

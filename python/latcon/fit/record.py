@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import dataclasses
-import fcntl
 import json
 import math
 import os
@@ -13,7 +12,7 @@ from typing import Any
 
 from ..errors import LatconError, UnreadableFile
 from ..files import read_json, read_text
-from ..folder import write_atomically
+from ..folder import FolderLock, write_atomically
 from .problem import Measurement, Problem
 
 FORMAT_VERSION = 1
@@ -74,23 +73,19 @@ class Record:
         self.directory = directory
         self.problem = problem
         directory.mkdir(parents=True, exist_ok=True)
-        self._lock = os.open(directory / "fit.lock", os.O_RDWR | os.O_CREAT, 0o666)
+        self._lock = FolderLock(os.fspath(directory))
         try:
-            try:
-                fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                raise LatconError(f"{directory}: another process works on the fit in this directory") from None
             self._open_problem()
             self.evaluations = read_evaluations(directory, remove_incomplete=True)
         except BaseException:
-            os.close(self._lock)
+            self._lock.release()
             raise
 
     def __enter__(self) -> Record:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        os.close(self._lock)
+        self._lock.release()
 
     @property
     def case(self) -> pathlib.Path:

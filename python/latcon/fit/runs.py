@@ -14,7 +14,8 @@ from ..program import find_program
 from ..results import Run, open_run
 from ..study.outcome import content, last_words, unfit_rows
 from ..study.pool import run_processes
-from .problem import SEED, Measurement, Problem
+from ..schema import SEED_ENTRY
+from .problem import Measurement, Problem
 from .record import Evaluation, Outcome, Record
 
 Point = tuple[int, str, Mapping[str, float]]
@@ -67,7 +68,7 @@ def evaluate(record: Record, points: Iterable[Point], workers: int, keep_runs: b
 
 def case_of(problem: Problem, file: pathlib.Path, values: Mapping[str, float], seed: int) -> Case:
     """Case of one run: the base case with the values of a point and a seed."""
-    return problem.of(Case(file), values).set(SEED, seed)
+    return problem.of(Case(file), values).set(SEED_ENTRY, seed)
 
 
 def measure(problem: Problem, run: Run) -> dict[str, Measurement]:

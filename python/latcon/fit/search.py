@@ -5,7 +5,7 @@ import warnings
 
 import numpy as np
 
-from ..errors import LatconError
+from ..errors import optional_package
 from ..frames import Floats
 from .local_model import LocalModel, fit_local_model
 from .misfit import Table
@@ -54,23 +54,17 @@ def propose(table: Table, parameters: int, first: int, count: int, evaluations: 
 
 
 def _sobol(parameters: int, seed: int, count: int) -> list[Floats]:
-    try:
-        from scipy.stats import qmc
-    except ImportError as error:
-        raise _missing("scipy") from error
+    qmc = optional_package("scipy.stats.qmc", "fits need", "scipy (Debian: python3-scipy)")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a number of points that is no power of two
         return list(qmc.Sobol(parameters, seed=seed).random(count))
 
 
 def _tpe(table: Table, parameters: int, first: int, count: int, seed: int) -> list[Floats]:
-    try:
-        import optuna
-    except ImportError as error:
-        raise _missing("optuna") from error
+    optuna = optional_package("optuna", "fits need", "optuna (Debian: python3-optuna)")
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     names = [str(axis) for axis in range(parameters)]
-    box: dict[str, optuna.distributions.BaseDistribution] = {name: optuna.distributions.FloatDistribution(0, 1) for name in names}
+    box = {name: optuna.distributions.FloatDistribution(0, 1) for name in names}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
         sampler = optuna.samplers.TPESampler(seed=seed + first, multivariate=True, constant_liar=True, n_startup_trials=1)
@@ -95,7 +89,3 @@ def _around(model: LocalModel, first: int, count: int, batch: float, seed: int) 
     drawn = generator.multivariate_normal(model.center, np.linalg.inv(metric), count - 1)
     folded = np.abs(drawn) % 2
     return [model.center, *np.minimum(folded, 2 - folded)]
-
-
-def _missing(module: str) -> LatconError:
-    return LatconError(f"fits need the Python package {module} (Debian: python3-{module})")

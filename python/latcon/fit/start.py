@@ -2,12 +2,12 @@
 from __future__ import annotations
 
 import os
-import pathlib
 import time
 from collections.abc import Callable, Sequence
 
 from ..commands import CaseLike
 from ..errors import LatconError
+from ..folder import absolute
 from ..program import Progress, progress_indicator
 from .misfit import tabulate
 from .problem import Entries, Observation, Parameter, Problem, resolve_problem
@@ -83,7 +83,7 @@ def fit_case(case: CaseLike, parameters: Sequence[Parameter], observations: Sequ
         if number < 1:
             raise ValueError(f"{name} = {number}: must be positive")
     problem = resolve_problem(case, parameters, observations, command, seeds, skip_verification, entries)
-    with Record(pathlib.Path(directory), problem) as record:
+    with Record(absolute(directory), problem) as record:
         _Search(problem, record, evaluations, batch, workers or len(os.sched_getaffinity(0)), keep_runs, search_seed).run(progress)
         return Fit(record.directory, problem, tuple(record.evaluations.values()))
 

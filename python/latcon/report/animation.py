@@ -95,10 +95,8 @@ def axes_of_sheet(low, high, scale):
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="x [cm]", ylabel="y [cm]")
     axes.grid(False)
     ticks = [tick for tick in MaxNLocator(5).tick_values(0, scale.vmax) if tick <= scale.vmax]
-    bar = page.figure.colorbar(ScalarMappable(scale, COLOURS), orientation="horizontal", extend="max", ticks=ticks,
-                               cax=page.axes(LEFT, page.height - 0.7, width, 0.16))
-    bar.set_label("speed of the material [m/s]")
-    bar.outline.set_visible(False)
+    page.colour_bar(ScalarMappable(scale, COLOURS), LEFT, page.height - 0.7, width, 0.16, "speed of the material [m/s]", extend="max",
+                    ticks=ticks)
     corner = np.array((LEFT, TOP))
     return page, PIXELS_PER_INCH * np.concatenate((corner, corner + (width, height)))
 

@@ -3,7 +3,7 @@ import numpy as np
 
 from ..errors import UnreadableFile
 from ..files import read_json
-from ..quantities import SHOWN, number_text
+from ..quantities import number_text, shown_unit
 from .pages import FAILED, has_dygraphs, plain_row, write_page
 from .live import rows_of, thinned
 from .motion import read_motion
@@ -15,17 +15,15 @@ SIDES = ("first", "second")
 
 def quantity_rows(rows):
     """Quantities of both runs, the difference, and the difference over the combined uncertainty."""
-    def value(row, scale, key, uncertainty=None):
-        spread = row.get(uncertainty)
-        return "–" if row[key] is None else number_text(scale * row[key], None if spread is None else scale * spread)
+    def value(row, scale, key):
+        return "–" if row[key] is None else number_text(row[key], row.get(f"{key}_uncertainty"), scale=scale)
 
     lines = []
     for row in rows:
-        scale, unit = SHOWN.get(row["unit"], (1, "" if row["unit"] == "1" else row["unit"]))
+        scale, unit = shown_unit(row["unit"])
         ratio = row["difference_over_uncertainty"]
         lines.append(plain_row([("words", row["name"].replace("_", " ")),
-                                *(("number", value(row, scale, side, f"{side}_uncertainty")) for side in SIDES),
-                                ("number", value(row, scale, "difference")),
+                                *(("number", value(row, scale, key)) for key in (*SIDES, "difference")),
                                 ("number", "–" if ratio is None else f"{ratio:+.1f}"), ("short", unit)]))
     return lines
 

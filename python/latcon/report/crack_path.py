@@ -91,10 +91,7 @@ def draw_crack_path(run, path):
                              linewidths=0)
         below.set(xlim=X_range, ylim=(-half_below, half_below), aspect="equal", ylabel="Y [cm]",
                   xlabel="X in the undeformed sheet [cm]", title="midpoints of broken bonds, equal axes")
-        bar = page.figure.colorbar(dots, cax=page.axes(LEFT, page.height - 0.68, width, 0.13),
-                                   orientation="horizontal")
-        bar.set_label("time of breaking [ms]")
-        bar.outline.set_visible(False)
+        page.colour_bar(dots, LEFT, page.height - 0.68, width, 0.13, "time of breaking [ms]")
     save(page.figure, path)
 
 
@@ -125,5 +122,4 @@ def draw_measurement(axes, run):
 
 def in_cm(crack, name):
     """A measured length with its uncertainty [cm]."""
-    uncertainty = crack[f"{name}_uncertainty"]
-    return number_text(100 * crack[name], None if uncertainty is None else 100 * uncertainty)
+    return number_text(crack[name], crack[f"{name}_uncertainty"], scale=100)

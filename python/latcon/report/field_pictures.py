@@ -56,7 +56,4 @@ def panel(page, box, mesh, position, values, corners, colours, ends, title, labe
     slack = 1e-3 * (ends[1] - ends[0])
     beyond = (values.min() < ends[0] - slack, values.max() > ends[1] + slack)
     extend = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[beyond]
-    bar = page.figure.colorbar(shown, cax=page.axes(left, top + height + FOOT, width, 0.13), orientation="horizontal",
-                               extend=extend)
-    bar.set_label(label)
-    bar.outline.set_visible(False)
+    page.colour_bar(shown, left, top + height + FOOT, width, 0.13, label, extend=extend)

@@ -18,12 +18,16 @@ class Motion:
     frames: list  # of Frame, without bonds
 
 
+def last_frame(series):
+    """Time and file of the last existing frame of points and lines or cells in a series, or (None, None)."""
+    frames = if_present(read_series, series) or []
+    return next((frame for frame in reversed(frames) if frame[1].suffix == ".vtp" and frame[1].exists()), (None, None))
+
+
 def read_last_frame(folder):
     """Reads the last existing frame listed in lattice.pvd; None if there is none."""
-    for time, path in reversed(if_present(read_series, folder / "lattice.pvd") or []):
-        if path.exists():
-            return read_sheet(path, time)
-    return None
+    time, path = last_frame(folder / "lattice.pvd")
+    return read_sheet(path, time) if path else None
 
 
 def read_sheet(path, time):

@@ -129,7 +129,4 @@ def finish(page, axes, mesh, tip, title, label):
     """Adds tip, title and colour bar."""
     axes.plot(0, 0, "+", color=BLACK, markersize=11, markeredgewidth=1.6)
     axes.set_title(f"{title}: mean of {tip.samples} samples, current configuration")
-    bar = page.figure.colorbar(mesh, cax=page.axes(LEFT, page.height - 0.62, WIDTH - LEFT - 0.25, 0.14),
-                               orientation="horizontal")
-    bar.set_label(label)
-    bar.outline.set_visible(False)
+    page.colour_bar(mesh, LEFT, page.height - 0.62, WIDTH - LEFT - 0.25, 0.14, label)

@@ -56,6 +56,4 @@ def near_tip_rows(near_tip):
 def value_text(near_tip, quantity):
     """Value and uncertainty in the unit shown."""
     value, uncertainty = near_tip[quantity.name], near_tip.get(f"{quantity.name}_uncertainty")
-    if value is None:
-        return "–"
-    return number_text(quantity.scale * value, None if uncertainty is None else quantity.scale * uncertainty)
+    return "–" if value is None else number_text(value, uncertainty, scale=quantity.scale)

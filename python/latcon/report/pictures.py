@@ -85,6 +85,12 @@ class Page:
         box = (left / WIDTH, (self.height - top - height) / self.height, width / WIDTH, height / self.height)
         return self.figure.add_axes(box, **options)
 
+    def colour_bar(self, shown, left, top, width, height, label, **options):
+        """Adds a horizontal colour bar."""
+        bar = self.figure.colorbar(shown, cax=self.axes(left, top, width, height), orientation="horizontal", **options)
+        bar.set_label(label)
+        bar.outline.set_visible(False)
+
 
 def draw_sheet(frame, breaking_stretch, path):
     """Draws the deformed sheet: bonds as lines, coloured by stretch up to the breaking stretch (None: unknown)."""
@@ -109,11 +115,9 @@ def draw_sheet(frame, breaking_stretch, path):
              title=f"sheet at {1e3 * frame.time:.2f} ms")
     axes.grid(False)
 
-    bar = page.figure.colorbar(bonds, cax=page.axes(0.7, height + 1.0, width, 0.16), orientation="horizontal",
-                               extend="both" if values[-1] > top else "min")
     beyond = f"; orange: beyond the breaking stretch {breaking_stretch:.4g} (toughened)" if top == breaking_stretch else ""
-    bar.set_label(f"stretch of a bond, current over undeformed length [1]{beyond}")
-    bar.outline.set_visible(False)
+    page.colour_bar(bonds, 0.7, height + 1.0, width, 0.16, f"stretch of a bond, current over undeformed length [1]{beyond}",
+                    extend="both" if values[-1] > top else "min")
     save(page.figure, path)
 
 

@@ -3,8 +3,8 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import UnreadableFile
-from ..files import if_present, read_columns, read_json, read_text
+from ..errors import INTERRUPTED, UnreadableFile
+from ..files import checked_number, if_present, read_columns, read_json, read_rows, read_text
 from ..folder import EARLIER
 from .claim_plots import read_claim_tables
 
@@ -12,7 +12,6 @@ from .claim_plots import read_claim_tables
 SIGNS_OF_A_RUN = ("results.json", "run.json", "crack.json", "crack.csv", "lattice.pvd")
 # First columns of energy.csv of an equilibrium and of a motion of the continuum.
 CONTINUUM_ENERGIES = ("load_factor,", "t,elastic,kinetic,micro_inertia,")
-INTERRUPTED = 130  # exit code of latcon
 
 
 @dataclass(frozen=True)
@@ -143,13 +142,13 @@ def find_runs(folder):
 
 def read_run(folder):
     """Reads all files of a run except its fields."""
-    results, info = if_present(read_json, folder / "results.json"), if_present(read_json, folder / "run.json")
+    rows, info = if_present(read_rows, folder / "results.json"), if_present(read_json, folder / "run.json")
     verified = not (info or {}).get("skip_verification")
     return Run(
         name=folder.resolve().name,
         folder=folder,
-        checks=[] if results is None else read_checks(folder / "results.json", results, verified),
-        has_results=results is not None,
+        checks=read_checks(folder / "results.json", rows or [], verified),
+        has_results=rows is not None,
         info=info,
         case_text=if_present(read_text, folder / "case.prm"),
         crack=read_crack(folder / "crack.json"),
@@ -171,28 +170,12 @@ def read_energy(path):
     return if_present(read_columns, path, ("t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance"))
 
 
-def read_checks(path, results, verified):
-    """Reads the rows of results.json."""
-    rows = results.get("claims")
-    if not isinstance(rows, list):
-        raise UnreadableFile(path, 'the list "claims" is missing')
-    checks = []
-    for number, row in enumerate(rows, start=1):
-        where = f"row {number} of \"claims\""
-        try:
-            texts = {key: row[key] for key in ("claim", "quantity", "unit", "verdict")}
-            numbers = {key: row[key] for key in ("lattice", "continuum", "theory", "error", "tolerance")}
-        except (KeyError, TypeError) as error:
-            raise UnreadableFile(path, f"{where} lacks {error}") from error
-        for key, value in texts.items():
-            if not isinstance(value, str):
-                raise UnreadableFile(path, f"{where}: {key} is {value!r}, not a string")
-        for key, value in numbers.items():
-            numbers[key] = checked_number(path, f"{where}: {key}", value)
-        check = Check(**texts, **numbers, verified=verified)
+def read_checks(path, rows, verified):
+    """Checks of the rows of results.json, whose verdicts must follow from their numbers."""
+    checks = [Check(**row, verified=verified) for row in rows]
+    for number, check in enumerate(checks, start=1):
         if check.verdict != expected_verdict(check):
-            raise UnreadableFile(path, f"{where}: the verdict {check.verdict!r} contradicts its numbers")
-        checks.append(check)
+            raise UnreadableFile(path, f"row {number} of \"claims\": the verdict {check.verdict!r} contradicts its numbers")
     return checks
 
 
@@ -234,12 +217,3 @@ def read_near_tip(path):
         raise UnreadableFile(path, '"reason" is missing')
     return {key: value if key in ("reason", "units") else checked_number(path, key, value)
             for key, value in near_tip.items()}
-
-
-def checked_number(path, what, value):
-    """A number as written by latcon: null for none, the strings "nan", "inf", "-inf" for non-finite values."""
-    if value is None:
-        return None
-    if value in ("nan", "inf", "-inf") or (isinstance(value, (int, float)) and not isinstance(value, bool)):
-        return float(value)
-    raise UnreadableFile(path, f"{what} is {value!r}, not a number")

@@ -81,7 +81,7 @@ def draw_run(seed, folder, most, kinds=tuple(RUN_PICTURES)):
     means = seed.folder / "near_tip_folded.vti"
     if means.exists() and "velocity" in kinds:
         drawn["velocity"] = folder / f"{seed.run}-velocity.png"
-        velocity_picture(means, drawn["velocity"], crack_speed=seed.values["speed_laboratory"])
+        velocity_picture(means, drawn["velocity"], crack_speed=seed.values.get("speed_laboratory"))
     if means.exists() and "stress" in kinds:
         drawn["stress"] = folder / f"{seed.run}-stress.png"
         opening_stress_picture(means, drawn["stress"])

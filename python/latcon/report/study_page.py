@@ -63,7 +63,7 @@ def banner(study):
     count = counts([r for claim in study.claims for r in claim["rows"]])
     judged = count["holds"] + count["does not hold"]
     verified = study.document.get("verified") is True
-    broken = [seed for seed in study.seeds if seed.state != "measured"]
+    broken = [seed for seed in study.seeds if not seed.is_measured]
     if count["does not hold"]:
         kind = "fails"
         head = f"✗ {count['does not hold']} of {judged} rows {plural(count['does not hold'], 'does', 'do')} not hold"
@@ -77,7 +77,7 @@ def banner(study):
         kind, head = "warns", f"! Not verified: {rows}, but not every run was verified"
     else:
         kind, head = "holds", f"✓ Holds: {plural(judged, 'the only row', f'all {judged} rows')}"
-    notes = [FAILED.format(f"{seed.run}, seed {seed.seed}: {seed.state}", f" {seed.problem}") for seed in broken]
+    notes = [FAILED.format(f"{seed.run}, seed {seed.seed}: {seed.state.value}", f" {seed.problem}") for seed in broken]
     if count["not measured"]:
         notes.append(f"{count['not measured']} {plural(count['not measured'], 'row was', 'rows were')} not measured")
     if count["reported"]:

@@ -99,7 +99,7 @@ def draw_sweep(study, row, quantities, path, onsets=None):
         for x, seeds in points:
             marker, colour = PATTERNS[next(iter(patterns_of(seeds)))]
             found = mean_of(seeds, quantity)
-            y, error = (scale * found.mean, scale * found.deviation) if found else (0.0, 0.0)
+            y, error = (scale * found.mean, scale * (found.deviation or 0.0)) if found else (0.0, 0.0)
             axes.errorbar(x, y, yerr=error, marker=marker, color=colour, capsize=3, markersize=6, linestyle="none",
                           markerfacecolor=colour if found else "white")
         if onsets and quantity in onsets:
@@ -133,7 +133,7 @@ def legend_entry(pattern):
 def draw_speeds(study, path):
     """Draws crack speed over the shear wave speed of the stretched sheet, by pattern. @return whether any was measured"""
     points = [(seed.pattern, seed.values["speed_over_shear"]) for seed in study.seeds
-              if seed.pattern and seed.values["speed_over_shear"] is not None]
+              if seed.pattern and "speed_over_shear" in seed.values]
     if not points:
         return False
     panels = Panels(1, 1, 2.8)

@@ -1,5 +1,5 @@
 """Quantities and entries shown for a study: customary units, and names in tables and on axes."""
-from ..quantities import SHOWN
+from ..quantities import shown_unit
 
 # Columns of the tables of runs: quantity, scale to the unit shown, head.
 MEASURED = (("speed_lagrangian", 1, "speed\n[m/s]"), ("wavelength", 100, "wavelength\n[cm]"),
@@ -28,16 +28,16 @@ def quantity_axis(quantity, unit):
     for name, scale, head in MEASURED + NEAR_TIP:
         if name == quantity:
             return scale, head.replace("\n", " ")
-    scale, shown = SHOWN.get(unit, (1, unit))
-    return scale, f"{quantity.replace('_', ' ')} [{shown}]"
+    scale, shown = shown_unit(unit)
+    return scale, f"{quantity.replace('_', ' ')} [{shown or '1'}]"
 
 
 def entry_axis(name, unit):
     """(scale to the unit shown, label) of an entry of a case with an SI unit, or of zeta."""
     if name in AGAINST:
         return AGAINST[name]
-    scale, shown = SHOWN.get(unit, (1, unit))
-    return scale, name if shown in ("", "1") else f"{name} [{shown}]"
+    scale, shown = shown_unit(unit)
+    return scale, f"{name} [{shown}]" if shown else name
 
 
 def against_axis(row):

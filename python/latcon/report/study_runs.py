@@ -2,11 +2,11 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from ..errors import UnreadableFile
 from ..files import if_present, read_columns, read_json
 from ..quantities import number_text
+from ..study.outcome import RunState
+from ..study.seeds import statistics
 
 
 @dataclass(frozen=True)
@@ -16,11 +16,15 @@ class Seed:
     run: str
     seed: int
     folder: Path
-    state: str  # "measured", "refused: verification", "failed", "not run"
+    state: RunState
     problem: str
     pattern: str  # None if not measured
     wall_time: float  # [s]
-    values: dict  # {quantity: number or None}, SI
+    values: dict  # {quantity: number}, SI; without those that were not measured
+
+    @property
+    def is_measured(self):
+        return self.state is RunState.MEASURED
 
 
 @dataclass(frozen=True)
@@ -60,26 +64,17 @@ class Study:
         return [seed for _, _, seeds in self.runs.values() for seed in seeds]
 
 
-@dataclass(frozen=True)
-class Mean:
-    """A quantity over the seeds of a run."""
-
-    mean: float
-    deviation: float  # 0 for a single seed
-    n: int  # number of seeds that have the quantity
-    n_seeds: int  # number of seeds of the run
-
-
 def read_study(folder):
     """Reads the study in a folder. @raises UnreadableFile"""
     path = folder / "study.json"
     document = read_json(path)
     try:
-        seeds = [Seed(s["run"], s["seed"], folder / s["folder"], s["state"], s["problem"], s["pattern"],
-                      wall_time(folder / s["folder"]), s["values"]) for s in document["seeds"]]
+        seeds = [Seed(s["run"], s["seed"], folder / s["folder"], RunState(s["state"]), s["problem"], s["pattern"],
+                      wall_time(folder / s["folder"]), {name: value for name, value in s["values"].items() if value is not None})
+                 for s in document["seeds"]]
         runs = {run["run"]: (run["about"], run["set"], [seed for seed in seeds if seed.run == run["run"]])
                 for run in document["runs"]}
-    except (KeyError, TypeError) as error:
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise UnreadableFile(path, f"lacks {error}") from error
     return Study(folder, document, runs)
 
@@ -91,11 +86,9 @@ def wall_time(folder):
 
 
 def mean_of(seeds, quantity):
-    """Mean over the seeds that have a quantity; None if none has."""
-    values = np.array([s.values[quantity] for s in seeds if s.state == "measured" and s.values[quantity] is not None])
-    if not len(values):
-        return None
-    return Mean(values.mean(), values.std(ddof=1) if len(values) > 1 else 0.0, len(values), len(seeds))
+    """Statistics over the seeds that have a quantity; None if none has."""
+    found = statistics("", quantity, seeds)
+    return found if found.n else None
 
 
 def patterns_of(seeds):
@@ -112,12 +105,11 @@ def tip_path(seed):
 
 def first_measured(study, name):
     """The first seed of a run that was measured; None if there is none."""
-    return next((seed for seed in study.runs[name][2] if seed.state == "measured"), None)
+    return next((seed for seed in study.runs[name][2] if seed.is_measured), None)
 
 
 def value_text(mean, scale=1.0):
     """Mean and standard deviation as text: "2.29 ± 0.04 (5)", or "(4 of 5)" if a seed lacks the quantity; a dash for None."""
     if mean is None:
         return "–"
-    text = number_text(scale * mean.mean, scale * mean.deviation)
-    return f"{text} ({mean.n}{f' of {mean.n_seeds}' if mean.n < mean.n_seeds else ''})"
+    return f"{number_text(mean.mean, mean.deviation, scale=scale)} ({mean.count})"

@@ -2,7 +2,7 @@
 import textwrap
 from dataclasses import dataclass
 
-from ..quantities import number_text
+from ..quantities import UNITS, number_text, shown_unit
 from .runs import Check, Run
 
 VERDICTS = ("fails", "holds", "reported")
@@ -65,13 +65,11 @@ def comparisons(run):
     for check in run.checks:
         if check.claim != "fracture" or check.theory is None:
             continue
-        scale, unit = (100, "cm") if check.unit == "m" else (1, check.unit)
+        scale, unit = shown_unit(check.unit)
         uncertainty = uncertainty_of(check.quantity, run.crack)
         measured = check.continuum if check.lattice is None else check.lattice
-        result.append(Comparison(
-            run, check.quantity, unit, scale * check.theory,
-            None if measured is None else scale * measured,
-            None if uncertainty is None else scale * uncertainty, check))
+        result.append(Comparison(run, check.quantity, unit or "1", *(
+            None if value is None else scale * value for value in (check.theory, measured, uncertainty)), check))
     return result
 
 
@@ -92,7 +90,7 @@ def unpublished(run):
     for quantity, name in NAMES.items():
         value, uncertainty = ((run.crack or {}).get(key) for key in (name, f"{name}_uncertainty"))
         if quantity not in compared and value is not None:
-            scale, unit = (1, "m/s") if "speed" in name else (100, "cm")
+            scale, unit = shown_unit(UNITS[name])
             found.append((quantity, unit, scale * value, None if uncertainty is None else scale * uncertainty))
     return found
 

@@ -9,12 +9,14 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..errors import DONE
+from ..case import set_options
 from ..folder import FolderLock, write_file
 from .output import plan_table
 from .plan import plan_runs
 from .record import Printed
 from .requested import RequestedStudy, read_requested_study, require_folder_of, require_no_refinement, verification_of
-from .program import DONE, InputError, Program, printable
+from .program import InputError, Program, printable
 
 _MAX_DEFAULT_TASKS = 1000  # MaxArraySize of Slurm is 1001 unless configured
 
@@ -106,9 +108,7 @@ def _study_command(options: Mapping[str, Any], requested: RequestedStudy) -> str
     """Returns `latcon study` with the choices of the user, from any folder."""
     study = requested.file if requested.kept else options["study"]
     words = [options["program"], "study", os.path.abspath(study) if os.path.exists(study) else study]
-    for key, value in requested.overrides.items():
-        words += ["--set", f"{key}={value}"]
-    words += [f"--{name.replace('_', '-')}" for name in ("quick", "skip_verification", "yes") if options[name]]
+    words += [*set_options(requested.overrides), *(f"--{name.replace('_', '-')}" for name in ("quick", "skip_verification", "yes") if options[name])]
     return shlex.join([*words, "--output-dir", os.path.abspath(options["output_dir"])])
 
 

@@ -8,6 +8,7 @@ import traceback
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..errors import BAD_INPUT, CLAIM_FAILED, DONE, INTERNAL_ERROR, INTERRUPTED, OUTPUT_FAILED, SOLVER_FAILED
 from ..compare import compare_cracks
 from ..folder import FolderLock, prepare_run, remove, require_in_place, write_file
 from .batch import write_batch
@@ -15,8 +16,7 @@ from .outcome import RunOutcome, RunState, is_begun, is_finished, read_outcome
 from .output import StudyResults, plan_table, result_table, study_csv, study_json
 from .plan import PlannedRun, Verification, base_text, plan_runs
 from .pool import run_processes
-from .program import (BAD_INPUT, CLAIM_FAILED, DONE, INTERNAL_ERROR, INTERRUPTED, OUTPUT_FAILED, SOLVER_FAILED, Ended, InputError,
-                      Interrupted, Program, Signals)
+from .program import Ended, InputError, Interrupted, Program, Signals
 from .record import Printed, Progress, Record, draw_page, output_is_lost, say_error
 from .refinement import refined_runs
 from .requested import read_requested_study, require_folder_of, require_no_refinement, verification_of

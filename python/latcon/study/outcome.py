@@ -7,8 +7,10 @@ import json
 import pathlib
 from typing import Any
 
+from ..errors import CLAIM_FAILED, DONE
+from ..tables import table_values
 from .plan import PlannedRun
-from .program import CLAIM_FAILED, DONE, Program, printable
+from .program import Program, printable
 
 
 class RunState(enum.Enum):
@@ -79,7 +81,7 @@ def measured_values(program: Program, folder: str, spacing: float) -> dict[str, 
         for suffix in ("", "_uncertainty"):
             if name + suffix in values:
                 values[f"{name}_over_d{suffix}"] = values[name + suffix] / spacing
-    return values
+    return values | table_values(folder, spacing, values.get("window_begin", 0.0), values.get("window_end", 0.0))
 
 
 def is_begun(program: Program, run: PlannedRun, folder: str, case: str, skip_verification: bool) -> bool:

@@ -7,6 +7,7 @@ import io
 import json
 import math
 import re
+import textwrap
 from collections.abc import Sequence
 from typing import Any
 
@@ -182,16 +183,5 @@ def _run_lines(program: Program, results: StudyResults) -> list[str]:
 
 def _wrapped(text: str, first: str, indent: str) -> list[str]:
     """Wraps a text at blanks, and within words that are too long; control characters would break the table."""
-    width = _WIDTH - len(indent)
-    text = re.sub(r"[\x00-\x1f\x7f]", "?", text)
-    lines, line = [], ""
-    for word in re.findall(r"^[^ ]+| [^ ]*", text):
-        if line and len(line) + len(word) > width:
-            lines.append(line)
-            line = ""
-        line += word if line else word.removeprefix(" ")
-        while len(line) > width:
-            lines.append(line[:width])
-            line = line[width:]
-    lines.append(line)
+    lines = textwrap.wrap(re.sub(r"[\x00-\x1f\x7f]", "?", text), _WIDTH - len(indent), break_on_hyphens=False)
     return [lead + line for lead, line in zip([first] + [indent] * len(lines), lines)]

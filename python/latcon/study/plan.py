@@ -6,9 +6,9 @@ import enum
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..schema import SEED_ENTRY
 from .program import InputError, Program, printable
 from .study_file import Settings, Study
-from .sweep import SEED_ENTRY
 
 
 class Verification(enum.Enum):

@@ -12,7 +12,7 @@ _POLL_INTERVAL = 0.02  # [s]
 _PATIENCE = 60.0  # [s] until a child that does not end is killed
 _NOT_STARTED = 127
 _PR_SET_PDEATHSIG = 1
-# Variables of a launcher, with which a child would be a rank of another job.
+# Variables of a launcher, with which a child would be a rank of another job, and of this process alone.
 _LAUNCHER = ("OMPI_", "PMIX_", "PMI_")
 
 
@@ -69,7 +69,7 @@ def run_processes(n_jobs: int, limit: int, start: Callable[[int], tuple[Sequence
 def environment_of_children() -> dict[str, str]:
     """Returns the variables of this process without those that would make a child a rank of another job."""
     return {name: value for name, value in os.environ.items()
-            if not name.startswith(_LAUNCHER) and name not in ("FLUX_JOB_ID", "PYTHONPATH")}
+            if not name.startswith(_LAUNCHER) and name not in ("FLUX_JOB_ID", "LATCON_PROGRESS", "PYTHONPATH")}
 
 
 def end_with_parent(number: int) -> Callable[[], None]:

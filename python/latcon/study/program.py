@@ -10,12 +10,10 @@ from collections.abc import Mapping, Sequence
 from types import FrameType
 from typing import Any
 
-from ..errors import LatconError
+from ..errors import INTERNAL_ERROR, LatconError
 from ..quantities import RECORDED
 from ..schema import Schema
 from .pool import end_with_parent, environment_of_children
-
-DONE, INTERNAL_ERROR, BAD_INPUT, CLAIM_FAILED, SOLVER_FAILED, OUTPUT_FAILED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 130
 
 _ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2, signal.SIGALRM, signal.SIGXCPU)
 

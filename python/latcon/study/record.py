@@ -7,23 +7,21 @@ import io
 import json
 import math
 import os
-import pathlib
 import resource
 import select
 import shutil
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..errors import PACKAGES_MISSING, CLAIM_FAILED, DONE, INTERRUPTED
 from ..folder import FolderLock, add_to_list, archive, is_listed, write_atomically, write_file
-from .program import CLAIM_FAILED, DONE, INTERRUPTED, Ended, Program
+from ..program import page_command
+from .program import Ended, Program
 from .pool import end_with_parent, environment_of_children
 from .output import shortest
-
-PACKAGES_MISSING = 69  # exit status of a script that has named them, see report/__main__.py
 
 
 class Printed:
@@ -196,8 +194,7 @@ def say_error(text: str) -> None:
 def draw_page(kind: str, directory: str, page: str, repeat: str) -> bool:
     """Draws a page by :mod:`latcon.report`. Nodes of a cluster may have no packages for it; then says so, since all results are
     written, and how to draw it."""
-    script = pathlib.Path(__file__).parents[1] / "report" / "__main__.py"
-    status = subprocess.run([sys.executable, "-sP", script, kind, directory, "--quiet"], check=False).returncode
+    status = subprocess.run(page_command(kind, directory), check=False).returncode
     if status == PACKAGES_MISSING:
         say_error(f"latcon: cannot draw {directory}/{page} without these packages; every other file is complete. To draw the page, "
                   f"{repeat} on a machine with Python and the packages of the report\n")
@@ -218,11 +215,12 @@ def _polled() -> list[tuple[int, int]]:
 
 
 class Progress:
-    """Progress line on standard error: in place in a terminal, otherwise a line per minute."""
+    """Progress line on standard error: in place in a terminal, otherwise a line per minute; or JSON to LATCON_PROGRESS."""
 
     def __init__(self, is_wanted: bool) -> None:
         self._in_place = os.isatty(2) and os.environ.get("TERM") != "dumb"
-        self._interval = (0.2 if self._in_place else 60.0) if is_wanted else math.inf
+        self._descriptor = int(os.environ.get("LATCON_PROGRESS") or -1)
+        self._interval = (0.2 if self._in_place or self._descriptor >= 0 else 60.0) if is_wanted else math.inf
         self._begin = self._shown = time.monotonic()
 
     def is_due(self) -> bool:
@@ -232,8 +230,13 @@ class Progress:
     def show(self, text: str, done: float) -> None:
         """Shows a line, and the time that is left if a fraction is done."""
         self._shown = time.monotonic()
-        if done > 0.01:
-            text += f", {round((self._shown - self._begin) * (1 / done - 1))} s left"
+        left = (self._shown - self._begin) * (1 / done - 1) if done > 0.01 else None
+        if left is not None:
+            text += f", {round(left)} s left"
+        if self._descriptor >= 0:
+            with contextlib.suppress(OSError):  # nobody reads any more
+                os.write(self._descriptor, json.dumps({"text": text, "seconds_left": left}).encode() + b"\n")
+            return
         say_error(f"\r\x1b[K{text}" if self._in_place else text + "\n")
 
     def clear(self) -> None:

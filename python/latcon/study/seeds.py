@@ -60,6 +60,11 @@ class SeedStatistics:
         as a straight crack has no amplitude."""
         return 4 * self.n_lost > self.n_seeds
 
+    @property
+    def count(self) -> str:
+        """Number of seeds that have the quantity: "5", or "4 of 5"."""
+        return f"{self.n} of {self.n_seeds}" if self.n < self.n_seeds else f"{self.n}"
+
     def sample(self) -> SampleMean:
         """Returns mean and scatter over the seeds, for tests. The run must have a mean."""
         return SampleMean(self.mean, self.n, (self.deviation or 0.0)**2, (self.uncertainty or 0.0)**2)
@@ -71,8 +76,7 @@ class SeedStatistics:
     def text(self, unit: str) -> str:
         """Describes the result: "2.29 ± 0.04 cm (5)", or "(4 of 5)" if a seed lacks it; "oscillating 4/5, undecided 1/5"."""
         if self.mean is not None:
-            of_all = f" of {self.n_seeds}" if self.n < self.n_seeds else ""
-            return f"{quantity_text(self.mean, self.deviation, unit)} ({self.n}{of_all})"
+            return f"{quantity_text(self.mean, self.deviation, unit)} ({self.count})"
         counts = self.patterns | ({UNDECIDED: self.n_undecided} if self.n_undecided else {})
         return ", ".join(f"{pattern} {count}/{self.n_seeds}" for pattern, count in counts.items()) or "not measured"
 

@@ -7,9 +7,10 @@ import os
 import re
 from typing import Any
 
+from ..schema import SEED_ENTRY
 from .program import InputError, Program
 from .strict_json import JsonPlace, parse_json
-from .sweep import SEED_ENTRY, Sweep, combinations, parse_sweep
+from .sweep import Sweep, combinations, parse_sweep
 
 Settings = dict[str, str]
 """Entries of a case with their values, in the order of their first occurrence."""

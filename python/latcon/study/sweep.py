@@ -10,11 +10,8 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NoReturn
 
-from ..schema import Entry
+from ..schema import SEED_ENTRY, Entry
 from .program import InputError, Program, printable
-
-SEED_ENTRY = "Lattice/noise seed"
-"""Entry that the seeds of a run set."""
 
 MAX_RUNS = 100000
 """Largest number of runs of a sweep, with all seeds."""

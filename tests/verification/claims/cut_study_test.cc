@@ -45,12 +45,6 @@ std::vector<std::string> failing(const ClaimOutcome &outcome)
   return names;
 }
 
-bool any_has(const std::vector<std::string> &names, const std::string &part)
-{
-  return std::any_of(names.begin(), names.end(),
-                     [&](const std::string &name) { return name.find(part) != std::string::npos; });
-}
-
 // With nearest neighbours the outermost row of sites, held, is the edge; with both shells the second row is held too,
 // and the displacement it forces on the first free one has a boundary layer: 0.72 of a row pitch across and all of it
 // along the edge, by hand from the characteristic equation of the chain.
@@ -189,30 +183,6 @@ TEST(CutStudy, TablesHaveTheirColumns)
   }
 }
 
-struct Fault
-{
-  const char *name;
-  std::function<void(Subject &, CutStudy &)> plant;
-  std::vector<std::string> caught_by; // parts of the names of rows, each of which has to fail
-};
-
-std::ostream &operator<<(std::ostream &out, const Fault &fault)
-{
-  return out << fault.name;
-}
-
-class PlantedFault : public testing::TestWithParam<Fault>
-{
-};
-
-void scale_weights(Subject &subject, double factor)
-{
-  std::vector<continuum::FibreFamily> families = subject.cauchy_born.families();
-  for (continuum::FibreFamily &family : families)
-    family.weight *= factor;
-  subject.cauchy_born = continuum::CauchyBorn(families);
-}
-
 // Positions and directions of the lattice with x and y exchanged, as a comparison would see them that mixes them up.
 void exchange_axes(CutLattice &cut)
 {
@@ -228,30 +198,13 @@ void exchange_axes(CutLattice &cut)
   cut.homogeneous_P = cut.homogeneous_P.reverse().eval();
 }
 
-INSTANTIATE_TEST_SUITE_P(CutStudy, PlantedFault,
-                         testing::Values(Fault{"NextNearestStifferByOnePercent",
-                                               [](Subject &s, CutStudy &)
-                                               { s.material.next_nearest->area_factor *= 1.01; },
-                                               {"stress amplitude", "reactions"}},
-                                         Fault{"WrongAreaOfASite",
-                                               [](Subject &s, CutStudy &) { scale_weights(s, 2. / std::sqrt(3.)); },
-                                               {"stress amplitude", "energy", "reactions"}},
-                                         Fault{"HeavierNetwork",
-                                               [](Subject &s, CutStudy &) { faults::heavier_network(s); },
-                                               {"network: stress amplitude", "network: energy"}},
-                                         Fault{"AxesExchanged",
-                                               [](Subject &, CutStudy &study) { study.spoil = exchange_axes; },
-                                               {"displacement, rms", "reactions", "shape"}}),
-                         [](const auto &instance) { return instance.param.name; });
-
-TEST_P(PlantedFault, FailsTheClaim)
+TEST(CutFault, FailsForAxesThatAreExchanged)
 {
-  Subject wrong = paper_subject();
   CutStudy study = local_study();
-  GetParam().plant(wrong, study);
-  const std::vector<std::string> names = failing(cut_claim(wrong, study));
-  for (const std::string &part : GetParam().caught_by)
-    EXPECT_TRUE(any_has(names, part)) << part;
+  study.spoil = exchange_axes;
+  const Results results = cut_claim(paper_subject(), study).results;
+  for (const char *row : {"displacement, rms", "reactions", "shape"})
+    EXPECT_GE(faults::failing(results, row), 1u) << row;
 }
 
 } // namespace cut_study_test

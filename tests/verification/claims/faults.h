@@ -14,17 +14,6 @@
 namespace faults
 {
 
-struct Fault
-{
-  const char *name;
-  std::function<void(latcon::bridge::Subject &)> plant;
-};
-
-inline std::ostream &operator<<(std::ostream &out, const Fault &fault)
-{
-  return out << fault.name;
-}
-
 /// a times one gradient energy plus b times another.
 class Combination : public latcon::continuum::GradientLaw
 {
@@ -76,47 +65,6 @@ inline void turn_sign_of_fourth_order(latcon::bridge::Subject &subject)
   const auto longer = std::make_shared<latcon::continuum::LatticeGradient>(
     latcon::bridge::bond_families(sheet, subject.material), std::sqrt(2.) * subject.lengths.lattice);
   subject.lattice_gradient = std::make_shared<Combination>(2., longer, -3., subject.lattice_gradient);
-}
-
-/// The length of micro-inertia that nearest neighbours alone would ask for.
-inline void length_of_nearest_neighbours(latcon::bridge::Subject &subject)
-{
-  subject.lengths.lattice = subject.spacing / std::sqrt(12.);
-}
-
-/// Bonds of the next-nearest shell stiffer by 1 % on the lattice side.
-inline void stiffer_next_nearest(latcon::bridge::Subject &subject)
-{
-  subject.material.next_nearest.value().area_factor *= 1.01;
-}
-
-inline void heavier(latcon::bridge::Subject &subject)
-{
-  subject.material.density *= 1.01;
-}
-
-/// The square of the spacing in place of a site's Voronoi cell, (sqrt3 / 2) d^2.
-inline void square_voronoi_cell(latcon::bridge::Subject &subject)
-{
-  std::vector<latcon::continuum::FibreFamily> families = subject.cauchy_born.families();
-  for (latcon::continuum::FibreFamily &family : families)
-    family.weight *= std::sqrt(3.) / 2.;
-  subject.cauchy_born = latcon::continuum::CauchyBorn(std::move(families));
-}
-
-/// The network with weights of its fibres that are 1 % too large.
-inline void heavier_network(latcon::bridge::Subject &subject)
-{
-  std::vector<latcon::continuum::FibreFamily> families = subject.cauchy_born.families();
-  for (latcon::continuum::FibreFamily &family : families)
-    family.weight *= 1.01;
-  subject.network = latcon::continuum::IsotropicNetwork(std::move(families));
-}
-
-/// A gradient energy of the network of the wrong sign.
-inline void turn_sign_of_network_gradient(latcon::bridge::Subject &subject)
-{
-  subject.network_gradient = std::make_shared<Combination>(-1., subject.network_gradient, 0., subject.network_gradient);
 }
 
 /// Rows of an outcome with a verdict and whose name contains a text; any text: "". There must be judged rows with that

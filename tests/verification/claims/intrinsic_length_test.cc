@@ -138,24 +138,4 @@ TEST(IntrinsicLength, HoldsForBothShellSetsAndOrientations)
                        { return intrinsic_length_claim(subject, small_version()).results; });
 }
 
-class IntrinsicLengthFault : public testing::TestWithParam<faults::Fault>
-{
-};
-INSTANTIATE_TEST_SUITE_P(
-  Claims, IntrinsicLengthFault,
-  testing::Values(faults::Fault{"next-nearest stiffness", faults::stiffer_next_nearest},
-                  faults::Fault{"length of nearest", faults::length_of_nearest_neighbours},
-                  faults::Fault{"sign of k^4", faults::turn_sign_of_fourth_order},
-                  faults::Fault{"isotropic length", [](Subject &s) { s.lengths.isotropic_inertia *= 1.01; }},
-                  faults::Fault{"sign of the network's gradient energy", faults::turn_sign_of_network_gradient}));
-
-TEST_P(IntrinsicLengthFault, FailsTheClaim)
-{
-  Subject wrong = subject(subjects::paper_case());
-  GetParam().plant(wrong);
-  const ClaimOutcome outcome = intrinsic_length_claim(wrong, small_version());
-  EXPECT_EQ(outcome.results.verdict(), Verdict::fails);
-  EXPECT_EQ(faults::failing(outcome.results, "lattice run against closed form"), 0u);
-}
-
 } // namespace intrinsic_length_test

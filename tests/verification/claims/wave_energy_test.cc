@@ -57,32 +57,6 @@ TEST(WaveEnergy, OfTheGradientContinuumIsOnTheOtherSideOfTheLocalOne)
   }
 }
 
-class WaveEnergyFault : public testing::TestWithParam<faults::Fault>
-{
-};
-INSTANTIATE_TEST_SUITE_P(Claims, WaveEnergyFault,
-                         testing::Values(faults::Fault{"next-nearest stiffness", faults::stiffer_next_nearest},
-                                         faults::Fault{"length of nearest", faults::length_of_nearest_neighbours},
-                                         faults::Fault{"sign of k^4", faults::turn_sign_of_fourth_order},
-                                         faults::Fault{"Voronoi cell", faults::square_voronoi_cell}));
-
-TEST_P(WaveEnergyFault, FailsTheClaim)
-{
-  const Case input = subjects::paper_case();
-  Subject wrong = subject(input);
-  GetParam().plant(wrong);
-  const ClaimOutcome outcome = wave_energy_claim(wrong, small_version(input));
-  EXPECT_EQ(outcome.results.verdict(), Verdict::fails);
-  EXPECT_EQ(faults::failing(outcome.results, "energy of the lattice against Bloch"), 0u);
-}
-
-TEST(Energy, FailsForAWrongVoronoiCell)
-{
-  Subject wrong = subject(subjects::paper_case());
-  faults::square_voronoi_cell(wrong);
-  EXPECT_GE(faults::failing(energy_claim(wrong, 10)), 2u);
-}
-
 // The ratio of the constants of a bond is not that of the sheet.
 TEST(Energy, FailsForTheRatioOfTheBondConstants)
 {

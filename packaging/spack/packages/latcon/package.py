@@ -1,4 +1,4 @@
-"""Spack recipe of latcon. In a clone: spack repo add packaging/spack; spack dev-build latcon@0.1.0"""
+"""Spack recipe of latcon. In a clone: spack repo add packaging/spack; spack dev-build latcon@VERSION"""
 from spack.package import *
 
 
@@ -8,7 +8,7 @@ class Latcon(CMakePackage):
 
     license("LGPL-2.1-or-later")
 
-    version("0.1.0")
+    version("1.0.0")
 
     depends_on("c", type="build")
     depends_on("cxx", type="build")

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "continuum/point_integrand.h"
+#include "continuum/viscosity.h"
+
+#include <vector>
+
+namespace latcon::continuum
+{
+/// Gradient part of the viscosity of a network of dashpots, each of which resists the rate of the gradient of its own
+/// stretch. It multiplies the viscous forces of long lattice waves by 1 + l_d^2 k^2 with the micro-inertia length l_d,
+/// as LatticeGradient does the elastic ones (theory-continuum.md, eqs. (C.85) to (C.88)):
+///   R_g = (1/2) sum over dashpots of c_k eta_k [ l_d^2 (d/dt dl_k/dT)^2 + (l_d^2 - l_k^2/12) (d/dt dl_k/dN)^2 ]
+/// with the stretch l_k = |F N|, whose gradient is n . (G N), and T normal to N. Objective, never negative.
+///
+/// Densities are those of the dissipated power 2 R_g [W/m^3] as `value`, of R_g by the derivatives of v as `first`, and
+/// of those by u, with dv/du = `rate_by_displacement` [1/s], as `second`, which is not symmetric where the sheet moves.
+class GradientViscosity
+{
+public:
+  /// Creates the law from `dashpots`, whose lengths l_k are needed, and `length` l_d [m]. Throws InvalidMaterial if a
+  /// dashpot is not valid or has no length, or if l_d^2 < l_k^2/12 for one of them, which would make R_g indefinite.
+  GradientViscosity(const std::vector<FibreDashpot> &dashpots, double length);
+
+  /// Computes the density in a cell, as a density of side 0, from the derivatives of u [m] and v [m/s]. `density` must
+  /// have been cleared.
+  void cell_density(const FieldDerivatives &u, const FieldDerivatives &v, Order order, double rate_by_displacement,
+                    PointIntegrand &density) const;
+
+  /// Computes the density of the interior penalty on a face with normal N, eq. (C.88), as face_density() does that of a
+  /// gradient law: `prescribed` is the rate of the normal gradient [1/s], `penalty` that of the viscosity [Pa s m].
+  void face_density(const std::array<FieldDerivatives, 2> &u, const std::array<FieldDerivatives, 2> &v,
+                    unsigned int n_sides, const dealii::Tensor<1, 2> &N, const dealii::Tensor<1, 2> &prescribed,
+                    const std::array<bool, 2> &held, double penalty, Order order, double rate_by_displacement,
+                    PointIntegrand &density) const;
+
+  /// Returns the resistance [Pa s m^2] to the rate of a second derivative along the unit vector N in both directions,
+  /// summed over both components. Independent of F, because n is a unit vector.
+  double resistance_across(const dealii::Tensor<1, 2> &N) const;
+
+private:
+  // A dashpot contributes two terms (1/2) factor (d/dt n_i G_iJK S_JK)^2.
+  struct Term
+  {
+    double factor;            // [Pa s m^2]
+    ComponentDerivatives row; // G_iJK S_JK as a sum over the derivatives of component i
+    dealii::Tensor<2, 2> selector;
+  };
+  struct Family
+  {
+    dealii::Tensor<1, 2> direction;
+    Term terms[2];
+  };
+
+  std::vector<Family> families_;
+};
+} // namespace latcon::continuum

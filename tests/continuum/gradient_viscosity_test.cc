@@ -1,0 +1,270 @@
+// Gradient part of the viscosity of dashpots at a point, compared with differences and with sums over bonds.
+#include "continuum/errors.h"
+#include "continuum/gradient_viscosity.h"
+#include "sheets.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+namespace gradient_viscosity_test
+{
+using namespace sheets;
+using namespace latcon::continuum;
+
+using Sides = std::array<FieldDerivatives, 2>;
+
+constexpr double spacing = 0.2; // [m]
+constexpr double micro_length = 0.6 * spacing;
+
+// Dashpots along the bonds of rubber_network, of another viscosity in either shell.
+std::vector<FibreDashpot> dashpots()
+{
+  std::vector<FibreDashpot> all;
+  for (const BondFamily &bond : rubber_bonds(spacing))
+    all.push_back({bond.fibre.direction, bond.fibre.weight, bond.length > spacing ? 250. : 400., bond.length});
+  return all;
+}
+
+double entry(std::mt19937 &generator)
+{
+  return std::uniform_real_distribution<double>(-1., 1.)(generator);
+}
+
+// Derivatives of a displacement, of the size of 1 and, by the second ones, 1 per spacing.
+FieldDerivatives random_derivatives(std::mt19937 &generator, const double size)
+{
+  FieldDerivatives all;
+  for (ComponentDerivatives &component : all)
+    for (unsigned int c = 0; c < n_derivatives; ++c)
+      component[c] = size * entry(generator) / (c < n_first ? 1. : spacing);
+  return all;
+}
+
+Tensor<1, 2> random_normal(std::mt19937 &generator)
+{
+  const double angle = pi * entry(generator);
+  return Tensor<1, 2>({std::cos(angle), std::sin(angle)});
+}
+
+// Stretch of a fibre with direction N at X = s M and time t, of the sheet with u + t v.
+double stretch(const FieldDerivatives &u, const FieldDerivatives &v, const Tensor<1, 2> &N, const Tensor<1, 2> &M,
+               const double s, const double t)
+{
+  Tensor<1, 2> f = N;
+  for (unsigned int i = 0; i < 2; ++i)
+  {
+    const auto at = [&](const unsigned int c) { return u[i][c] + t * v[i][c]; };
+    f[i] += (at(0) + s * (at(2) * M[0] + at(4) * M[1])) * N[0] + (at(1) + s * (at(4) * M[0] + at(3) * M[1])) * N[1];
+  }
+  return f.norm();
+}
+
+// theory-continuum.md, eq. (C.86).
+TEST(GradientViscosity, DissipatesTheRatesOfTheGradientsOfStretches)
+{
+  const GradientViscosity law(dashpots(), micro_length);
+  std::mt19937 generator(31);
+  for (int sample = 0; sample < 20; ++sample)
+  {
+    const FieldDerivatives u = random_derivatives(generator, 0.2);
+    const FieldDerivatives v = random_derivatives(generator, 3.);
+    double expected = 0.;
+    for (const FibreDashpot &dashpot : dashpots())
+    {
+      const auto &N = dashpot.direction;
+      const auto rate = [&](const Tensor<1, 2> &M)
+      {
+        const double s = 1e-4 * spacing;
+        const double t = 1e-4;
+        return (stretch(u, v, N, M, s, t) - stretch(u, v, N, M, -s, t) - stretch(u, v, N, M, s, -t) +
+                stretch(u, v, N, M, -s, -t)) /
+               (4. * s * t);
+      };
+      const double l_d2 = micro_length * micro_length;
+      expected += dashpot.weight * dashpot.viscosity *
+                  (l_d2 * std::pow(rate(Tensor<1, 2>({-N[1], N[0]})), 2) +
+                   (l_d2 - dashpot.length * dashpot.length / 12.) * std::pow(rate(N), 2));
+    }
+    PointIntegrand density;
+    clear(density, Order::value);
+    law.cell_density(u, v, Order::value, 0., density);
+    // Differences over 1e-4 have errors of 1e-8, and round-off of 1e-16/1e-8.
+    EXPECT_NEAR(density.value, expected, 1e-5 * expected);
+  }
+}
+
+// Dissipation of a wave v = p cos(K.X) on a homogeneous sheet, times 1 + l_d^2 k^2, as a sum over bonds: to fourth
+// order that of the local and the gradient viscosity. theory-continuum.md, eqs. (C.85) and (C.87).
+TEST(GradientViscosity, HasTheBondsDampingOfLongWavesToFourthOrder)
+{
+  const FibreViscosity viscosity(dashpots(), micro_length);
+  std::mt19937 generator(32);
+  for (int sample = 0; sample < 10; ++sample)
+  {
+    const Tensor<2, 2> F = random_deformation(generator);
+    const Tensor<1, 2> direction = random_normal(generator);
+    const Tensor<1, 2> p = random_normal(generator);
+    FieldDerivatives state{};
+    for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int J = 0; J < 2; ++J)
+        state[i][J] = F[i][J] - (i == J ? 1. : 0.);
+    const auto error = [&](const double kd)
+    {
+      const Tensor<1, 2> K = kd / spacing * direction;
+      double bonds = 0.;
+      for (const FibreDashpot &dashpot : dashpots())
+      {
+        const Tensor<1, 2> f = F * dashpot.direction;
+        const double l = dashpot.length;
+        bonds += dashpot.weight * dashpot.viscosity * 4. *
+                 std::pow(std::sin(0.5 * l * (K * dashpot.direction)) / l, 2) * std::pow(f * p / f.norm(), 2);
+      }
+      // The amplitudes: F' = -p K sin, G' = -p K K cos.
+      FieldDerivatives v{};
+      for (unsigned int i = 0; i < 2; ++i)
+        v[i] = {0., 0., p[i] * K[0] * K[0], p[i] * K[1] * K[1], p[i] * K[0] * K[1]};
+      PointIntegrand density;
+      clear(density, Order::value);
+      viscosity.gradient()->cell_density(state, v, Order::value, 0., density);
+      const double sum = viscosity.dissipation(F, outer_product(p, K)) + density.value;
+      return std::abs(sum / (bonds * (1. + micro_length * micro_length * K.norm_square())) - 1.);
+    };
+    // The next term is of the order of (k l)^2/30 of the error.
+    EXPECT_NEAR(std::log2(error(0.2) / error(0.1)), 4., 0.05);
+  }
+}
+
+// Compares first and second derivatives of a density with differences of value and first; compute(u, v, order,
+// density).
+template <class Compute>
+void expect_derivatives(const Compute &compute, const unsigned int n_sides, const double rate_by_displacement,
+                        std::mt19937 &generator)
+{
+  const Sides u{random_derivatives(generator, 0.2), random_derivatives(generator, 0.2)};
+  const Sides v{random_derivatives(generator, 3.), random_derivatives(generator, 3.)};
+  const auto density = [&](const Sides &at_u, const Sides &at_v, const Order order)
+  {
+    PointIntegrand d;
+    clear(d, order);
+    compute(at_u, at_v, order, d);
+    return d;
+  };
+  const PointIntegrand d = density(u, v, Order::second);
+  const PointIntegrand first = density(u, v, Order::first);
+  EXPECT_EQ(density(u, v, Order::value).value, first.value);
+  double largest_first = 0.;
+  double largest_second = 0.;
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int s = 0; s < n_sides; ++s)
+      for (unsigned int c = 0; c < n_derivatives; ++c)
+      {
+        const double scale = c < n_first ? 1. : spacing;
+        largest_first = std::max(largest_first, std::abs(d.first[i][s][c]) / scale);
+        largest_second = std::max(largest_second, std::abs(d.second[i][i][s][c][s][c]) / (scale * scale));
+      }
+  for (unsigned int k = 0; k < 2; ++k)
+    for (unsigned int t = 0; t < n_sides; ++t)
+      for (unsigned int b = 0; b < n_derivatives; ++b)
+      {
+        const double scale = b < n_first ? 1. : spacing;
+        const double h = 1e-5 / scale;
+        Sides up = v;
+        Sides down = v;
+        up[t][k][b] += h;
+        down[t][k][b] -= h;
+        // The value is twice R, which is quadratic in v without prescribed gradients: no error but round-off.
+        EXPECT_NEAR((density(u, up, Order::value).value - density(u, down, Order::value).value) / (4. * h),
+                    d.first[k][t][b], 1e-8 * largest_first * scale)
+          << k << t << b;
+        Sides u_up = u;
+        Sides u_down = u;
+        u_up[t][k][b] += h;
+        u_down[t][k][b] -= h;
+        up[t][k][b] = v[t][k][b] + rate_by_displacement * h;
+        down[t][k][b] = v[t][k][b] - rate_by_displacement * h;
+        const PointIntegrand after = density(u_up, up, Order::first);
+        const PointIntegrand before = density(u_down, down, Order::first);
+        for (unsigned int i = 0; i < 2; ++i)
+          for (unsigned int s = 0; s < n_sides; ++s)
+            for (unsigned int c = 0; c < n_derivatives; ++c)
+              EXPECT_NEAR((after.first[i][s][c] - before.first[i][s][c]) / (2. * h), d.second[i][k][s][c][t][b],
+                          1e-7 * largest_second * scale * (c < n_first ? 1. : spacing))
+                << i << s << c << k << t << b;
+      }
+}
+
+// theory-continuum.md, eq. (C.86).
+TEST(GradientViscosity, HasTheDerivativesOfItsDensityInACell)
+{
+  const GradientViscosity law(dashpots(), micro_length);
+  std::mt19937 generator(33);
+  for (int sample = 0; sample < 5; ++sample)
+    expect_derivatives([&](const Sides &u, const Sides &v, const Order order, PointIntegrand &d)
+                       { law.cell_density(u[0], v[0], order, 20., d); },
+                       1, 20., generator);
+}
+
+// theory-continuum.md, eq. (C.88).
+TEST(GradientViscosity, HasTheDerivativesOfItsDensityOnAFace)
+{
+  const GradientViscosity law(dashpots(), micro_length);
+  std::mt19937 generator(34);
+  for (const unsigned int n_sides : {1u, 2u})
+    for (const std::array<bool, 2> &held : {std::array<bool, 2>{true, true}, std::array<bool, 2>{true, false}})
+    {
+      const Tensor<1, 2> N = random_normal(generator);
+      expect_derivatives([&](const Sides &u, const Sides &v, const Order order, PointIntegrand &d)
+                         { law.face_density(u, v, n_sides, N, {}, held, 500., order, 20., d); },
+                         n_sides, 20., generator);
+    }
+}
+
+TEST(GradientViscosity, IsObjectiveAndIgnoresRotation)
+{
+  const GradientViscosity law(dashpots(), micro_length);
+  std::mt19937 generator(35);
+  const auto power = [&](const FieldDerivatives &u, const FieldDerivatives &v)
+  {
+    PointIntegrand density;
+    clear(density, Order::value);
+    law.cell_density(u, v, Order::value, 0., density);
+    return density.value;
+  };
+  for (int sample = 0; sample < 10; ++sample)
+  {
+    const FieldDerivatives u = random_derivatives(generator, 0.2);
+    const FieldDerivatives v = random_derivatives(generator, 3.);
+    const double spin = 5. * entry(generator);
+    const Tensor<2, 2> R = rotation(3. * entry(generator));
+    // x' = R x, v' = R (v + spin e_z x x).
+    FieldDerivatives turned_u, turned_v;
+    for (unsigned int c = 0; c < n_derivatives; ++c)
+    {
+      const Tensor<1, 2> x({u[0][c] + (c == 0 ? 1. : 0.), u[1][c] + (c == 1 ? 1. : 0.)});
+      const Tensor<1, 2> turned_x = R * x;
+      const Tensor<1, 2> turned = R * Tensor<1, 2>({v[0][c] - spin * x[1], v[1][c] + spin * x[0]});
+      for (unsigned int i = 0; i < 2; ++i)
+      {
+        turned_u[i][c] = turned_x[i] - (c == i ? 1. : 0.);
+        turned_v[i][c] = turned[i];
+      }
+    }
+    EXPECT_NEAR(power(turned_u, turned_v), power(u, v), 1e-12 * power(u, v));
+  }
+}
+
+TEST(GradientViscosity, RefusesLengthsThatWouldNotDissipate)
+{
+  const double longest = std::sqrt(3.) * spacing;
+  EXPECT_NO_THROW(GradientViscosity(dashpots(), longest / std::sqrt(12.)));
+  EXPECT_THROW(GradientViscosity(dashpots(), 0.999 * longest / std::sqrt(12.)), InvalidMaterial);
+  EXPECT_THROW(GradientViscosity(dashpots(), std::nan("")), InvalidMaterial);
+  std::vector<FibreDashpot> without_length = dashpots();
+  without_length.front().length = 0.;
+  EXPECT_THROW(GradientViscosity(without_length, micro_length), InvalidMaterial);
+  EXPECT_NO_THROW(FibreViscosity{without_length});
+}
+} // namespace gradient_viscosity_test
