@@ -18,7 +18,7 @@ from printed_numbers import agrees
 # Parts of a name that distinguish rows with the same check in other states, directions and lattices, and of other cracks.
 STATES = (re.compile(r"^NN(?:\+NNN)?(?:, F = (?:I|\([^)]*\)))?(?:: |, )"), re.compile(r"^kd = [\d.]+: "),
           re.compile(r" about F = (?:I|\([^)]*\))"), re.compile(r", F = \([^)]*\)(?=,)"), re.compile(r", (?:F = I|loaded)$"),
-          re.compile(r" at \d+ degrees"), re.compile(r", beta [\d.]+, Delta/Delta_G [\d.]+$"))
+          re.compile(r"^(?:square|triangular) grid, m = [\d.]+, "), re.compile(r" at \d+ degrees"), re.compile(r", beta [\d.]+, Delta/Delta_G [\d.]+$"))
 ROUND_OFF = 1e-8  # smaller errors differ between machines
 
 

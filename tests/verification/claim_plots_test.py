@@ -24,7 +24,7 @@ from latcon.report.claim_tables import fitted_order, groups, largest_text, range
 
 decay_of = MODULES["intrinsic-length"].decay_of
 # In the order in which they are checked.
-CLAIMS = ("energy", "wave-speeds", "viscoelastic-waves", "relaxation", "intrinsic-length", "disorder", "prestretch",
+CLAIMS = ("energy", "wave-speeds", "viscoelastic-waves", "relaxation", "intrinsic-length", "nonlocal", "disorder", "prestretch",
           "steady-crack", "running-crack")
 
 

@@ -8,20 +8,18 @@
 namespace latcon::bridge
 {
 
-Eigen::Matrix2d lattice_rotation(int k)
+namespace
 {
-  return Eigen::Rotation2Dd(M_PI / 3. * k / n_lattice_rotations).toRotationMatrix();
-}
 
-RotationMean rotation_mean(const Eigen::MatrixXd &values)
+// The bound is that of the harmonics from number `first` on.
+RotationMean mean_of_period(const Eigen::MatrixXd &values, int n, int first)
 {
-  constexpr int n = n_lattice_rotations;
   if (values.cols() != n)
-    throw std::invalid_argument("a mean over rotations of the lattice needs one column of values per rotation");
+    throw std::invalid_argument("a mean over a period needs one column of values per rotation or direction");
   const Eigen::VectorXd mean = values.rowwise().mean();
   const Eigen::MatrixXd rest = values.colwise() - mean; // the harmonics would be lost in the round-off of the mean
   double bound = 0.;
-  for (int j = 1; j < n; ++j)
+  for (int j = first; j <= n - first; ++j)
   {
     Eigen::VectorXcd harmonic = Eigen::VectorXcd::Zero(rest.rows());
     for (int k = 0; k < n; ++k)
@@ -29,6 +27,29 @@ RotationMean rotation_mean(const Eigen::MatrixXd &values)
     bound += harmonic.norm();
   }
   return {mean, bound};
+}
+
+} // namespace
+
+Eigen::Matrix2d lattice_rotation(int k)
+{
+  return Eigen::Rotation2Dd(M_PI / 3. * k / n_lattice_rotations).toRotationMatrix();
+}
+
+RotationMean rotation_mean(const Eigen::MatrixXd &values)
+{
+  return mean_of_period(values, n_lattice_rotations, 1);
+}
+
+Eigen::Vector2d bond_direction(int k)
+{
+  const double angle = M_PI * k / n_bond_directions;
+  return {std::cos(angle), std::sin(angle)};
+}
+
+RotationMean direction_mean(const Eigen::MatrixXd &values)
+{
+  return mean_of_period(values, n_bond_directions, 3);
 }
 
 } // namespace latcon::bridge

@@ -15,15 +15,27 @@ constexpr int n_lattice_rotations = 32;
 /// original lattice.
 Eigen::Matrix2d lattice_rotation(int k);
 
-/// Mean over the rotations of a lattice, and bound on the distance of any rotation from it.
+/// Mean over rotations or directions, and bound on the distance from it.
 struct RotationMean
 {
   Eigen::VectorXd mean;
-  double bound; ///< on the Euclidean distance of any rotation from the mean, in the units of the values
+  double bound; ///< on the Euclidean distance from the mean, in the units of the values
 };
 
 /// Computes mean and bound (theory-comparison.md, eqs. (H.14), (H.15)). @param values a column of values for each
 /// rotation 0, 1 ... n_lattice_rotations - 1
 RotationMean rotation_mean(const Eigen::MatrixXd &values);
+
+/// Number of directions of a bond over which means are taken, equispaced over half a turn. Aliasing of higher harmonics
+/// as for rotations.
+constexpr int n_bond_directions = 3 * n_lattice_rotations;
+
+/// Returns the unit vector along direction number k in [0, n_bond_directions) [-].
+Eigen::Vector2d bond_direction(int k);
+
+/// Computes the mean over all directions of a bond, and a bound on the distance from it of a mean over bonds in some
+/// directions, of which it is known only that their weights are positive and their fourth moments isotropic
+/// (theory-comparison.md, eq. (H.26)). @param values a column of values for each direction
+RotationMean direction_mean(const Eigen::MatrixXd &values);
 
 } // namespace latcon::bridge

@@ -7,7 +7,7 @@
 namespace latcon::bridge
 {
 
-/// Energy density [J/m^3] and first Piola stress [Pa] of a lattice in homogeneous deformation.
+/// Energy density [J/m^3] and first Piola stress [Pa] of a sheet in homogeneous deformation.
 struct LatticeResponse
 {
   double energy_density;
@@ -21,8 +21,8 @@ struct LatticeResponse
 Eigen::Matrix2d edge_stress(const lattice::TriangularLattice &sheet, const lattice::Material &material,
                             const std::function<Eigen::Vector2d(std::size_t place)> &force);
 
-/// Computes the response of a lattice with its simulator. @param sheet at least 12 by 12 spacings, so that the sites in
-/// the middle have all their neighbours
+/// Computes the response of a lattice, or of a sheet with another stencil, with its simulator. @param sheet at least 12
+/// by 12 spacings of the lattice, so that the sites in the middle have all their neighbours
 LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, const lattice::Material &material,
                                      const Eigen::Matrix2d &F);
 

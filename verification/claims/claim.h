@@ -29,6 +29,9 @@ struct Claim
   /// for materials with a memory only.
   bool is_about_memory = false;
 
+  /// The claim is about a continuum that breaks: part of verification before fracture of the continuum only.
+  bool is_about_continuum_fracture = false;
+
   /// The claim depends on nothing of a case, so that one verdict serves all cases of a program.
   bool is_about_program = false;
 
@@ -48,9 +51,10 @@ struct Claim
            (!is_about_disorder || !material.disorder.is_none());
   }
   /// Returns whether verification before fracture includes the claim. @param material of the sheet that breaks
-  [[nodiscard]] bool is_before_fracture(const lattice::Material &material) const
+  /// @param on_continuum whether the continuum breaks in place of the lattice
+  [[nodiscard]] bool is_before_fracture(const lattice::Material &material, bool on_continuum = false) const
   {
-    return gate && (!is_about_memory || material.has_memory());
+    return gate && (on_continuum || !is_about_continuum_fracture) && (!is_about_memory || material.has_memory());
   }
 };
 

@@ -62,9 +62,9 @@ std::vector<Claim> selected_claims(const std::vector<std::string> &names, const 
     });
 }
 
-std::vector<Claim> claims_before_fracture(const lattice::Material &material)
+std::vector<Claim> claims_before_fracture(const lattice::Material &material, bool on_continuum)
 {
-  return claims_where([&](const Claim &claim) { return claim.is_before_fracture(material); });
+  return claims_where([&](const Claim &claim) { return claim.is_before_fracture(material, on_continuum); });
 }
 
 std::string unknown_claim(const std::string &name)

@@ -18,8 +18,10 @@ namespace latcon::commands
 [[nodiscard]] std::vector<claims::Claim> selected_claims(const std::vector<std::string> &names,
                                                          const lattice::Material &material);
 
-/// Claims that must hold before a crack of the lattice is run. @param material of the lattice
-[[nodiscard]] std::vector<claims::Claim> claims_before_fracture(const lattice::Material &material);
+/// Claims that must hold before a crack is run. @param material of the sheet that breaks @param on_continuum whether it is
+/// the continuum in place of the lattice
+[[nodiscard]] std::vector<claims::Claim> claims_before_fracture(const lattice::Material &material,
+                                                                bool on_continuum = false);
 
 /// Message about a name that is not in the registry, with the nearest name that is; empty if it is in.
 [[nodiscard]] std::string unknown_claim(const std::string &name);

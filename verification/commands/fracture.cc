@@ -146,7 +146,8 @@ support::ExitCode run_fracture(const input::Options &options)
   run.info().add("skip_verification", options.skip_verification);
   output::Results results;
   if (claims)
-    results = passed_or_reported(input, claims_before_fracture(material), bridge::laws_of_lattice(), options, run);
+    results = passed_or_reported(input, claims_before_fracture(material, options.on_continuum),
+                                 bridge::laws_of_lattice(), options, run);
   const Crack crack = run_crack(input, sheet, options.skip_verification, checkpoints, run);
   results.add(crack.results);
   return end_crack(input, options, run, results, crack.measurement);

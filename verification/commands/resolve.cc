@@ -172,7 +172,8 @@ support::ExitCode verify_before_cracks(const input::Options &options)
   parameters.finish();
   Run run(options);
   const output::Results results =
-    require_verified(input, claims_before_fracture(input.material()), bridge::laws_of_lattice(), run);
+    require_verified(input, claims_before_fracture(input.material(), input.nonlocal.is_used),
+                     bridge::laws_of_lattice(), run);
   return run.end(results, support::ExitCode::done);
 }
 

@@ -1,9 +1,7 @@
 #include "verification/claims/energy/energy_claim.h"
 
 #include <cmath>
-#include <random>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "continuum/errors.h"
@@ -12,10 +10,10 @@
 #include "verification/bridge/network_comparison.h"
 #include "verification/claims/absolute_modulus.h"
 #include "verification/claims/claim_input.h"
-#include "verification/claims/claim_inputs.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/energy/contact_rows.h"
 #include "verification/claims/energy/wave_energy.h"
+#include "verification/claims/homogeneous_deformations.h"
 #include "verification/claims/rows.h"
 #include "verification/claims/states.h"
 
@@ -27,40 +25,6 @@ namespace
 const output::Tolerance equal_formulas{bridge::NetworkComparison::equal_formulas,
                                        "a few hundred round-offs of the largest term of sums over about ten bonds, the "
                                        "smallest W being 1e-2 of the moduli"};
-
-constexpr double strain_step = 1e-3;
-const output::Tolerance small_strain_tolerance{
-  1e-9, "fourth-order differences with a strain of 1e-3: 1e-12 of higher moduli, round-off over the strain"};
-
-double unit_uniform(std::mt19937_64 &generator)
-{
-  return static_cast<double>(generator() >> 11) * 0x1p-53; // the same on every machine, unlike std's distributions
-}
-
-Eigen::Matrix2d random_deformation(std::mt19937_64 &generator)
-{
-  const auto rotation = [&] { return Eigen::Rotation2Dd(2. * M_PI * unit_uniform(generator)).toRotationMatrix(); };
-  constexpr double smallest = 0.7, range = 2.8;
-  static_assert(smallest + range <= largest_stretch);
-  const auto stretch = [&] { return smallest + range * unit_uniform(generator); };
-  const Eigen::Matrix2d outer = rotation(), inner = rotation();
-  const double first = stretch(), second = stretch();
-  return outer * Eigen::Vector2d(first, second).asDiagonal() * inner;
-}
-
-// dP_iJ / dF_kL at F = I for one (k, L).
-template <class Stress>
-Eigen::Matrix2d stress_derivative(const Stress &stress, int k, int L)
-{
-  const auto at = [&](double amount)
-  {
-    Eigen::Matrix2d F = Eigen::Matrix2d::Identity();
-    F(k, L) += amount;
-    return Eigen::Matrix2d(stress(F));
-  };
-  const double h = strain_step;
-  return (8. * (at(h) - at(-h)) - (at(2. * h) - at(-2. * h))) / (12. * h);
-}
 
 // Moduli [Pa] and long-wave speeds [m/s] at F = I.
 struct Moduli

@@ -1,0 +1,194 @@
+// The claim on the nonlocal continuum, and what makes it fail (theory-comparison.md, eqs. (H.25) to (H.28)).
+#include <cmath>
+#include <functional>
+#include <ostream>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/verification/claims/faults.h"
+#include "verification/bridge/nonlocal_continuum.h"
+#include "verification/claims/nonlocal/nonlocal_claim.h"
+#include "verification/commands/claim_registry.h"
+
+namespace nonlocal_test
+{
+
+using namespace latcon;
+
+using namespace bridge;
+using namespace claims;
+using namespace output;
+
+NonlocalOptions options_of(const Subject &subject)
+{
+  NonlocalOptions options;
+  options.stencils = fixed_stencils(subject.spacing, subject.orientation);
+  options.samples = 5;
+  options.breaking_stretch = 3.05;
+  return options;
+}
+
+// Energies (H.25), bounds of harmonics (H.26), lengths (H.27) and cuts (H.28).
+TEST(Nonlocal, HoldsForBothShellSetsAndOrientations)
+{
+  faults::expect_holds([](const input::Case &, const Subject &subject)
+                       { return nonlocal_claim(subject, options_of(subject)); });
+}
+
+TEST(Nonlocal, HoldsWithThirdNearestNeighboursAndArcs)
+{
+  input::Case input = subjects::paper_case();
+  lattice::Material material = input.material();
+  material.third_nearest = material.next_nearest;
+  const Subject third = subject(input, material);
+  NonlocalOptions options = options_of(third);
+  const lattice::Grid fine{lattice::Grid::Kind::square, input.spacing / 4.},
+    own{lattice::Grid::Kind::triangular, input.spacing};
+  options.stencils = {options.stencils[2], {"arcs", fine, M_PI / 9.}, {"lattice", own, 0.}};
+  const Results results = nonlocal_claim(third, options);
+  EXPECT_TRUE(results.all_hold()) << results.verdict_text(5);
+}
+
+struct Fault
+{
+  const char *name;
+  std::function<void(NonlocalOptions &)> plant;
+  std::vector<const char *> rows; // that must fail
+};
+
+std::ostream &operator<<(std::ostream &out, const Fault &fault)
+{
+  return out << fault.name;
+}
+
+const char *const moduli = "all elastic moduli";
+const char *const sampled = "over the bound of harmonics, 5 random F";
+
+const Fault planted[] = {
+  {"weights of a ring 1 % off",
+   [](NonlocalOptions &o)
+   {
+     o.planted_bonds = [](std::vector<lattice::HalfBond> &bonds)
+     {
+       for (lattice::HalfBond &bond : bonds)
+         bond.weight *= bond.shell == 1 ? 1.01 : 1.;
+     };
+   },
+   {moduli, "(2, 2)", sampled, "energy density of the loaded sheet", "energy of a straight cut", "order in 1/m"}},
+  {"radius of a ring 1 % off",
+   [](NonlocalOptions &o) { o.planted_rings = [](std::vector<lattice::Ring> &rings) { rings[1].radius *= 1.01; }; },
+   {moduli, "intrinsic length l", "energy of a straight cut"}},
+  {"radius of a ring 1 % off, with the right weight",
+   [](NonlocalOptions &o)
+   {
+     o.planted_rings = [](std::vector<lattice::Ring> &rings) { rings[1].radius *= 1.01; };
+     o.planted_bonds = [](std::vector<lattice::HalfBond> &bonds)
+     {
+       for (lattice::HalfBond &bond : bonds)
+         bond.weight /= bond.shell == 1 ? 1.01 : 1.;
+     };
+   },
+   {"squared intrinsic length against that of the rings"}},
+  {"fourth moments not isotropic by 1 %",
+   [](NonlocalOptions &o)
+   {
+     o.planted_bonds = [](std::vector<lattice::HalfBond> &bonds)
+     {
+       for (lattice::HalfBond &bond : bonds)
+         bond.weight *= 1. + 0.01 * std::cos(4. * std::atan2(bond.vector.y(), bond.vector.x()));
+     };
+   },
+   {moduli}},
+  {"a direction missing",
+   [](NonlocalOptions &o)
+   { o.planted_bonds = [](std::vector<lattice::HalfBond> &bonds) { bonds.erase(bonds.begin() + 3); }; },
+   {moduli, "(2, 2)", sampled, "energy of a straight cut"}},
+};
+
+class NonlocalFault : public testing::TestWithParam<Fault>
+{
+};
+INSTANTIATE_TEST_SUITE_P(FaultMatrix, NonlocalFault, testing::ValuesIn(planted));
+
+TEST_P(NonlocalFault, EachIsCaughtByARow)
+{
+  const Subject subject = bridge::subject(subjects::paper_case());
+  NonlocalOptions options = options_of(subject);
+  GetParam().plant(options);
+  const Results results = nonlocal_claim(subject, options);
+  for (const char *row : GetParam().rows)
+    EXPECT_GE(faults::failing(results, row), 1u) << row;
+}
+
+// Mistakes on the other sides, and values that are no numbers.
+struct WrongSubject
+{
+  const char *name;
+  std::function<void(Subject &)> plant;
+};
+
+std::ostream &operator<<(std::ostream &out, const WrongSubject &wrong)
+{
+  return out << wrong.name;
+}
+
+void heavier_network(Subject &subject)
+{
+  std::vector<continuum::FibreFamily> families = subject.cauchy_born.families();
+  for (continuum::FibreFamily &family : families)
+    family.weight *= 1.01;
+  subject.network = continuum::IsotropicNetwork(std::move(families));
+}
+
+class NonlocalSubject : public testing::TestWithParam<WrongSubject>
+{
+};
+INSTANTIATE_TEST_SUITE_P(
+  FaultMatrix, NonlocalSubject,
+  testing::Values(WrongSubject{"network", heavier_network},
+                  WrongSubject{"lattice", [](Subject &s) { s.material.next_nearest->area_factor *= 1.01; }},
+                  WrongSubject{"length", [](Subject &s) { s.lengths.isotropic_inertia *= 1.01; }},
+                  WrongSubject{"shear speed", [](Subject &s) { s.theory.shear_speed = std::nan(""); }},
+                  WrongSubject{"density", [](Subject &s) { s.material.density = std::nan(""); }},
+                  WrongSubject{"area", [](Subject &s) { s.material.nearest.area_factor = std::nan(""); }}));
+
+TEST_P(NonlocalSubject, FailsTheClaim)
+{
+  Subject wrong = bridge::subject(subjects::paper_case());
+  GetParam().plant(wrong);
+  const Results results = nonlocal_claim(wrong, options_of(wrong));
+  EXPECT_EQ(results.verdict(), Verdict::fails);
+}
+
+TEST(Nonlocal, HasTheCutEnergiesOfFig1)
+{
+  input::Case input = subjects::paper_case();
+  input.next_nearest.area_factor = 4. / 3.;
+  const lattice::Material material = input.material();
+  const double d = input.spacing;
+  const lattice::Grid grid{lattice::Grid::Kind::triangular, d};
+  const double on_lattice = NonlocalContinuum(lattice::triangular_stencil(grid), material, d).cut_energy(3.05),
+               rings = ring_cut_energy(material, d, grid, 3.05).limit;
+  // Two nearest and four next-nearest bonds per spacing; the mean of |sin| over directions is 2 / pi.
+  const double psi = lattice::energy(material.nearest.law, 3.05);
+  EXPECT_NEAR(on_lattice, (2. * 2. / 3. + 4. * std::sqrt(3.) * 4. / 3.) * std::sqrt(3.) / 2. * d * psi, 1e-10 * rings);
+  EXPECT_NEAR(rings, 2. / M_PI * (3. * 2. / 3. + 9. * 4. / 3.) * d * psi, 1e-10 * rings);
+  EXPECT_NEAR(on_lattice / rings, 1.0272, 1e-4);
+}
+
+TEST(Nonlocal, IsWaitedForByCracksOfTheContinuumAlone)
+{
+  const lattice::Material material = subjects::paper_case().material();
+  const auto has = [&](bool on_continuum)
+  {
+    for (const Claim &claim : commands::claims_before_fracture(material, on_continuum))
+      if (claim.name == "nonlocal")
+        return true;
+    return false;
+  };
+  EXPECT_TRUE(has(true));
+  EXPECT_FALSE(has(false));
+}
+
+} // namespace nonlocal_test

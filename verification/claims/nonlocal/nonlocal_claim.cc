@@ -1,0 +1,371 @@
+#include "verification/claims/nonlocal/nonlocal_claim.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/largest_error.h"
+#include "verification/bridge/anisotropy.h"
+#include "verification/bridge/bloch.h"
+#include "verification/bridge/homogeneous_response.h"
+#include "verification/bridge/nonlocal_continuum.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
+#include "verification/claims/continuum_waves.h"
+#include "verification/claims/homogeneous_deformations.h"
+#include "verification/claims/nonlocal/ring_convergence.h"
+#include "verification/claims/nonlocal/stencil_sheet.h"
+#include "verification/claims/rows.h"
+#include "verification/claims/states.h"
+
+namespace latcon::claims
+{
+namespace
+{
+
+const output::Tolerance equal_sums{
+  1e-10, "a few thousand round-offs of the largest term of sums over at most 127 half-bonds"};
+const output::Tolerance share_of_bound{
+  1., "the bound: harmonics of a bond's share from the sixth on, since weights are positive and lower moments exact"};
+
+constexpr double stencil_wave_degrees[] = {0., 15., 40., 75.};
+constexpr double stencil_wave_kd = 0.25, long_wave_kd = 1e-3;
+
+Eigen::Vector2d vector_of_wave(double k, double angle)
+{
+  return {k * std::cos(angle), k * std::sin(angle)};
+}
+
+// Bound (H.26) on the error of a sum over bonds, `values` being the share of a bond of a shell with direction N.
+template <class Values>
+double bound_of_harmonics(const bridge::Subject &subject, const Values &values)
+{
+  double bound = 0.;
+  for (const lattice::Ring &ring : bridge::rings_of(subject.material, subject.spacing, subject.orientation))
+  {
+    Eigen::MatrixXd columns;
+    for (int k = 0; k < bridge::n_bond_directions; ++k)
+    {
+      const Eigen::VectorXd value = values(*subject.material.in_shell(ring.shell), ring, bridge::bond_direction(k));
+      columns.conservativeResize(value.size(), bridge::n_bond_directions);
+      columns.col(k) = value;
+    }
+    bound += bridge::ring_weight(subject.material, subject.spacing, ring) * bridge::direction_mean(columns).bound;
+  }
+  return bound;
+}
+
+// Energy density and stress of the network at F, with the bounds on those of any stencil.
+struct NetworkAt
+{
+  double energy, energy_bound;
+  Eigen::Matrix2d stress;
+  double stress_bound;
+
+  NetworkAt(const bridge::Subject &subject, const Eigen::Matrix2d &F)
+    : energy(subject.network.energy(bridge::to_continuum(F))),
+      stress(bridge::to_lattice(subject.network.first_piola_stress(bridge::to_continuum(F))))
+  {
+    energy_bound = *equal_sums * std::abs(energy) +
+                   bound_of_harmonics(subject,
+                                      [&](const lattice::Shell &shell, const lattice::Ring &, const Eigen::Vector2d &N) {
+                                        return Eigen::VectorXd::Constant(1, lattice::energy(shell.law, (F * N).norm()));
+                                      });
+    stress_bound =
+      *equal_sums * stress.norm() +
+      bound_of_harmonics(subject,
+                         [&](const lattice::Shell &shell, const lattice::Ring &, const Eigen::Vector2d &N)
+                         {
+                           const Eigen::Vector2d n = F * N;
+                           const Eigen::Matrix2d P = lattice::force(shell.law, n.norm()) / n.norm() * n * N.transpose();
+                           return Eigen::VectorXd(P.reshaped());
+                         });
+  }
+};
+
+// Bound (H.26) on the matrix of waves [1/s^2] of rings without width.
+double wave_bound(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+{
+  return bound_of_harmonics(
+    subject,
+    [&](const lattice::Shell &shell, const lattice::Ring &ring, const Eigen::Vector2d &N)
+    {
+      const Eigen::Vector2d n = F * N;
+      const double stretch = n.norm(), l = ring.radius;
+      const Eigen::Matrix2d along = n * n.transpose() / (stretch * stretch);
+      const double phase = std::pow(2. * std::sin(0.5 * l * K.dot(N)) / l, 2) / subject.material.density;
+      const Eigen::Matrix2d share = phase * (lattice::stiffness(shell.law, stretch) * along +
+                                             lattice::force(shell.law, stretch) / stretch *
+                                               (Eigen::Matrix2d::Identity() - along));
+      return Eigen::VectorXd(share.reshaped());
+    });
+}
+
+// Squared intrinsic length [m^2] in the dispersion of waves about F = I, from the trace of their matrix for two kd. Its
+// mean over directions is 4 c_S^2 k^2 (1 - l^2 k^2 / 16 + O(k^4)).
+template <class Stiffness>
+double squared_length_of(const bridge::Subject &subject, const Stiffness &stiffness)
+{
+  const auto at = [&](double k)
+  {
+    constexpr int n = 8;
+    double trace = 0.;
+    for (int i = 0; i < n; ++i)
+      trace += stiffness(vector_of_wave(k, M_PI * i / n)).trace() / n;
+    return 16. / (k * k) * (1. - trace / (4. * std::pow(subject.theory.shear_speed * k, 2)));
+  };
+  const double k = 0.05 / subject.spacing;
+  return (4. * at(k) - at(2. * k)) / 3.;
+}
+
+Eigen::Matrix2d of_lattice_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+{
+  return bridge::bloch_matrices(subject.sheet(), lattice::without_dashpots(subject.material), F, K).stiffness;
+}
+
+// Mean of the lattice's matrix over its rotations.
+Eigen::Matrix2d mean_of_lattice_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F,
+                                      const Eigen::Vector2d &K)
+{
+  Eigen::MatrixXd matrices(4, bridge::n_lattice_rotations);
+  for (int k = 0; k < bridge::n_lattice_rotations; ++k)
+  {
+    const Eigen::Matrix2d R = bridge::lattice_rotation(k);
+    matrices.col(k) = of_lattice_waves(subject, F * R, R.transpose() * K).reshaped();
+  }
+  return bridge::rotation_mean(matrices).mean.reshaped(2, 2);
+}
+
+// Rows of one stencil, and the largest errors of several.
+class StencilRows
+{
+public:
+  StencilRows(const bridge::Subject &subject, const NonlocalOptions &options) : subject_(subject), options_(options) {}
+
+  void check(const NonlocalStencil &stencil, const Rows &rows)
+  {
+    const StencilSheet sheet(subject_, stencil.grid, planted_bonds(subject_, stencil.grid, options_, stencil.half_width));
+    moduli(sheet);
+    homogeneous(sheet, rows);
+    waves(sheet, stencil, rows);
+    // Of the widths of other rings no closed form is known.
+    const bool is_known = stencil.half_width > 0.999 * M_PI / 6. && 1.499 * stencil.grid.spacing < subject_.spacing;
+    length(sheet, stencil, rows, is_known);
+    cut(sheet, stencil, rows, is_known);
+  }
+
+  void add_worst(const Rows &rows) const
+  {
+    rows.add("all elastic moduli at F = I, simulator against the network, largest error over mu", "1", {}, moduli_,
+             small_strain_tolerance);
+    rows.add("energy density and stress at F = (2, 2), where all bonds have one stretch, simulator against the network",
+             "1", {}, equal_stretches_, equal_sums);
+    const std::string samples = ", " + std::to_string(options_.samples) + " random F";
+    rows.add("energy density, simulator against the network, largest error over the bound of harmonics" + samples, "1",
+             {}, energy_, share_of_bound);
+    rows.add("first Piola stress, simulator against the network, largest error over the bound of harmonics" + samples,
+             "1", {}, stress_, share_of_bound);
+    rows.add("matrix of waves at kd = 0.25, simulator against the lattice's mean over rotations, largest error over the "
+             "bound of harmonics and of the widths of rings, F = I and loaded",
+             "1", {}, waves_, share_of_bound);
+    if (subject_.is_stable())
+      rows.add("squared speeds of long waves in the loaded sheet, simulator against the network, largest error over the "
+               "bound of harmonics, 4 directions",
+               "1", {}, speeds_, share_of_bound);
+    rows.add("energy of a cut along x, simulator against the sum over half-bonds that cross it", "1", {}, cut_,
+             equal_sums);
+  }
+
+private:
+  void moduli(const StencilSheet &sheet)
+  {
+    const auto exact = subject_.network.tangent(bridge::to_continuum(Eigen::Matrix2d::Identity()));
+    const auto stress = [&](const Eigen::Matrix2d &F) { return sheet.response(F).first_piola_stress; };
+    for (int k = 0; k < 2; ++k)
+      for (int L = 0; L < 2; ++L)
+      {
+        const Eigen::Matrix2d found = stress_derivative(stress, k, L);
+        for (int i = 0; i < 2; ++i)
+          for (int J = 0; J < 2; ++J)
+            moduli_.add(std::abs(found(i, J) - exact[i][J][k][L]) / subject_.theory.shear_modulus);
+      }
+  }
+
+  void homogeneous(const StencilSheet &sheet, const Rows &rows)
+  {
+    const Eigen::Matrix2d twice = 2. * Eigen::Matrix2d::Identity();
+    const NetworkAt equal(subject_, twice);
+    const bridge::LatticeResponse at_twice = sheet.response(twice);
+    equal_stretches_.add_relative(at_twice.energy_density, equal.energy);
+    equal_stretches_.add((at_twice.first_piola_stress - equal.stress).norm() / equal.stress.norm());
+
+    std::mt19937_64 generator(20061111);
+    for (unsigned int sample = 0; sample < options_.samples; ++sample)
+    {
+      const Eigen::Matrix2d F = random_deformation(generator);
+      const NetworkAt network(subject_, F);
+      const bridge::LatticeResponse found = sheet.response(F);
+      energy_.add(std::abs(found.energy_density - network.energy) / network.energy_bound);
+      stress_.add((found.first_piola_stress - network.stress).norm() / network.stress_bound);
+    }
+
+    const Eigen::Matrix2d &F = subject_.deformation;
+    if (F.isIdentity(1e-12))
+      return; // neither stress nor energy
+    const NetworkAt network(subject_, F);
+    const bridge::LatticeResponse found = sheet.response(F),
+                                  on_lattice =
+                                    bridge::homogeneous_response(subject_.sheet(12.), subject_.material, F);
+    rows.add("energy density of the loaded sheet; lattice, nonlocal continuum, network", "J/m^3",
+             of_both(on_lattice.energy_density, found.energy_density, network.energy),
+             support::relative_error(found.energy_density, network.energy),
+             {network.energy_bound / network.energy, share_of_bound.reason});
+    rows.add("first Piola stress of the loaded sheet, Frobenius norm; lattice, nonlocal continuum, network", "Pa",
+             of_both(on_lattice.first_piola_stress.norm(), found.first_piola_stress.norm(), network.stress.norm()),
+             (found.first_piola_stress - network.stress).norm() / network.stress.norm(),
+             {network.stress_bound / network.stress.norm(), share_of_bound.reason});
+  }
+
+  void waves(const StencilSheet &sheet, const NonlocalStencil &stencil, const Rows &rows)
+  {
+    const double d = subject_.spacing, h = stencil.grid.spacing;
+    const SubjectContinua media(subject_);
+    // The width of a ring lengthens its bonds in the mean of squares, the shortest ring most, see (H.27).
+    const double longer = 0.5 * std::pow(h / d, 2) + 0.19 * std::pow(h / d, 1.5);
+    std::vector<Eigen::Matrix2d> states{Eigen::Matrix2d::Identity()};
+    if (!subject_.deformation.isIdentity(1e-12))
+      states.push_back(subject_.deformation);
+    for (const Eigen::Matrix2d &F : states)
+      for (const double degrees : stencil_wave_degrees)
+      {
+        const Eigen::Vector2d K = vector_of_wave(stencil_wave_kd / d, degrees * M_PI / 180.);
+        const Eigen::Matrix2d mean = mean_of_lattice_waves(subject_, F, K);
+        const double of_lengths = (continuum_matrices(media.network, F, K).stiffness - mean).norm();
+        waves_.add((sheet.wave_stiffness(F, K) - mean).norm() /
+                   (wave_bound(subject_, F, K) + longer * of_lengths + 1e-8 * mean.norm()));
+      }
+    if (!subject_.is_stable())
+      return;
+    const Eigen::Matrix2d &F = subject_.deformation;
+    for (const double degrees : stencil_wave_degrees)
+    {
+      const Eigen::Vector2d K = vector_of_wave(long_wave_kd / d, degrees * M_PI / 180.);
+      const double k = K.norm(), bound = wave_bound(subject_, F, K);
+      const auto found = bridge::plane_waves({sheet.wave_stiffness(F, K), Eigen::Matrix2d::Zero()},
+                                             bridge::wave_normal(F, K)),
+                 network = continuum_waves(media.network, F, K),
+                 on_lattice = bridge::bloch_waves(subject_.sheet(), lattice::without_dashpots(subject_.material), F, K);
+      for (std::size_t w = 0; w < 2; ++w)
+      {
+        const double exact = std::pow(network[w].frequency, 2);
+        // Terms of order (kd)^2, and of the square of the strain.
+        const double allowed = bound + 1e-6 * std::pow(network[0].frequency, 2);
+        speeds_.add(std::abs(std::pow(found[w].frequency, 2) - exact) / allowed);
+        if (degrees == 0.)
+          rows.add(std::string("speed of long ") + wave_names[w] +
+                     " waves along x in the loaded sheet; lattice, nonlocal continuum, network",
+                   "m/s", of_both(on_lattice[w].frequency / k, found[w].frequency / k, network[w].frequency / k),
+                   support::relative_error(found[w].frequency, network[w].frequency),
+                   {allowed / exact, share_of_bound.reason});
+      }
+    }
+  }
+
+  void length(const StencilSheet &sheet, const NonlocalStencil &stencil, const Rows &rows, bool is_known)
+  {
+    const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
+    const double on_lattice = squared_length_of(
+                   subject_, [&](const Eigen::Vector2d &K) { return of_lattice_waves(subject_, I, K); }),
+                 found = squared_length_of(subject_,
+                                           [&](const Eigen::Vector2d &K) { return sheet.wave_stiffness(I, K); }),
+                 gradient = 12. * std::pow(subject_.lengths.isotropic_inertia, 2);
+    const bridge::RingValue rings =
+      bridge::ring_squared_length(subject_.material, subject_.spacing, stencil.grid);
+    rows.add("intrinsic length l in the dispersion of long waves at F = I; lattice, nonlocal continuum, gradient "
+             "continuum; error: of l^2 against l^2 + h^2/2 of rings as wide as the spacing h of the grid",
+             "m", of_both(std::sqrt(on_lattice), std::sqrt(found), std::sqrt(gradient)),
+             std::abs(found - gradient - (rings.smooth - rings.limit)) / rings.limit,
+             {rings.scatter / rings.limit, "scatter of the points of the grid in rings, of order (h/l)^(3/2)"}, is_known);
+  }
+
+  void cut(const StencilSheet &sheet, const NonlocalStencil &stencil, const Rows &rows, bool is_known)
+  {
+    const double stretch = options_.breaking_stretch, d = subject_.spacing;
+    const bridge::NonlocalContinuum sums(sheet.half_bonds(), subject_.material, d);
+    const double found = sheet.cut_energy(stretch);
+    cut_.add_relative(found, sums.cut_energy(stretch));
+    const lattice::Grid grid{lattice::Grid::Kind::triangular, d, 0., subject_.orientation};
+    const bridge::NonlocalContinuum on_lattice(lattice::triangular_stencil(grid), subject_.material, d);
+    const bridge::RingValue rings = bridge::ring_cut_energy(subject_.material, d, stencil.grid, stretch);
+    rows.add("energy of a straight cut along x through bonds at the breaking stretch; lattice, nonlocal continuum, "
+             "rings without width; error: against rings as wide as the spacing h of the grid",
+             "J/m^2", of_both(on_lattice.cut_energy(stretch), found, rings.limit),
+             std::abs(found - rings.smooth) / rings.limit,
+             {rings.scatter / rings.limit, "scatter of the points of the grid in rings, of order (h/l)^(3/2)"}, is_known);
+  }
+
+  const bridge::Subject &subject_;
+  const NonlocalOptions &options_;
+  support::LargestError moduli_, equal_stretches_, energy_, stress_, waves_, speeds_, cut_;
+};
+
+} // namespace
+
+std::vector<lattice::HalfBond> planted_bonds(const bridge::Subject &subject, const lattice::Grid &grid,
+                                             const NonlocalOptions &options, double half_width)
+{
+  std::vector<lattice::Ring> rings =
+    bridge::rings_of(subject.material, subject.spacing, subject.orientation, half_width);
+  options.planted_rings(rings);
+  std::vector<lattice::HalfBond> bonds = lattice::ring_stencil(grid, rings);
+  options.planted_bonds(bonds);
+  return bonds;
+}
+
+std::vector<NonlocalStencil> fixed_stencils(double d, lattice::Orientation orientation)
+{
+  std::vector<NonlocalStencil> list;
+  for (const auto &[kind, name] : {std::pair(lattice::Grid::Kind::square, "square"),
+                                   std::pair(lattice::Grid::Kind::triangular, "triangular")})
+    for (const auto &[m, text] : {std::pair(1.5, "1.5"), std::pair(2., "2"), std::pair(3., "3")})
+      list.push_back({std::string(name) + " grid, m = " + text, {kind, d / m, 0., orientation}});
+  return list;
+}
+
+output::Results nonlocal_claim(const bridge::Subject &subject, const NonlocalOptions &options)
+{
+  output::Results results;
+  const Rows rows(results, "nonlocal", subject.name + ": ");
+  StencilRows of_stencils(subject, options);
+  bool all = true;
+  for (const NonlocalStencil &stencil : options.stencils)
+    all = rows.attempt(stencil.name, [&] { of_stencils.check(stencil, rows.about(stencil.name + ", ")); }) && all;
+  if (all)
+    of_stencils.add_worst(rows.about("worst stencil, "));
+  rows.attempt("convergence", [&] { ring_convergence(subject, options, rows); });
+  return results;
+}
+
+ClaimOutcome check_nonlocal(const ClaimInput &input)
+{
+  const bridge::Subject &subject = input.subject;
+  NonlocalOptions options;
+  options.stencils = fixed_stencils(subject.spacing, subject.orientation);
+  const input::NonlocalCase &own = input.entries.nonlocal;
+  const auto is_own = [&](const NonlocalStencil &fixed)
+  {
+    return fixed.grid.kind == own.grid && fixed.half_width <= own.half_width &&
+           std::abs(fixed.grid.spacing * own.refinement / subject.spacing - 1.) < 1e-12;
+  };
+  if (std::none_of(options.stencils.begin(), options.stencils.end(), is_own))
+    options.stencils.push_back({"stencil of the case",
+                                {own.grid, subject.spacing / own.refinement, 0., subject.orientation},
+                                std::min(own.half_width, M_PI / 6.)});
+  options.samples = input.quick ? 10 : 100;
+  options.breaking_stretch = input.entries.breaking_stretch.value_or(options.breaking_stretch);
+  ClaimOutcome outcome{nonlocal_claim(subject, options), {}};
+  if (!subject.is_stable())
+    outcome.results.add(stability_row(subject, "nonlocal"));
+  return outcome;
+}
+
+} // namespace latcon::claims

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "verification/bridge/homogeneous_response.h"
+#include "verification/bridge/subject.h"
+
+namespace latcon::claims
+{
+
+/// The simulator on a sheet of 12 by 12 spacings of the lattice with the half-bonds of a nonlocal continuum, without
+/// dashpots.
+class StencilSheet
+{
+public:
+  StencilSheet(const bridge::Subject &subject, const lattice::Grid &grid, std::vector<lattice::HalfBond> half_bonds);
+
+  const std::vector<lattice::HalfBond> &half_bonds() const { return half_bonds_; }
+
+  bridge::LatticeResponse response(const Eigen::Matrix2d &F) const
+  {
+    return bridge::homogeneous_response(sheet_, material_, F);
+  }
+
+  /// Stiffness of plane waves [1/s^2], that of bridge::WaveMatrices, from the force on a site in the crest of a wave with
+  /// a strain of 1e-5. @param K referential wave vector [1/m]
+  Eigen::Matrix2d wave_stiffness(const Eigen::Matrix2d &F, const Eigen::Vector2d &K) const;
+
+  /// Energy per area [J/m^2] that a cut along x takes from the sheet if all bonds have this stretch.
+  double cut_energy(double stretch) const;
+
+private:
+  lattice::Material material_;
+  std::vector<lattice::HalfBond> half_bonds_;
+  lattice::TriangularLattice sheet_;
+};
+
+} // namespace latcon::claims
