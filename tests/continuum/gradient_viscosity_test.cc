@@ -2,6 +2,7 @@
 #include "continuum/errors.h"
 #include "continuum/gradient_viscosity.h"
 #include "sheets.h"
+#include "support/largest_error.h"
 
 #include <gtest/gtest.h>
 
@@ -155,15 +156,14 @@ void expect_derivatives(const Compute &compute, const unsigned int n_sides, cons
   const PointIntegrand d = density(u, v, Order::second);
   const PointIntegrand first = density(u, v, Order::first);
   EXPECT_EQ(density(u, v, Order::value).value, first.value);
-  double largest_first = 0.;
-  double largest_second = 0.;
+  support::LargestError largest_first, largest_second;
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int s = 0; s < n_sides; ++s)
       for (unsigned int c = 0; c < n_derivatives; ++c)
       {
         const double scale = c < n_first ? 1. : spacing;
-        largest_first = std::max(largest_first, std::abs(d.first[i][s][c]) / scale);
-        largest_second = std::max(largest_second, std::abs(d.second[i][i][s][c][s][c]) / (scale * scale));
+        largest_first.add(std::abs(d.first[i][s][c]) / scale);
+        largest_second.add(std::abs(d.second[i][i][s][c][s][c]) / (scale * scale));
       }
   for (unsigned int k = 0; k < 2; ++k)
     for (unsigned int t = 0; t < n_sides; ++t)
@@ -177,7 +177,7 @@ void expect_derivatives(const Compute &compute, const unsigned int n_sides, cons
         down[t][k][b] -= h;
         // The value is twice R, which is quadratic in v without prescribed gradients: no error but round-off.
         EXPECT_NEAR((density(u, up, Order::value).value - density(u, down, Order::value).value) / (4. * h),
-                    d.first[k][t][b], 1e-8 * largest_first * scale)
+                    d.first[k][t][b], 1e-8 * largest_first.error() * scale)
           << k << t << b;
         Sides u_up = u;
         Sides u_down = u;
@@ -191,7 +191,7 @@ void expect_derivatives(const Compute &compute, const unsigned int n_sides, cons
           for (unsigned int s = 0; s < n_sides; ++s)
             for (unsigned int c = 0; c < n_derivatives; ++c)
               EXPECT_NEAR((after.first[i][s][c] - before.first[i][s][c]) / (2. * h), d.second[i][k][s][c][t][b],
-                          1e-7 * largest_second * scale * (c < n_first ? 1. : spacing))
+                          1e-7 * largest_second.error() * scale * (c < n_first ? 1. : spacing))
                 << i << s << c << k << t << b;
       }
 }

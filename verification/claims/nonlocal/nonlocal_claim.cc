@@ -359,7 +359,7 @@ ClaimOutcome check_nonlocal(const ClaimInput &input)
   if (std::none_of(options.stencils.begin(), options.stencils.end(), is_own))
     options.stencils.push_back({"stencil of the case",
                                 {own.grid, subject.spacing / own.refinement, 0., subject.orientation},
-                                std::min(own.half_width, M_PI / 6.)});
+                                support::smallest_of({own.half_width, M_PI / 6.})});
   options.samples = input.quick ? 10 : 100;
   options.breaking_stretch = input.entries.breaking_stretch.value_or(options.breaking_stretch);
   ClaimOutcome outcome{nonlocal_claim(subject, options), {}};
