@@ -149,17 +149,17 @@ void damping_orders(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
   const lattice::TriangularLattice sheet = subject.sheet(); // only its bonds matter
   const auto exact = [&](const Eigen::Vector2d &K)
   { return bridge::plane_waves(bridge::bloch_matrices(sheet, material, F, K), bridge::wave_normal(F, K)); };
-  double ratio = 0.; // of critical damping
+  support::LargestError ratio; // of critical damping
   for (const WaveDirection &direction : wave_directions(subject.orientation))
   {
     const bridge::WaveMatrices matrices = bridge::bloch_matrices(
       sheet, material, F, order_kd.back() / subject.spacing * unit_vector(direction, subject.orientation));
     for (const bridge::PlaneWave &wave : bridge::plane_waves({matrices.stiffness, Eigen::Matrix2d::Zero()}, {1., 0.}))
-      ratio = std::max(ratio, 0.5 * matrices.damping.norm() / wave.frequency);
+      ratio.add(0.5 * matrices.damping.norm() / wave.frequency);
   }
   for (std::size_t number = 0; number < lattice::n_shells; ++number)
     if (lattice::Shell *shell = material.in_shell(number))
-      shell->viscosity *= 0.33 / ratio;
+      shell->viscosity *= 0.33 / ratio.error();
 
   const auto kelvin = bridge::homogenised_viscosity(sheet, material),
              viscosity = bridge::homogenised_viscosity(sheet, material, subject.lengths.lattice);
