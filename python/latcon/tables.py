@@ -73,7 +73,7 @@ def path_growth(X: ArrayLike, Y: ArrayLike, spacing: float) -> tuple[float, floa
     if n < 10 or not np.abs(y).max() > 1e-3:
         return None
 
-    def residuals(p: np.ndarray) -> np.ndarray:
+    def residuals(p: Any) -> Any:
         waves = [np.ones(n)] if len(p) == 1 else [np.cos(p[1] * x), np.sin(p[1] * x)]
         basis = (np.exp(p[0] * x) * waves).T
         return y - basis @ np.linalg.lstsq(basis, y, rcond=None)[0]
@@ -81,8 +81,8 @@ def path_growth(X: ArrayLike, Y: ArrayLike, spacing: float) -> tuple[float, floa
     rates = np.linspace(-6.0, 6.0, 7) / length
     # From three quarters of a period to a wavelength of 8 d, the shortest of the measurement.
     wavenumbers = 2.0 * math.pi / length * np.arange(0.75, length / 8.0, 0.5)
-    starts = [[(rate,) for rate in rates], [(rate, k) for rate in rates for k in wavenumbers]]
-    fits = [least_squares(residuals, min(some, key=lambda p: float(residuals(np.array(p)) @ residuals(np.array(p)))), x_scale=1.0 / length)
+    starts: list[list[tuple[float, ...]]] = [[(rate,) for rate in rates], [(rate, k) for rate in rates for k in wavenumbers]]
+    fits = [least_squares(residuals, min(some, key=lambda p: float(residuals(p) @ residuals(p))), x_scale=1.0 / length)
             for some in starts if some]
     # One or two amplitudes besides the parameters.
     best = min(fits, key=lambda fit: n * math.log(max(2.0 * fit.cost, 1e-12)) + 2 * len(fit.x) * math.log(n))
