@@ -169,7 +169,7 @@ def manual(program, commands, version):
         return "".join(f".TP\n.B {roff(plain(what))}\n{roff(text)}\n" for what, text in pairs)
 
     name, what = program.summary.split(": ", 1)
-    page = f'.TH LATCON 1 "" "latcon {version}" "User Commands"\n.SH NAME\n{name} \\- {roff(what)}\n.SH SYNOPSIS\n'
+    page = f'.TH LATCON 1 "" "latcon {version}" "User Commands"\n.nh\n.SH NAME\n{name} \\- {roff(what)}\n.SH SYNOPSIS\n'
     page += ".br\n".join(f".B {roff(command.usage.replace('[OPTIONS] ', ''))}\n.RI [ options ]\n"
                          for command in commands.values())
     page += f".SH OPTIONS\n{items(program.options)}.SH COMMANDS\n"

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import math
 import pathlib
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike

@@ -41,9 +41,8 @@ def test_crack_has_values_uncertainties_and_units(crack):
         crack.crack.wavelenght
     assert str(latcon.Value(0.0243900138, 0.000292, "m")) == "0.02439 ± 0.00029 m"
     assert len(crack.near_tip) > 30
-    contour = latcon.Quantities({"width": 1e-3, "width_uncertainty": 1e-4, "upper_edge_wavelength": None, "centre_log_evidence": 3.0})
-    assert str(contour.width) == "0.00100 ± 0.00010 m"
-    assert (contour.upper_edge_wavelength.unit, contour.centre_log_evidence.unit) == ("m", "1")
+    path = latcon.Quantities({"wavelength": 1e-3, "wavelength_uncertainty": 1e-4, "speed_lagrangian": None})
+    assert (str(path.wavelength), path.speed_lagrangian.unit) == ("0.00100 ± 0.00010 m", "m/s")
 
 
 def test_recorded_quantities_are_those_of_the_files(crack):
