@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .errors import optional_package
+from .files import read_columns
 from .frames import Floats, Frame
 
 if TYPE_CHECKING:
@@ -26,9 +27,10 @@ def _axes(ax: matplotlib.axes.Axes | None) -> matplotlib.axes.Axes:
 def draw_path(run: Run, ax: matplotlib.axes.Axes | None, **style: Any) -> matplotlib.axes.Axes:
     """Draws the path of the tip, in a style of matplotlib's lines, and the broken bonds in the undeformed sheet."""
     ax = _axes(ax)
-    broken = run.broken_bonds
+    # Without the tables of `run`, which need pandas: a report does not.
+    broken, tip = (read_columns(run.directory / file, ("X", "Y")) for file in ("broken_bonds.csv", "crack.csv"))
     ax.scatter(100 * broken["X"], 100 * broken["Y"], s=2, color="0.6", linewidths=0, label="broken bonds")
-    ax.plot(100 * run.path["X"], 100 * run.path["Y"], **{"label": f"tip, {run.crack.speed_lagrangian}", **style})
+    ax.plot(100 * tip["X"], 100 * tip["Y"], **{"label": f"tip, {run.crack.speed_lagrangian}", **style})
     ax.set(xlabel="X, undeformed [cm]", ylabel="Y, undeformed [cm]", title=f"crack path: {run.crack.pattern}")
     ax.legend(loc="best")
     return ax

@@ -121,7 +121,9 @@ def test_fields_near_the_tip(crack):
 
 
 def test_plots_show_the_data(crack):
-    axes = crack.plot_path(color="red", label="own")
+    with pytest.MonkeyPatch.context() as system:
+        system.setitem(sys.modules, "pandas", None)  # which ./run does not install
+        axes = latcon.open(crack.directory).plot_path(color="red", label="own")
     (tip,) = axes.lines
     assert (tip.get_color(), tip.get_label()) == ("red", "own")
     np.testing.assert_array_equal(tip.get_xdata(), 100 * crack.path["X"])
