@@ -294,15 +294,8 @@ kernels::RowSums Forces::scatter_row(const Motion &motion, std::size_t from, std
     add_overstress(motion.state, from, sites, bonds, kind, scratch.mechanism_power);
     const std::ptrdiff_t columns = bonds.shift - rows * static_cast<std::ptrdiff_t>(lattice_.stride());
     for (std::size_t component = 0; component < 2; ++component)
-    {
-      const double *const force = bonds.force[component];
-      if (double *const near = row >= begin ? scratch.sums.at(row, component) : nullptr)
-        for (std::size_t i = 0, n = sites.n; i < n; ++i)
-          near[i] += force[i];
-      double *const far = scratch.sums.at(row + rows, component) + columns;
-      for (std::size_t i = 0, n = sites.n; i < n; ++i)
-        far[i] -= force[i];
-    }
+      kernels::scatter(sites.n, bonds.force[component], row >= begin ? scratch.sums.at(row, component) : nullptr,
+                       scratch.sums.at(row + rows, component) + columns);
   }
   for (const double power : scratch.mechanism_power)
     sums.viscous_power += power;
