@@ -62,7 +62,6 @@ Results check(const std::string &claim, const Subject &subject, const Change &of
   if (claim == "prestretch")
     return prestretch_claim(subject, small_sheet());
   CutStudy study = hole_study(true);
-  study.sizes = {6., 8., 10., 12.};
   study.other_sizes.clear();
   return cut_claim(subject, study).results;
 }
@@ -338,10 +337,10 @@ TEST(Surroundings, AreThoseOfTheirClosedForms)
     std::cout << row.quantity << ": " << row.error.value_or(-1.) << "\n";
 }
 
-// Without a fault none of them fails.
+// Without a fault none of them fails; that the sheet with a hole does not is seen by Claims.HoldInTheirQuickVersions.
 TEST(FaultMatrix, HoldsWithoutFault)
 {
-  for (const char *claim : {"energy", "energy of waves", "wave-speeds", "intrinsic-length", "prestretch", "hole"})
+  for (const char *claim : {"energy", "energy of waves", "wave-speeds", "intrinsic-length", "prestretch"})
     EXPECT_EQ(faults::failing(check(claim, right_subject(false), {})), 0u) << claim;
   for (const char *claim : {"energy", "intrinsic-length", "prestretch"})
     EXPECT_EQ(faults::failing(check(claim, right_subject(true), {})), 0u) << claim;
