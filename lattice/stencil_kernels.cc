@@ -1,5 +1,7 @@
 #include "lattice/stencil_kernels.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <variant>
 
@@ -25,10 +27,13 @@ namespace latcon::lattice::kernels::HWY_NAMESPACE
 namespace latcon::lattice::kernels::HWY_NAMESPACE
 {
 
-template <class Law>
+template <std::size_t n_kinds, class Law>
 // cppcheck-suppress passedByValue ; copies, which no store can change
 void bonds_of_law(const Law law, const RowOfBonds row, RowSums &sums)
 {
+  std::array<BondsOfKind, n_kinds> kinds;
+  std::copy_n(row.kinds, n_kinds, kinds.begin());
+  const double first_limit = std::min(row.breaking_stretch, row.toughened_stretch);
   alignas(64) double power[block] = {};
   Lanes shortness = lanes(0.);
   auto events = hn::FirstN(D(), 0);
@@ -37,9 +42,10 @@ void bonds_of_law(const Law law, const RowOfBonds row, RowSums &sums)
   {
     const Lanes x = load(row.x + site), y = load(row.y + site), vx = load(row.vx + site), vy = load(row.vy + site);
     double *const sum = power + site % block;
-    for (std::size_t kind = 0; kind < row.n_kinds; ++kind)
+    HWY_UNROLL(3)
+    for (std::size_t kind = 0; kind < n_kinds; ++kind)
     {
-      const BondsOfKind &bonds = row.kinds[kind];
+      const BondsOfKind &bonds = kinds[kind];
       const BondConstants &bond = bonds.constants;
       const std::size_t far = site + static_cast<std::size_t>(bonds.shift);
       const auto present = mask_of_bit(load_states(bonds.states + site), bonds.present);
@@ -59,7 +65,10 @@ void bonds_of_law(const Law law, const RowOfBonds row, RowSums &sums)
       store(load(sum) + factor * (viscous * rate), sum);
       if constexpr (Law::stiffens_when_short)
         shortness.v = hn::Max(shortness.v, inverse_stretch.v);
-      events = hn::Or(events, are_events(row, bonds, site, stretch, [](Lanes limit) { return limit; }));
+      // Few bonds are near a limit that all have.
+      if (bonds.strength != nullptr || bonds.retraction_stretch > 0. ||
+          HWY_UNLIKELY(!hn::AllFalse(D(), hn::Gt(stretch.v, lanes(first_limit).v))))
+        events = hn::Or(events, are_events(row, bonds, site, stretch, [](Lanes limit) { return limit; }));
     }
   }
   for (const double part : power)
@@ -70,7 +79,30 @@ void bonds_of_law(const Law law, const RowOfBonds row, RowSums &sums)
 
 void BondsOfStencil(const BondLaw &law, const RowOfBonds &row, RowSums &sums)
 {
-  std::visit([&](const auto &of_kind) { bonds_of_law(of_kind, row, sums); }, law);
+  const auto of_kinds = [&](const auto &of_law)
+  {
+    if (row.n_kinds == n_kinds_per_shell)
+      bonds_of_law<n_kinds_per_shell>(of_law, row, sums);
+    else
+      bonds_of_law<1>(of_law, row, sums);
+  };
+  std::visit(of_kinds, law);
+}
+
+void Scatter(std::size_t n, const double *force, double *near, double *far)
+{
+  const std::size_t vectors = n / width() * width();
+  if (near != nullptr)
+  {
+    for (std::size_t i = 0; i < vectors; i += width())
+      store(load(near + i) + load(force + i), near + i);
+    for (std::size_t i = vectors; i < n; ++i)
+      near[i] += force[i];
+  }
+  for (std::size_t i = 0; i < vectors; i += width())
+    store(load(far + i) - load(force + i), far + i);
+  for (std::size_t i = vectors; i < n; ++i)
+    far[i] -= force[i];
 }
 
 bool AnyEventAhead(const RowOfBonds &row, double ahead)
@@ -100,11 +132,17 @@ namespace latcon::lattice::kernels
 {
 
 HWY_EXPORT(BondsOfStencil);
+HWY_EXPORT(Scatter);
 HWY_EXPORT(AnyEventAhead);
 
 void bonds_of_stencil(const BondLaw &law, const RowOfBonds &row, RowSums &sums)
 {
   HWY_DYNAMIC_DISPATCH(BondsOfStencil)(law, row, sums);
+}
+
+void scatter(std::size_t n, const double *force, double *near, double *far)
+{
+  HWY_DYNAMIC_DISPATCH(Scatter)(n, force, near, far);
 }
 
 bool any_event_ahead(const RowOfBonds &row, double ahead)

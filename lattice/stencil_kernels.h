@@ -10,7 +10,12 @@ namespace latcon::lattice::kernels
 {
 
 /// Computes the forces of the bonds of all kinds of a row, which have one law, and adds to `sums` those over the bonds.
+/// @param row of one kind, or of the n_kinds_per_shell of a shell
 void bonds_of_stencil(const BondLaw &law, const RowOfBonds &row, RowSums &sums);
+
+/// Adds a component of the forces of n bonds of a kind to the sums of their near ends, unless null, and takes it from
+/// those of their far ends, which may be other places of the same array.
+void scatter(std::size_t n, const double *force, double *near, double *far);
 
 /// Returns whether one of the bonds of all kinds of a row will be past its limit, or will have retracted, after its
 /// ends have moved for `ahead` [s] at their velocities. Does not use the forces.
