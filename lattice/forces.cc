@@ -60,6 +60,10 @@ Forces::Forces(const RowPartition &band, const Material &material)
     }
   }
   set_elapsed(0.);
+  for (std::size_t number = 0; number < n_shells; ++number)
+    if (has_shell(number))
+      mechanism_gives_energy_.insert(mechanism_gives_energy_.end(), n_mechanisms(memories_[number]),
+                                     lattice::dissipates_energy(memory_steps_[number]));
 }
 
 void Forces::set_elapsed(double duration)
@@ -72,33 +76,41 @@ void Forces::update_memory(State &state)
 {
   if (state.history.empty())
     return;
-  const std::vector<std::size_t> rows = BondHistory::rows(band_);
-  const auto n = static_cast<std::ptrdiff_t>(rows.size());
-#pragma omp parallel for schedule(static) if (rows.size() * lattice_.stride() >= min_places_for_threads)
-  for (std::ptrdiff_t i = 0; i < n; ++i)
-  {
-    const std::size_t row = rows[static_cast<std::size_t>(i)];
-    const kernels::RowOfBonds sites = sites_of_row({state, state.vx, state.vy}, row);
-    std::vector<kernels::BondsOfKind> kinds(n_kinds_);
-    bonds_of_kinds(state, row, kinds);
-    for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-      if (state.history.remembers(kind))
-        kernels::update_memory(memory_steps_[lattice_.shell(kind)], sites, kinds[kind],
-                               remembered_from<double *>(state.history.kinds[kind], lattice_.index(row, 0)));
-  }
+  Scratch scratch(lattice_, n_kinds_);
+  for (const std::size_t row : BondHistory::rows(band_))
+    update_memory({state, state.vx, state.vy, &state.history}, row, scratch);
   set_elapsed(0.);
 }
 
+// Only updates the memory of the bonds that start in a row.
+void Forces::update_memory(const Motion &motion, std::size_t row, Scratch &scratch) const
+{
+  bonds_of_kinds(motion.state, row, scratch.kinds);
+  scratch.mechanism_power.assign(row_mechanism_power_.size(), 0.);
+  const kernels::RowOfBonds sites = sites_of_row(motion, row);
+  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
+  {
+    scratch.kinds[kind].force = {{scratch.fx.data(), scratch.fy.data()}};
+    add_overstress(motion, row, sites, scratch.kinds[kind], kind, scratch.mechanism_power);
+  }
+}
+
 // Adds the overstress of the bonds of a kind that start in row `from` to what their law gives.
-void Forces::add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &row,
+void Forces::add_overstress(const Motion &motion, std::size_t from, const kernels::RowOfBonds &row,
                             const kernels::BondsOfKind &bonds, std::size_t kind,
                             std::vector<double> &mechanism_power) const
 {
-  const std::size_t shell = lattice_.shell(kind);
-  if (state.history.remembers(kind))
+  const BondHistory &history = motion.state.history;
+  if (!history.remembers(kind))
+    return;
+  const std::size_t shell = lattice_.shell(kind), first = lattice_.index(from, 0);
+  double *const power = &mechanism_power[first_mechanism_[shell]];
+  if (motion.history != nullptr)
     kernels::add_overstress(memory_steps_[shell], row, bonds,
-                            remembered_from<const double *>(state.history.kinds[kind], lattice_.index(from, 0)),
-                            &mechanism_power[first_mechanism_[shell]]);
+                            remembered_from<double *>(motion.history->kinds[kind], first), power);
+  else
+    kernels::add_overstress(memory_steps_[shell], row, bonds,
+                            remembered_from<const double *>(history.kinds[kind], first), power);
 }
 
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy, const RowCallbacks &work)
@@ -107,7 +119,12 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy, cons
   const bool threads = (own.end - own.begin) * lattice_.stride() >= min_places_for_threads;
   const std::size_t n_scratch = threads ? static_cast<std::size_t>(omp_get_max_threads()) : 1;
   while (scratch_.size() < n_scratch)
+  {
     scratch_.emplace_back(lattice_, n_kinds_);
+    if (!row_mechanism_power_.empty() && lattice_.is_triangular())
+      scratch_.back().lengths.resize(4 * n_kinds_per_shell * lattice_.stride());
+  }
+  BondHistory *const history = state.history.empty() ? nullptr : work.history;
 #pragma omp parallel if (threads)
   {
     const auto first = static_cast<std::ptrdiff_t>(own.begin);
@@ -120,8 +137,28 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy, cons
         if (row < begin + reach_ || row >= end - reach_)
           work.pre_force(static_cast<std::size_t>(row));
 #pragma omp barrier
-    evaluate_rows({state, vx, vy}, begin, end, scratch_[static_cast<std::size_t>(i)], work);
+    Scratch &scratch = scratch_[static_cast<std::size_t>(i)];
+    evaluate_rows({state, vx, vy, history}, begin, end, scratch, work);
+    if (history != nullptr)
+    {
+      // The rows whose bonds the thread above computed too, and those below the band.
+#pragma omp barrier
+      for (std::ptrdiff_t row = std::max(begin, end - reach_); row < end; ++row)
+        update_memory({state, vx, vy, history}, static_cast<std::size_t>(row), scratch);
+      for (std::ptrdiff_t below = first - reach_; i == 0 && below < first; ++below)
+        if (const auto row = lattice_.row(below); row && (*row < own.begin || *row >= own.end))
+          update_memory({state, vx, vy, history}, *row, scratch);
+    }
   }
+  if (history != nullptr)
+    set_elapsed(0.);
+}
+
+void Forces::add_mechanisms(const std::vector<double> &mechanisms, double &power) const
+{
+  for (std::size_t m = 0; m < mechanisms.size(); ++m)
+    if (!mechanism_gives_energy_[m])
+      power += mechanisms[m];
 }
 
 double Forces::viscous_power() const
@@ -133,11 +170,12 @@ double Forces::viscous_power() const
   return sum;
 }
 
-void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
+void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
                            const RowCallbacks &work)
 {
   if (begin == end)
     return;
+  const Motion motion{updating.state, updating.vx, updating.vy};
   scratch.ahead.clear();
   scratch.sums.clear();
   for (std::ptrdiff_t row = begin - reach_; row < begin; ++row)
@@ -152,8 +190,9 @@ void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrd
     if (work.fields != nullptr && row + 2 * reach_ + 1 < end)
       for (const Field *field : *work.fields)
         scratch.ahead.push_back(&(*field)[lattice_.index(index + lattice_.reach() + 1, 0)]);
+    const Motion &of_row = row < end - reach_ ? updating : motion;
     const kernels::RowSums sums =
-      lattice_.is_triangular() ? bonds_of_row(motion, index, row, scratch) : scatter_row(motion, index, begin, scratch);
+      lattice_.is_triangular() ? bonds_of_row(of_row, index, row, scratch) : scatter_row(of_row, index, begin, scratch);
     row_viscous_power_[index] = sums.viscous_power;
     for (std::size_t m = 0; m < row_mechanism_power_.size(); ++m)
       row_mechanism_power_[m][index] = scratch.mechanism_power[m];
@@ -201,6 +240,7 @@ void Forces::bonds_of_kinds(const State &state, std::size_t row, std::vector<ker
     bonds.present = BondStates::bit(kind);
     bonds.toughened = BondStates::toughened_bit(kind);
     bonds.retraction_stretch = retraction_stretch_.empty() ? 0. : retraction_stretch_[kind];
+    bonds.lengths = {};
     bonds.stiffness = from(state.stiffness, kind);
     bonds.strength = from(state.strength, kind);
   }
@@ -242,6 +282,9 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
     // The first two at once.
     bonds.kinds = kinds.data();
     bonds.n_kinds = (has_shell(1) ? 2 : 1) * n_kinds_per_shell;
+    for (std::size_t kind = 0; kind < bonds.n_kinds && !scratch.lengths.empty(); ++kind)
+      kinds[kind].lengths = {{&scratch.lengths[2 * kind * lattice_.stride()],
+                              &scratch.lengths[(2 * kind + 1) * lattice_.stride()]}};
     sums = kernels::bonds_of_row(laws_, bonds);
     shell = 2;
   }
@@ -256,9 +299,8 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   {
     scratch.mechanism_power.assign(row_mechanism_power_.size(), 0.);
     for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-      add_overstress(motion.state, from, bonds, kinds[kind], kind, scratch.mechanism_power);
-    for (const double power : scratch.mechanism_power)
-      sums.viscous_power += power;
+      add_overstress(motion, from, bonds, kinds[kind], kind, scratch.mechanism_power);
+    add_mechanisms(scratch.mechanism_power, sums.viscous_power);
   }
   // A site gathers from the places around it, so bonds that start beyond a periodic edge must be there.
   const std::size_t columns = lattice_.columns();
@@ -291,14 +333,13 @@ kernels::RowSums Forces::scatter_row(const Motion &motion, std::size_t from, std
     bonds.force = {{scratch.fx.data(), scratch.fy.data()}};
     sites.kinds = &bonds;
     kernels::bonds_of_stencil(laws_[lattice_.shell(kind)], sites, sums);
-    add_overstress(motion.state, from, sites, bonds, kind, scratch.mechanism_power);
+    add_overstress(motion, from, sites, bonds, kind, scratch.mechanism_power);
     const std::ptrdiff_t columns = bonds.shift - rows * static_cast<std::ptrdiff_t>(lattice_.stride());
     for (std::size_t component = 0; component < 2; ++component)
       kernels::scatter(sites.n, bonds.force[component], row >= begin ? scratch.sums.at(row, component) : nullptr,
                        scratch.sums.at(row + rows, component) + columns);
   }
-  for (const double power : scratch.mechanism_power)
-    sums.viscous_power += power;
+  add_mechanisms(scratch.mechanism_power, sums.viscous_power);
   return sums;
 }
 
@@ -362,7 +403,8 @@ kernels::Overstress Forces::overstress(const State &state, const Bond &bond, dou
 
 kernels::BondForce Forces::single_bond(const Motion &motion, const Bond &bond) const
 {
-  const auto &[state, vx, vy] = motion;
+  const State &state = motion.state;
+  const Field &vx = motion.vx, &vy = motion.vy;
   const auto [near, kind, far] = bond;
   kernels::BondForce force = kernels::bond_force(laws_[lattice_.shell(kind)], constants_[kind],
                                                  state.stiffness.of(near, kind), state.x[far] - state.x[near],
@@ -372,8 +414,9 @@ kernels::BondForce Forces::single_bond(const Motion &motion, const Bond &bond) c
     const kernels::Overstress over = overstress(state, bond, force.stretch);
     force.x += over.axial * force.nx;
     force.y += over.axial * force.ny;
-    for (const double power : over.dissipation)
-      force.viscous_power += power;
+    if (!dissipates_energy(memory_steps_[lattice_.shell(kind)]))
+      for (const double power : over.dissipation)
+        force.viscous_power += power;
   }
   return force;
 }

@@ -43,7 +43,7 @@ public:
   void set_elapsed(double duration);
 
   /// Updates the memory of bonds to the present positions, which they reached in the time that was set; that is 0 from
-  /// then on.
+  /// then on. An evaluation does so faster; see RowCallbacks::history.
   void update_memory(State &state);
 
   /// Callbacks of an integrator for each row of the band during an evaluation, while the row is in cache: once per row,
@@ -58,6 +58,9 @@ public:
     const std::vector<const Field *> *fields = nullptr;
     /// Takes the forces on the sites of the row [N/m]; may change all but those positions and velocities.
     std::function<void(std::size_t row, const double *fx, const double *fy)> post_force;
+    /// History to be updated to the evaluated positions, that of the evaluated state, as update_memory() does; nullptr:
+    /// none.
+    BondHistory *history = nullptr;
   };
 
   /// Computes the force on every site of the band at positions state.x, y and the given velocities [m/s], those of
@@ -81,6 +84,9 @@ public:
   /// Power that each mechanism of Material::n_mechanisms() dissipated at the last evaluation [W/m], in the bonds that
   /// start in a row of the band; a part of viscous_power().
   double mechanism_power(std::size_t mechanism, std::size_t row) const { return row_mechanism_power_[mechanism][row]; }
+  /// Returns whether mechanism_power() is the energy [J/m] dissipated since the last update of the memory, which is no part
+  /// of viscous_power().
+  bool gives_energy(std::size_t mechanism) const { return mechanism_gives_energy_[mechanism]; }
 
   /// Returns whether a row has bonds that were stretched past their limit (or retracted) at the last evaluation.
   bool row_has_events(std::size_t row) const { return row_events_[row] != 0; }
@@ -125,6 +131,7 @@ private:
   {
     const State &state;
     const Field &vx, &vy;
+    BondHistory *history = nullptr; // updated
   };
 
   /// Sums of the forces on the sites of the rows that bonds reach from one row, as far as they are known.
@@ -164,9 +171,10 @@ private:
     Field fx, fy;                             // forces on the sites of a row, or of the bonds of a kind
     std::vector<double> mechanism_power = {}; // of the bonds that start in a row
     std::vector<const double *> ahead = {};   // what is fetched during a row
+    Field lengths = {};                       // of the bonds of a row with a memory, and their inverse
   };
 
-  void evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
+  void evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
                      const RowCallbacks &work);
   void bonds_of_kinds(const State &state, std::size_t row, std::vector<kernels::BondsOfKind> &kinds) const;
   kernels::RowOfBonds sites_of_row(const Motion &motion, std::size_t row) const;
@@ -175,8 +183,10 @@ private:
   kernels::RowSums scatter_row(const Motion &motion, std::size_t from, std::ptrdiff_t begin, Scratch &scratch) const;
   kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, Scratch &scratch) const;
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
-  void add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &row,
+  void add_overstress(const Motion &motion, std::size_t from, const kernels::RowOfBonds &row,
                       const kernels::BondsOfKind &bonds, std::size_t kind, std::vector<double> &mechanism_power) const;
+  void update_memory(const Motion &motion, std::size_t row, Scratch &scratch) const;
+  void add_mechanisms(const std::vector<double> &mechanisms, double &power) const;
   kernels::Overstress overstress(const State &state, const Bond &bond, double stretch) const;
   Eigen::Vector2d on_site_of_stencil(const Motion &motion, std::size_t place) const;
   kernels::BondForce single_bond(const Motion &motion, const Bond &bond) const;
@@ -199,6 +209,7 @@ private:
   Field fx_, fy_;
   Field row_viscous_power_;
   std::vector<Field> row_mechanism_power_; // [mechanism][row]
+  std::vector<bool> mechanism_gives_energy_;
   std::vector<std::uint8_t> row_events_, row_short_bonds_;
 };
 

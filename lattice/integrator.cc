@@ -53,7 +53,7 @@ void Integrator::kick(State &state, std::size_t row, const double *fx, const dou
   kernels::kick(duration, n, fy, inverse_mass, &state.ay[begin], &state.vy[begin]);
 }
 
-void Integrator::accelerate(State &state)
+void Integrator::accelerate(State &state, BondHistory *history)
 {
   // Threads may still read the velocities of rows next to theirs, so that only accelerations are written.
   const auto after = [&](std::size_t row, const double *fx, const double *fy)
@@ -62,7 +62,7 @@ void Integrator::accelerate(State &state)
     kernels::accelerate(n, fx, &state.inverse_mass[begin], &state.ax[begin]);
     kernels::accelerate(n, fy, &state.inverse_mass[begin], &state.ay[begin]);
   };
-  forces_.evaluate(state, evaluated_vx(state), evaluated_vy(state), {{}, nullptr, std::ref(after)});
+  forces_.evaluate(state, evaluated_vx(state), evaluated_vy(state), {{}, nullptr, std::ref(after), history});
   evaluate_site_forces(state);
   accelerate_sites(state);
 }

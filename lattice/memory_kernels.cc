@@ -1,6 +1,7 @@
 #include "lattice/memory_kernels.h"
 
 #include <algorithm>
+#include <type_traits>
 #include <variant>
 
 #include "lattice/instruction_sets.h"
@@ -23,19 +24,30 @@ namespace latcon::lattice::kernels::HWY_NAMESPACE
 namespace latcon::lattice::kernels::HWY_NAMESPACE
 {
 
-// Stretches and directions of bonds as bonds_of_row computes them; both 0 for absent bonds.
+// Stretches and directions of bonds as bonds_of_row computes them, both 0 for absent bonds; from the lengths that it kept,
+// if it did.
 struct Directions
 {
   HWY_INLINE Directions(const RowOfBonds &row, const BondsOfKind &bonds, std::size_t site)
   {
     const std::size_t far = site + static_cast<std::size_t>(bonds.shift);
     const Lanes dx = load(row.x + far) - load(row.x + site), dy = load(row.y + far) - load(row.y + site);
-    const Lanes distance = square_root(dx * dx + dy * dy);
     present = hn::VecFromMask(D(), mask_of_bit(load_states(bonds.states + site), bonds.present));
-    const Lanes inverse = where_present(reciprocal(distance));
+    Lanes length, inverse;
+    if (bonds.lengths[0] != nullptr)
+    {
+      length = load(bonds.lengths[0] + site);
+      inverse = load(bonds.lengths[1] + site);
+    }
+    else
+    {
+      const Lanes distance = square_root(dx * dx + dy * dy);
+      length = where_present(distance);
+      inverse = where_present(reciprocal(distance));
+    }
     nx = dx * inverse;
     ny = dy * inverse;
-    stretch = (1. / bonds.constants.rest_length) * where_present(distance);
+    stretch = (1. / bonds.constants.rest_length) * length;
   }
   HWY_INLINE Lanes where_present(Lanes value) const { return {hn::IfThenElseZero(hn::MaskFromVec(present), value.v)}; }
 
@@ -43,17 +55,9 @@ struct Directions
   Lanes nx, ny, stretch;
 };
 
-// Variables of bonds at the last update.
-template <class Pointer>
-HWY_INLINE void load_variables(const RememberedRow<Pointer> &remembered, std::size_t n, std::size_t site, Lanes *to)
-{
-  for (std::size_t v = 0; v < n; ++v)
-    to[v] = load(remembered.variable[v] + site);
-}
-
-template <class Step>
+template <class Step, class Pointer>
 void add_overstress_of(const Step &step, const RowOfBonds &row, const BondsOfKind &bonds,
-                       const RememberedRow<const double *> &remembered, double *power)
+                       const RememberedRow<Pointer> &remembered, double *power)
 {
   // Partial sums whose order does not depend on the width of a vector.
   alignas(64) double sums[max_history_variables][block];
@@ -66,8 +70,15 @@ void add_overstress_of(const Step &step, const RowOfBonds &row, const BondsOfKin
   {
     const Directions now(row, bonds, site);
     Lanes variables[max_history_variables], dissipation[max_history_variables];
-    load_variables(remembered, step.n, site, variables);
+    for (std::size_t v = 0; v < step.n; ++v)
+      variables[v] = load(remembered.variable[v] + site);
     const Lanes stress = advance(step, load(remembered.stretch + site), now.stretch, variables, dissipation);
+    if constexpr (std::is_same_v<Pointer, double *>)
+    {
+      for (std::size_t v = 0; v < step.n; ++v)
+        store(now.where_present(variables[v]), remembered.variable[v] + site);
+      store(now.stretch, remembered.stretch + site);
+    }
     Lanes axial = section * now.where_present(stress);
     if (bonds.stiffness != nullptr)
     {
@@ -92,28 +103,9 @@ void add_overstress_of(const Step &step, const RowOfBonds &row, const BondsOfKin
     power[m] += volume * total;
   }
 }
-void add_overstress_of(const NoMemory::Step &, const RowOfBonds &, const BondsOfKind &,
-                       const RememberedRow<const double *> &, double *)
-{
-}
-
-template <class Step>
-void update_memory_of(const Step &step, const RowOfBonds &row, const BondsOfKind &bonds,
-                      const RememberedRow<double *> &remembered)
-{
-  const std::size_t end = (row.n + block - 1) / block * block;
-  for (std::size_t site = 0; site < end; site += width())
-  {
-    const Directions now(row, bonds, site);
-    Lanes variables[max_history_variables], dissipation[max_history_variables];
-    load_variables(remembered, step.n, site, variables);
-    advance(step, load(remembered.stretch + site), now.stretch, variables, dissipation);
-    for (std::size_t v = 0; v < step.n; ++v)
-      store(now.where_present(variables[v]), remembered.variable[v] + site);
-    store(now.stretch, remembered.stretch + site);
-  }
-}
-void update_memory_of(const NoMemory::Step &, const RowOfBonds &, const BondsOfKind &, const RememberedRow<double *> &)
+template <class Pointer>
+void add_overstress_of(const NoMemory::Step &, const RowOfBonds &, const BondsOfKind &, const RememberedRow<Pointer> &,
+                       double *)
 {
 }
 
@@ -123,10 +115,10 @@ void AddOverstress(const MemoryStep &step, const RowOfBonds &row, const BondsOfK
   std::visit([&](const auto &of_kind) { add_overstress_of(of_kind, row, bonds, remembered, power); }, step);
 }
 
-void UpdateMemory(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
-                  const RememberedRow<double *> &remembered)
+void UpdateOverstress(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
+                      const RememberedRow<double *> &remembered, double *power)
 {
-  std::visit([&](const auto &of_kind) { update_memory_of(of_kind, row, bonds, remembered); }, step);
+  std::visit([&](const auto &of_kind) { add_overstress_of(of_kind, row, bonds, remembered, power); }, step);
 }
 
 } // namespace latcon::lattice::kernels::HWY_NAMESPACE
@@ -137,7 +129,7 @@ namespace latcon::lattice::kernels
 {
 
 HWY_EXPORT(AddOverstress);
-HWY_EXPORT(UpdateMemory);
+HWY_EXPORT(UpdateOverstress);
 
 void add_overstress(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
                     const RememberedRow<const double *> &remembered, double *power)
@@ -145,10 +137,10 @@ void add_overstress(const MemoryStep &step, const RowOfBonds &row, const BondsOf
   HWY_DYNAMIC_DISPATCH(AddOverstress)(step, row, bonds, remembered, power);
 }
 
-void update_memory(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
-                   const RememberedRow<double *> &remembered)
+void add_overstress(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
+                    const RememberedRow<double *> &remembered, double *power)
 {
-  HWY_DYNAMIC_DISPATCH(UpdateMemory)(step, row, bonds, remembered);
+  HWY_DYNAMIC_DISPATCH(UpdateOverstress)(step, row, bonds, remembered, power);
 }
 
 Overstress overstress(const MemoryStep &step, const BondConstants &bond, double stretch, std::size_t place,

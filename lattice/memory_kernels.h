@@ -19,19 +19,19 @@ struct RememberedRow
 
 /// Adds the overstress of the bonds of one kind that start in a row to their `force`, the present stretch being reached
 /// in the duration of `step` since the last update.
-/// @param power the power that each mechanism dissipates in them is added [W/m]
+/// @param power what each mechanism dissipates in them is added [W/m], or [J/m] for energies; see BondMemory
 void add_overstress(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
                     const RememberedRow<const double *> &remembered, double *power);
 
-/// Updates what the bonds remember to the present stretch. Absent bonds remember 0.
-void update_memory(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
-                   const RememberedRow<double *> &remembered);
+/// Also updates what the bonds remember to the present stretch. Absent bonds remember 0.
+void add_overstress(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
+                    const RememberedRow<double *> &remembered, double *power);
 
 /// Overstress of one bond.
 struct Overstress
 {
   double axial;                                          ///< [N/m], tension positive
-  std::array<double, max_history_variables> dissipation; ///< of each mechanism, 0 beyond [W/m]
+  std::array<double, max_history_variables> dissipation; ///< of each mechanism, 0 beyond [W/m], or [J/m]
 };
 /// By the operations of add_overstress, so that both have the same bits. @param place of the remembered row
 Overstress overstress(const MemoryStep &step, const BondConstants &bond, double stretch, std::size_t place,

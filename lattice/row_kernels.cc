@@ -153,6 +153,7 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
   const double *const *const ahead = row.ahead;
   const std::size_t n_ahead = row.n_ahead;
   const double first_limit = std::min(row.breaking_stretch, row.toughened_stretch);
+  const bool keeps_lengths = kinds[0].lengths[0] != nullptr;
   Lanes power[block];
   for (Lanes &sum : power)
     sum = lanes(0.);
@@ -173,6 +174,12 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
     const Lanes vx = load(row.vx + site), vy = load(row.vy + site);
     Lanes &sum = power[site % block / width()];
     const Lengths &here = lengths[turn];
+    if (HWY_UNLIKELY(keeps_lengths))
+      for (std::size_t kind = 0; kind < n_kinds; ++kind)
+      {
+        store(load(here.length[kind]), kinds[kind].lengths[0] + site);
+        store(load(here.inverse[kind]), kinds[kind].lengths[1] + site);
+      }
     Extremes<watches_retraction> extremes{lanes(0.), lanes(1e30)};
     bonds_of_kind<0>(nearest, first, row, near, vx, vy, here, sum, shortness, extremes);
     bonds_of_kind<1>(nearest, first, row, near, vx, vy, here, sum, shortness, extremes);

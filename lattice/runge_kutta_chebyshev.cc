@@ -84,8 +84,7 @@ void RungeKuttaChebyshev::step(State &state)
     exchange_ghosts(state);
   }
   forces_.set_elapsed(h);
-  accelerate(state);
-  forces_.update_memory(state);
+  accelerate(state, &state.history);
   state.time += h;
 }
 

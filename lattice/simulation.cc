@@ -160,7 +160,13 @@ void Simulation::add_work(const Ledger &before, double duration)
     for (std::size_t c = 0; c < work_.constraints.size(); ++c)
       work_.constraints[c][row] += half * (before.constraints[c][row] + powers_.constraints[c][row]);
     for (std::size_t m = 0; m < work_.mechanisms.size(); ++m)
-      work_.mechanisms[m][row] += half * (before.mechanisms[m][row] + powers_.mechanisms[m][row]);
+      if (forces_.gives_energy(m))
+      {
+        work_.mechanisms[m][row] += powers_.mechanisms[m][row];
+        work_.viscous[row] += powers_.mechanisms[m][row];
+      }
+      else
+        work_.mechanisms[m][row] += half * (before.mechanisms[m][row] + powers_.mechanisms[m][row]);
   }
 }
 

@@ -57,16 +57,15 @@ void VelocityVerlet::step(State &state)
     };
     halo_.finish();
     touched_ = {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &predicted_vx_, &predicted_vy_};
-    forces_.evaluate(state, predicted_vx_, predicted_vy_, {std::ref(before), &touched_, std::ref(after)});
+    forces_.evaluate(state, predicted_vx_, predicted_vy_, {std::ref(before), &touched_, std::ref(after), &state.history});
   }
   else
   {
     for_each_row(lattice_, interior, drift_row);
     halo_.finish();
     update_all_images(state);
-    forces_.evaluate(state, predicted_vx_, predicted_vy_, {{}, nullptr, std::ref(after)});
+    forces_.evaluate(state, predicted_vx_, predicted_vy_, {{}, nullptr, std::ref(after), &state.history});
   }
-  forces_.update_memory(state);
   evaluate_site_forces(state);
   accelerate_sites(state);
   kick_sites(state, 0.5 * time_step());

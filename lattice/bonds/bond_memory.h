@@ -1,6 +1,7 @@
 // The list of bond memories, for each type of number; see formulas.h.
 #include "lattice/bonds/custom_memory.h"
 #include "lattice/bonds/maxwell_memory.h"
+#include "lattice/bonds/plastic_memory.h"
 
 #ifndef LATCON_LATTICE_BOND_MEMORY
 #define LATCON_LATTICE_BOND_MEMORY
@@ -13,7 +14,8 @@
 ///
 /// A memory declares its number of variables, the mechanisms by which it stores and dissipates energy, and a bound on
 /// its stiffness; its `Step` has what an update over one duration needs, and `advance` is its formula for any type of
-/// number. Variables are 0 at rest and are stored by BondHistory.
+/// number. Variables are 0 at rest and are stored by BondHistory. `advance` gives the power that each mechanism dissipates
+/// at the end of an update, or, if `Step::dissipates_energy`, the energy that it dissipates in the update.
 namespace latcon::lattice
 {
 
@@ -26,19 +28,25 @@ struct NoMemory
   double stored_energy(std::size_t /*mechanism*/, double /*stretch*/, const double * /*variables*/) const { return 0.; }
   struct Step
   {
+    static constexpr bool dissipates_energy = false;
   };
   Step step(double /*duration*/) const { return {}; }
 };
 
 /// Memory of the bonds of one shell.
-using BondMemory = std::variant<NoMemory, MaxwellMemory, CustomMemory>;
+using BondMemory = std::variant<NoMemory, MaxwellMemory, PlasticMemory, CustomMemory>;
 /// Its update over one duration.
-using MemoryStep = std::variant<NoMemory::Step, MaxwellMemory::Step, CustomMemory::Step>;
+using MemoryStep = std::variant<NoMemory::Step, MaxwellMemory::Step, PlasticMemory::Step, CustomMemory::Step>;
 
 /// Number of variables per bond.
 inline std::size_t n_variables(const BondMemory &memory)
 {
   return std::visit([](const auto &m) { return m.n_variables(); }, memory);
+}
+/// Returns whether an update gives the energy that each mechanism dissipates, and not its power.
+inline bool dissipates_energy(const MemoryStep &step)
+{
+  return std::visit([](const auto &s) { return s.dissipates_energy; }, step);
 }
 /// Number of mechanisms whose energies are recorded one by one, at most n_variables(): branches of a MaxwellMemory.
 inline std::size_t n_mechanisms(const BondMemory &memory)

@@ -31,7 +31,11 @@ public:
   /// q lam' = d(stored_energy)/dt + dissipation.
   virtual double stored_energy(double stretch, const double *variables) const noexcept = 0;
 
-  /// Power dissipated per reference volume of the bond [Pa/s], >= 0.
+  /// Returns whether what the law dissipates does not depend on the rate, as plastic stretch, softening or friction.
+  virtual bool is_rate_independent() const noexcept { return false; }
+
+  /// Power dissipated per reference volume of the bond [Pa/s], >= 0; of a rate-independent law the energy dissipated since
+  /// the bond was at rest [Pa], which never decreases.
   virtual double dissipation(double stretch, const double *variables) const noexcept = 0;
 
   /// A bound [Pa] on the axial stiffness dq/dlam in fast motion; limits of the time step follow from it. |q| may not
@@ -62,9 +66,10 @@ public:
     const CustomMemoryLaw *law;
     double duration; ///< [s]
     std::size_t n;   ///< variables
+    bool dissipates_energy;
     std::size_t n_mechanisms() const { return 1; }
   };
-  Step step(double duration) const { return {law_.get(), duration, n_variables()}; }
+  Step step(double duration) const { return {law_.get(), duration, n_variables(), law_->is_rate_independent()}; }
 
 private:
   std::shared_ptr<const CustomMemoryLaw> law_;
@@ -86,14 +91,15 @@ inline double advance_each(const CustomMemory::Step &step, double before, double
   dissipation = 0.;
   if (!(now > 0.))
     return 0.;
+  const double earlier = step.dissipates_energy ? step.law->dissipation(before, variables) : 0.;
   const double overstress = step.law->advance(step.duration, before, now, variables);
-  dissipation = step.law->dissipation(now, variables);
+  dissipation = step.law->dissipation(now, variables) - earlier;
   return overstress;
 }
 #endif
 
 /// Updates the variables of a bond while its stretch changes from `before` to `now`.
-/// @param dissipation at the end [Pa/s] @return overstress at the end [Pa]
+/// @param dissipation at the end [Pa/s], or meanwhile [Pa] @return overstress at the end [Pa]
 template <class Number>
 inline Number advance(const CustomMemory::Step &step, Number before, Number now, Number *variables, Number *dissipation)
 {

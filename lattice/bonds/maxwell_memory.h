@@ -39,6 +39,7 @@ public:
   /// Coefficients of an update over one duration.
   struct Step
   {
+    static constexpr bool dissipates_energy = false;
     std::size_t n; ///< branches
     std::size_t n_mechanisms() const { return n; }
     std::array<double, max_history_variables> decay;   ///< e^(-h/tau) [-]

@@ -150,7 +150,9 @@ TEST(BondMemory, ClosesTheEnergyBalanceThroughFracture)
   for (const auto &[stages, material] : {std::pair(0u, sheets::rubber_with_memory()),
                                          {8u, sheets::rubber_with_memory()},
                                          {0u, sheets::disordered_rubber()},
-                                         {8u, sheets::disordered_rubber()}})
+                                         {8u, sheets::disordered_rubber()},
+                                         {0u, sheets::plastic_rubber()},
+                                         {8u, sheets::plastic_rubber()}})
   {
     const auto simulation = crack(sheet, material, stages);
     for (int step = 0; step < 2000; ++step)
@@ -159,9 +161,9 @@ TEST(BondMemory, ClosesTheEnergyBalanceThroughFracture)
     EXPECT_GT(simulation->n_broken(), 15u);
     const double stored = memory_energy(simulation->state(), sheet, simulation->material());
     EXPECT_GT(stored, 1e-4 * e.initial) << "too quiet to show anything";
-    // Two or three branches of nearest neighbours, and the memory of the others.
+    // Branches or the slider of nearest neighbours, and the memory of the others.
     const std::vector<MechanismEnergy> mechanisms = simulation->mechanism_energies();
-    ASSERT_EQ(mechanisms.size(), material.disorder.is_none() ? 3u : 4u);
+    ASSERT_EQ(mechanisms.size(), n_mechanisms(material.nearest.memory) + 1);
     double stored_sum = 0., dissipated_sum = 0.;
     for (const MechanismEnergy &mechanism : mechanisms)
     {
@@ -240,7 +242,9 @@ TEST(BondMemory, ResumesBitwise)
                                          {8u, sheets::rubber_with_memory()},
                                          {0u, sheets::disordered_rubber()},
                                          {8u, sheets::disordered_rubber()},
-                                         {8u, sheets::disordered_rubber_of_three_shells()}})
+                                         {8u, sheets::disordered_rubber_of_three_shells()},
+                                         {0u, sheets::plastic_rubber()},
+                                         {8u, sheets::plastic_rubber()}})
   {
     const auto whole = crack(sheet, material, stages);
     Stored stored;
@@ -301,7 +305,7 @@ TEST(BondMemory, HasTheSameBitsForAllThreadsAndInstructionSets)
     return simulation;
   };
   const std::vector<std::string> sets = kernels::instruction_sets();
-  for (const Material &material : {sheets::rubber_with_memory(), sheets::disordered_rubber()})
+  for (const Material &material : {sheets::rubber_with_memory(), sheets::disordered_rubber(), sheets::plastic_rubber()})
   {
     const auto one = run(1, sets.front(), material);
     for (const int threads : {2, 3, 40})
@@ -317,15 +321,19 @@ TEST(BondMemory, HasTheSameBitsForAllThreadsAndInstructionSets)
 TEST(BondMemory, RecordsEnergiesByMechanism)
 {
   const TriangularLattice sheet = cracked_sheet();
-  const auto simulation = crack(sheet, sheets::rubber_with_memory(0.));
-  for (int step = 0; step < 600; ++step)
-    simulation->step();
-  ASSERT_GT(simulation->n_broken(), 0u) << "too quiet to show anything";
-  double dissipated = 0.;
-  for (const MechanismEnergy &mechanism : simulation->mechanism_energies())
-    dissipated += mechanism.dissipated;
-  // 600 steps, each rounding sums over a few hundred bonds.
-  EXPECT_NEAR(dissipated, simulation->energies().viscous, 1e-11 * dissipated);
+  for (const Material &material : {sheets::rubber_with_memory(0.), sheets::plastic_rubber(0.)})
+  {
+    const auto simulation = crack(sheet, material);
+    for (int step = 0; step < 600; ++step)
+      simulation->step();
+    ASSERT_GT(simulation->n_broken(), 0u) << "too quiet to show anything";
+    double dissipated = 0.;
+    for (const MechanismEnergy &mechanism : simulation->mechanism_energies())
+      dissipated += mechanism.dissipated;
+    EXPECT_GT(dissipated, 0.);
+    // 600 steps, each rounding sums over a few hundred bonds.
+    EXPECT_NEAR(dissipated, simulation->energies().viscous, 1e-11 * dissipated);
+  }
 }
 
 // Forces that bonds between an update and the next have by the kernel of a row and by that of one bond.
@@ -370,29 +378,34 @@ TEST(BondMemory, ActsOnOneSiteAsInTheLoop)
   }
 }
 
-// Branches from outside give latcon's own to the round-off of std::exp, step by step.
-TEST(CustomMemory, RelaxesAsTheSameBranchInTheHotLoop)
+// Memories from outside give latcon's own to the round-off of std::exp or of a quotient, step by step.
+TEST(CustomMemory, ActsAsTheSameMemoryInTheHotLoop)
 {
   const Branch branch{1.5e5, 5e-5};
-  Material inside = sheets::nearest_only(5.), outside = inside;
-  inside.nearest.memory = MaxwellMemory({branch});
-  outside.nearest.memory = sheets::memory_from_outside(branch);
+  const std::vector<std::pair<BondMemory, BondMemory>> same{
+    {MaxwellMemory({branch}), sheets::memory_from_outside(branch)},
+    {PlasticMemory(1.5e5, 1e3, 2e4), CustomMemory(std::make_shared<sheets::SliderFromOutside>(1.5e5, 1e3, 2e4))}};
   const TriangularLattice sheet = sheets::square(10);
-  const auto run = [&](const Material &material)
+  const auto run = [&](const BondMemory &memory)
   {
+    Material material = sheets::nearest_only(5.);
+    material.nearest.memory = memory;
     State state = homogeneous_state(sheet, material, sheets::stretched(1.3, 1.4), Edges::held);
     add_noise(state, sheet, 0.05 * sheets::spacing, 5);
     Simulation simulation(sheet, material, std::move(state), 2e-7);
     for (int step = 0; step < 100; ++step)
       simulation.step();
+    EXPECT_GT(simulation.mechanism_energies()[0].dissipated, 0.);
     return simulation.energies();
   };
-  const EnergyBalance in = run(inside), out = run(outside);
-  EXPECT_GT(in.viscous, 0.);
-  // 100 steps of some 1e-15 each.
-  EXPECT_NEAR(in.viscous, out.viscous, 1e-12 * in.viscous);
-  EXPECT_NEAR(in.elastic, out.elastic, 1e-12 * in.elastic);
-  EXPECT_NEAR(in.kinetic, out.kinetic, 1e-11 * in.kinetic);
+  for (const auto &[inside, outside] : same)
+  {
+    const EnergyBalance in = run(inside), out = run(outside);
+    // 100 steps of some 1e-15 each.
+    EXPECT_NEAR(in.viscous, out.viscous, 1e-12 * in.viscous);
+    EXPECT_NEAR(in.elastic, out.elastic, 1e-12 * in.elastic);
+    EXPECT_NEAR(in.kinetic, out.kinetic, 1e-11 * in.kinetic);
+  }
 }
 
 // A material without memory stores nothing, and statics is that of the law alone.

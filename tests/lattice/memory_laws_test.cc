@@ -1,12 +1,15 @@
 #include "lattice/bonds/bond_memory.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
-#include "support/largest_error.h"
+#include "lattice/energy.h"
+#include "lattice/simulation.h"
 #include "tests/lattice/sheets.h"
 
 namespace memory_laws_test
@@ -74,6 +77,100 @@ TEST(MaxwellMemory, IsExactOnARamp)
                    power = q_exact * q_exact / (branches[i].modulus * branches[i].relaxation_time);
       EXPECT_NEAR(dissipation[i], power, 2. * power * round_off / q_exact) << h;
       EXPECT_NEAR(memory.stored_energy(i, 1., q), 0.5 * q[i] * q[i] / branches[i].modulus, 1e-15 * sum);
+    }
+  }
+}
+
+TEST(PlasticMemory, RejectsInvalidConstants)
+{
+  EXPECT_NO_THROW(PlasticMemory(1e5, 1e4, 0.));
+  const double infinity = std::numeric_limits<double>::infinity(), nan = std::nan("");
+  for (const auto &[modulus, yield_stress, hardening] :
+       {std::array{0., 1., 1.}, {1., 0., 1.}, {1., 1., -1.}, {-1., 1., 1.}, {1., -1., 1.}, {infinity, 1., 1.},
+        {1., infinity, 1.}, {1., 1., infinity}, {nan, 1., 1.}, {1., nan, 1.}, {1., 1., nan}})
+    EXPECT_THROW(PlasticMemory(modulus, yield_stress, hardening), std::invalid_argument);
+}
+
+// theory.md, eqs. (L.41) to (L.43): the work on a bond that is stretched to an amplitude and cycled, in closed form.
+TEST(PlasticMemory, DissipatesWhatACycleTakes)
+{
+  const double modulus = 2e5, yield_stress = 3e4, amplitude = 0.8;
+  for (const double hardening : {0., 5e4})
+    for (const int n : {1, 7, 100})
+    {
+      const PlasticMemory memory(modulus, yield_stress, hardening);
+      double variables[2] = {0., 0.}, stretch = 1., dissipated = 0.;
+      double q = 0., yield = yield_stress, work = 0.;
+      for (const double to : {1. + amplitude, 1. - amplitude, 1. + amplitude, 1.})
+      {
+        const double from = stretch, sign = to > from ? 1. : -1.;
+        for (int i = 1; i <= n; ++i)
+        {
+          const double now = from + (to - from) * i / n;
+          double slipped = 0.;
+          formulas::advance(memory.step(i * 1e-3), stretch, now, variables, &slipped);
+          EXPECT_GE(slipped, 0.);
+          dissipated += slipped;
+          stretch = now;
+        }
+        // Elastic to the yield stress, then with the slope of both springs in series.
+        const double elastic = std::min((sign * yield - q) / (sign * modulus), std::abs(to - from));
+        const double plastic = std::abs(to - from) - elastic, at_yield = q + sign * modulus * elastic;
+        const double slope = modulus * hardening / (modulus + hardening), end = at_yield + sign * slope * plastic;
+        work += 0.5 * (q + at_yield) * sign * elastic + 0.5 * (at_yield + end) * sign * plastic;
+        q = end;
+        yield = std::max(yield, std::abs(end));
+        // A dozen roundings of q and of the work per increment.
+        const double round_off = 12. * n * 2.3e-16 * modulus * (1. + amplitude);
+        EXPECT_NEAR(variables[0], q, 4. * round_off) << n;
+        EXPECT_NEAR(memory.stored_energy(0, stretch, variables) + dissipated, work, 4. * round_off) << n;
+        // Nothing slips further while the stretch stays, to the last bit.
+        double again[2] = {variables[0], variables[1]}, none = 1.;
+        EXPECT_EQ(formulas::advance(memory.step(0.), stretch, stretch, again, &none), variables[0]);
+        EXPECT_EQ(again[1], variables[1]);
+        EXPECT_EQ(none, 0.);
+      }
+      EXPECT_GT(dissipated, 0.5 * work);
+    }
+}
+
+// theory.md, eq. (L.43): what sliders dissipated is a function of their plastic stretch.
+TEST(PlasticMemory, IsRecordedToRoundOff)
+{
+  const TriangularLattice sheet = sheets::square(12);
+  Material material = sheets::plastic_rubber(5.);
+  material.disorder.stiffness = {Distribution::Kind::uniform, 0.3};
+  for (const TimeStepping &stepping : {TimeStepping(2e-7), TimeStepping(1e-6, 5)})
+  {
+    State state = homogeneous_state(sheet, material, sheets::stretched(1.3, 1.4), Edges::held);
+    relax_memory(state, sheet, material);
+    add_noise(state, sheet, 0.2 * sheets::spacing, 5);
+    Simulation simulation(sheet, material, std::move(state), stepping);
+    const auto accumulated = [&]
+    {
+      std::vector<double> sums(2, 0.);
+      for_each_bond(simulation.state(), sheet,
+                    [&](const Bond &bond)
+                    {
+                      const bool nearest = TriangularLattice::is_nearest(bond.kind);
+                      const double alpha = simulation.state().history.kinds[bond.kind].variables[1][bond.near];
+                      sums[nearest ? 0 : 1] += simulation.state().stiffness.of(bond.near, bond.kind) *
+                                               cross_section(*material.shell(bond.kind), sheet) *
+                                               sheet.rest_length(bond.kind) *
+                                               (nearest ? 2e4 * alpha : (1e4 + 0.5 * 3e4 * alpha) * alpha);
+                    });
+      return sums;
+    };
+    const std::vector<double> before = accumulated();
+    for (int step = 0; step < 300; ++step)
+      simulation.step();
+    const std::vector<double> after = accumulated();
+    const std::vector<MechanismEnergy> mechanisms = simulation.mechanism_energies();
+    for (std::size_t m = 0; m < 2; ++m)
+    {
+      EXPECT_GT(after[m] - before[m], 0.01 * after[m]);
+      // 300 steps, each rounding sums over a few hundred bonds.
+      EXPECT_NEAR(mechanisms[m].dissipated, after[m] - before[m], 1e-12 * after[m]);
     }
   }
 }

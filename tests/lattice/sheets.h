@@ -78,6 +78,40 @@ private:
   latcon::lattice::MaxwellMemory::Branch branch_;
 };
 
+/// A slider that yields as PlasticMemory does, as a memory from outside.
+class SliderFromOutside : public latcon::lattice::CustomMemoryLaw
+{
+public:
+  SliderFromOutside(double modulus, double yield_stress, double hardening) : E_(modulus), Y_(yield_stress), K_(hardening)
+  {
+  }
+  std::size_t n_variables() const noexcept override { return 2; }
+  double advance(double, double before, double now, double *variables) const noexcept override
+  {
+    const double trial = variables[0] + E_ * (now - before), beyond = std::abs(trial) - (Y_ + K_ * variables[1]);
+    variables[0] = trial;
+    if (beyond > 0.)
+    {
+      variables[1] += beyond / (E_ + K_);
+      variables[0] = std::copysign(Y_ + K_ * variables[1], trial);
+    }
+    return variables[0];
+  }
+  double stored_energy(double, const double *variables) const noexcept override
+  {
+    return 0.5 * variables[0] * variables[0] / E_;
+  }
+  bool is_rate_independent() const noexcept override { return true; }
+  double dissipation(double, const double *variables) const noexcept override
+  {
+    return (Y_ + 0.5 * K_ * variables[1]) * variables[1];
+  }
+  double largest_stiffness() const noexcept override { return E_; }
+
+private:
+  double E_, Y_, K_;
+};
+
 inline latcon::lattice::CustomMemory memory_from_outside(const latcon::lattice::MaxwellMemory::Branch &branch)
 {
   return latcon::lattice::CustomMemory(std::make_shared<BranchFromOutside>(branch));
@@ -134,6 +168,15 @@ inline latcon::lattice::Material rubber_with_branches(double viscosity = 65.625)
   latcon::lattice::Material material = rubber(viscosity);
   material.nearest.memory = latcon::lattice::MaxwellMemory({{2e5, 2e-5}, {1e5, 2e-4}, {3e4, 1e-3}});
   material.next_nearest->memory = latcon::lattice::MaxwellMemory({{1.5e5, 5e-5}});
+  return material;
+}
+
+/// Rubber whose bonds yield, with hardening in the next-nearest ones alone.
+inline latcon::lattice::Material plastic_rubber(double viscosity = 65.625)
+{
+  latcon::lattice::Material material = rubber(viscosity);
+  material.nearest.memory = latcon::lattice::PlasticMemory(2e5, 2e4, 0.);
+  material.next_nearest->memory = latcon::lattice::PlasticMemory(1e5, 1e4, 3e4);
   return material;
 }
 

@@ -206,6 +206,10 @@ void record_exit_code(support::ExitCode exit_code, const std::string &message = 
 /// Exit code of a program whose results alone decide.
 support::ExitCode exit_code_of(const output::Results &results);
 
+/// Keeps the verdicts of a claim in its small version for the cracks of this program, if it is about the program alone.
+/// To be called by one rank. @return why they are not kept; empty: no problem
+std::string keep_for_cracks(const input::Case &input, const claims::Claim &claim, const claims::ClaimOutcome &outcome);
+
 /// Checks the claims, in their small versions, on the case's own material, shells and pre-stretch, or reuses the
 /// verdicts cached for exactly these inputs and this program. Reports which of the two, in words and in run.json, and
 /// writes the tables. Collective; all ranks return the same.
