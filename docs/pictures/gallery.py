@@ -216,7 +216,8 @@ def gallery(study, docs):
     lines = ["# Gallery", "", "Made by `cmake --build build/release --target gallery` from the study "
              f"\"{document['title']}\" (latcon {document['version']}, commit {document['git_commit'][:12]}, "
              f"{len(study.seeds)} runs{', quick version' if document['quick'] else ''}); do not edit. The numbers are "
-             "from its `study.json`: values of the seed shown, and mean ± standard deviation over all seeds.", "",
+             "from its `study.json`: values of the seed shown, and mean ± standard deviation over all seeds. A test runs the cracks "
+             "shown again: pattern, speed and detached sites have to be those on the page, to the last digit.", "",
              "Pictures, as far as a crack has them: the deformed sheet in its last frame; above, path of the tip in the undeformed "
              "sheet, below, where bonds broke, coloured by time; velocity of the material around the tip (cross), mean over "
              "samples, mirrored where the path descends, blue: motion against the direction of the crack; opening stress, "

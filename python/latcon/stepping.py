@@ -169,6 +169,9 @@ class Simulation:
 @functools.cache
 def _module() -> Any:
     program = find_program()
+    # OpenMP reads it while it is loaded with the module; the reason and the number are those of support/waiting_threads.h.
+    if not os.environ.keys() & {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"}:
+        os.environ["GOMP_SPINCOUNT"] = "1000"
     for folder in (program.parent, program.parent.parent / "lib" / "latcon"):
         for suffix in importlib.machinery.EXTENSION_SUFFIXES:
             path = folder / f"latcon_stepping{suffix}"

@@ -1,7 +1,7 @@
 """Runs the commands and inputs in the documentation and compares their output with the pages; snippets.py has the syntax.
 
-With LATCON_FULL also blocks that are run weekly, and the claims of every crack; otherwise those of the tutorial alone, since each
-rubber would take half a minute. Where a fixture has left verdicts (LATCON_VERDICTS), they are reused although a page says that claims
+With LATCON_FULL also blocks that are run weekly, and the claims and the report of every crack; otherwise those of the tutorial
+alone, since each rubber would take half a minute, and each report as long as its crack. Where a fixture has left verdicts (LATCON_VERDICTS), they are reused although a page says that claims
 are checked now.
 """
 import os
@@ -26,9 +26,9 @@ REQUIRED = {"Sheet/spacing": "1 mm", "Sheet/length": "4 cm", "Sheet/height": "2 
 # Run weekly as a whole: tests/python covers what they show.
 WEEKLY = {"docs/python.md"}
 
-# Cracks of this page wait for their claims in the daily tests too.
-VERIFIED = "docs/tutorial.md"
-UNVERIFIED = 'case "$1" in fracture|study) set -- "$@" --skip-verification ;; esac\n'
+# Cracks of this page wait for their claims, and have a report, in the daily tests too.
+WHOLE = "docs/tutorial.md"
+SHORT = 'case "$1" in fracture|study) set -- "$@" --skip-verification --no-report ;; esac\n'
 
 # Verdicts on claims and the list of fonts, once for all pages.
 CACHE = tempfile.TemporaryDirectory()
@@ -40,7 +40,7 @@ if MADE:
 class Clone:
     """A temporary folder that looks like a fresh clone in which latcon is built."""
 
-    def __init__(self, folder, verified=False):
+    def __init__(self, folder, whole=False):
         self.folder = folder / "latcon"
         self.folder.mkdir()
         for path in SOURCE.iterdir():
@@ -49,7 +49,7 @@ class Clone:
         built = self.folder / "build" / "release" / "verification"
         built.mkdir(parents=True)
         for path, program in ((built / "latcon", f"'{LATCON}'"), (self.folder / "run", "build/release/verification/latcon")):
-            path.write_text(f'#!/bin/sh\n{UNVERIFIED if path.parent == built and not (verified or FULL) else ""}exec {program} "$@"\n')
+            path.write_text(f'#!/bin/sh\n{SHORT if path.parent == built and not (whole or FULL) else ""}exec {program} "$@"\n')
             path.chmod(0o755)
         if (SOURCE / "build" / "paraview").is_dir():
             (self.folder / "build" / "paraview").symlink_to(SOURCE / "build" / "paraview")
@@ -118,7 +118,7 @@ def pages():
 
 @pytest.mark.parametrize("page", pages())
 def test_snippets_do_what_the_pages_say(tmp_path, page):
-    clone, statements = Clone(tmp_path, page == VERIFIED), []
+    clone, statements = Clone(tmp_path, page == WHOLE), []
     for block in blocks(page, (SOURCE / page).read_text(encoding="utf-8")):
         if block.mark in LEFT_OUT:
             print(f"left out: {block.place()}: {block.says}")

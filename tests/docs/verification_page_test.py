@@ -1,4 +1,4 @@
-"""Tests of docs/verification.csv, in which rows with the same check are merged, and of the comparison of pages by value."""
+"""Tests of the comparison of pages by value. verify_test.py compares docs/verification.csv itself with the results."""
 import verification_page
 from printed_numbers import agrees, differences
 
@@ -13,40 +13,15 @@ FOUND = results(("NN+NNN: stress", 1e-3, 1e-2, "holds"), ("NN: stress", 2e-3, 4e
                 ("NN: residual", 0.0581, None, "reported"))
 
 
-def test_names_leave_out_states_and_directions():
-    for quantity, name in (("NN+NNN: mu at F = I, Mooney-Rivlin", "mu at F = I, Mooney-Rivlin"),
-                           ("NN, F = I: long-wave speed, L", "long-wave speed, L"),
-                           ("NN+NNN, F = (2.3, 2.8), kd = 0.025: L, decay", "L, decay"),
-                           ("NN, sinusoidal field about F = (2.3, 2.8): energy", "sinusoidal field: energy"),
-                           ("NN: hole, F = (1.3, 1.1), energy", "hole, energy"),
-                           ("NN: smallest eigenvalue at l_d, loaded", "smallest eigenvalue at l_d"),
-                           ("NN: alpha of L waves at 49 degrees, run", "alpha of L waves, run"),
-                           ("crack speed over c_S, beta 0.5, Delta/Delta_G 1.57", "crack speed over c_S")):
-        assert verification_page.shared_name(quantity) == name
-
-
-def test_table_shows_the_row_that_takes_most_of_its_tolerance():
-    assert verification_page.text(FOUND) == (
-        "claim,quantity,rows,error,tolerance,verdict\nenergy,stress,2,0.001,0.01,holds\nenergy,decay,1,round-off,1e-09,holds\n"
-        "energy,sign,1,0,0,holds\nenergy,residual,1,0.058,,reported\n")
-
-
 def test_differences_are_found_and_round_off_is_none():
     page = verification_page.text(FOUND)
     assert verification_page.differences(page, FOUND) == []
-    for old, new, count in (("NN: residual", "NN: residual", 0), ("residual", "remainder", 1)):
-        other = results(*[(row["quantity"].replace(old, new), row["error"], row["tolerance"], row["verdict"])
-                          for row in FOUND["claims"]])
-        assert len(verification_page.differences(page, other)) == count
-    for i, change, count in ((2, {"error": 5e-13}, 0), (2, {"error": 2e-8}, 0), (2, {"error": 2e-7}, 1), (0, {"error": 1.04e-3}, 0), (0, {"error": 1.3e-3}, 1),
-                             (0, {"tolerance": 1.2e-2}, 1), (3, {"error": 1.0, "verdict": "fails"}, 1)):
+    for i, change, count in ((2, {"error": 2e-8}, 0), (2, {"error": 2e-7}, 1), (0, {"error": 1.04e-3}, 0), (0, {"error": 1.3e-3}, 1),
+                             (0, {"tolerance": 1.2e-2}, 1), (3, {"error": 1.0, "verdict": "fails"}, 1), (4, {"quantity": "NN: remainder"}, 1)):
         rows = [dict(row) for row in FOUND["claims"]]
         rows[i].update(change)
         assert len(verification_page.differences(page, {"claims": rows})) == count, change
     assert len(verification_page.differences(page, {"claims": FOUND["claims"][1:]})) == 1
-    assert len(verification_page.differences(page, {"claims": FOUND["claims"][:-1]})) == 1
-    other = [dict(row, claim="objectivity") for row in FOUND["claims"]]
-    assert verification_page.differences(page, {"claims": FOUND["claims"] + other}) [0] == "objectivity: 0 rows, not 4"
 
 
 def test_rounding_is_no_difference():

@@ -1,5 +1,8 @@
 """Stepping from Python gives the bits of latcon fracture; forces, moving edges, checkpoints and frames of one's own."""
 import csv
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -96,6 +99,15 @@ def test_frames_are_read_as_written(sim, tmp_path):
         np.testing.assert_array_equal(getattr(written, name), getattr(frame, name))
     for name in ("displacement", "velocity", "lost_bonds"):
         np.testing.assert_array_equal(written.fields[name], frame.fields[name])
+
+
+@pytest.mark.parametrize("given, count", [({}, "1000"), ({"GOMP_SPINCOUNT": "77"}, "77"), ({"OMP_WAIT_POLICY": "passive"}, "0")])
+def test_waiting_threads_sleep_unless_they_are_told_otherwise(given, count):
+    free = {name: value for name, value in os.environ.items() if name not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")}
+    code = "from latcon.stepping import Simulation; from conftest import tiny_case; Simulation(tiny_case())"
+    run = subprocess.run([sys.executable, "-c", code], env=dict(free, OMP_DISPLAY_ENV="verbose", **given), capture_output=True, text=True,
+                         cwd=os.path.dirname(__file__), check=True)
+    assert f"GOMP_SPINCOUNT = '{count}'" in run.stderr
 
 
 def test_cases_that_are_no_crack_are_refused():

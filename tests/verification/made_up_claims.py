@@ -128,11 +128,12 @@ def write_dispersion(folder):
 def write_running_crack(folder):
     """Fields whose most negative velocity ahead of the tip is -1 on the lattice, half of that in the continua.
 
-    Without next-nearest bonds the gradient continuum is not computed.
+    Without next-nearest bonds the continua with gradient energy are not computed.
     """
     rows = []
-    for shells, (side, scale) in itertools.product(("NN+NNN", "NN"), (("lattice", 1.0), ("local", 0.5), ("gradient", 0.5))):
-        if (shells, side) == ("NN", "gradient"):
+    for shells, (side, scale) in itertools.product(
+            ("NN+NNN", "NN"), (("lattice", 1.0), ("local", 0.5), ("gradient", 0.5), ("viscous-gradient", 0.5))):
+        if shells == "NN" and "gradient" in side:
             continue
         for X, Y in itertools.product(np.arange(-12.0, 12.5, 0.5), np.arange(0.25, 12.5, 0.5)):
             if np.hypot(X, Y) <= 12:

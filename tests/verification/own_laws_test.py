@@ -132,7 +132,7 @@ def test_studies_need_the_law_up_to_the_largest_stretch_of_their_claims(tmp_path
 
 
 def test_claims_hold(tmp_path):
-    ended = latcon("verify", "energy", "wave-speeds", "--quick", "--case", CASES / "quick.prm", "--set",
+    ended = latcon("verify", "energy", "--quick", "--case", CASES / "quick.prm", "--set",
                    "Next-nearest neighbours/present=false", *bonds(**MOONEY_RIVLIN), "--output-dir", tmp_path / "claims")
     assert ended.returncode == 0, ended.stdout + ended.stderr
     rows = json.loads((tmp_path / "claims" / "results.json").read_text())["claims"]

@@ -22,8 +22,8 @@ needs_mount = pytest.mark.skipif(os.geteuid() != 0 or subprocess.run(
 
 
 class Small(Studies):
-    def run_study(self, *arguments, expect=0, command="study", launcher=(), **keywords):
-        words = [command, *arguments, "--skip-verification"]
+    def run_study(self, *arguments, expect=0, command="study", page=False, launcher=(), **keywords):
+        words = [command, *arguments, "--skip-verification", *["--no-report"] * (command == "study" and not page)]
         if not launcher:
             return run(*words, expect=expect, **keywords)
         ended = subprocess.run([*launcher, LATCON, *map(str, words)], capture_output=True, text=True, timeout=600, check=False)
@@ -69,7 +69,7 @@ class Events:
 
 class TestSweeps(Small):
     def test_leaves_a_study_that_runs_again(self):
-        printed = self.run_study("quick", *SWEEP, "--sweep", "Time/safety factor=0.5,0.9", "-o", self.out)
+        printed = self.run_study("quick", *SWEEP, "--sweep", "Time/safety factor=0.5,0.9", "-o", self.out, page=True)
         assert "height-1cm_safety-factor-0.5: " in printed
         document = json.loads((self.out / "study.json").read_text())
         assert [(entry["entry"], entry["unit"], entry["values"]) for entry in document["varied"]] == (
@@ -124,7 +124,7 @@ class TestSweeps(Small):
             names = events.read()
         # While the folder is locked, since every shard removes the unfinished files of others.
         assert names.index((MOVED_TO, "sweep.json")) < names.index((CLOSE_WRITE, ".latcon.lock"))
-        self.run_study(self.out / "sweep.json", "--collect", "--quiet")
+        self.run_study(self.out / "sweep.json", "--collect", "--quiet", page=True)
         assert len(json.loads((self.out / "study.json").read_text())["seeds"]) == 2
         assert (self.out / "pictures" / "sweep.png").exists()
 
@@ -175,21 +175,21 @@ class TestTroubles(Small):
         # An interpreter without a package of the report.
         hidden = str(Path(PIL.__file__).parent)
         without = ["unshare", "-m", "sh", "-c", f'mount -t tmpfs none {hidden} && exec "$@"', "sh"]
-        printed = self.run_study(study, "-o", bare, "--quiet", launcher=without)
+        printed = self.run_study(study, "-o", bare, "--quiet", launcher=without, page=True)
         assert "apt-get install python3-pil" in printed
         assert "repeat the command with --resume" in printed
         assert {name: (bare / name).read_bytes() for name in expected} == expected
         assert not (bare / "study.html").exists()
-        self.run_study(study, "-o", bare, "--resume", "--quiet")
+        self.run_study(study, "-o", bare, "--resume", "--quiet", page=True)
         assert (bare / "study.html").exists()
         # A page of an earlier run is not announced.
-        assert f"{bare}/study.html" not in self.run_study(study, "-o", bare, "--resume", launcher=without).splitlines()
+        assert f"{bare}/study.html" not in self.run_study(study, "-o", bare, "--resume", launcher=without, page=True).splitlines()
 
     def test_run_that_failed_continues_from_its_checkpoint(self):
         def longer(document):
             document["set"].update({"Sheet/length": "4 cm", "Time/end": "3 ms", "Checkpoints/steps": 64})
         study = self.write_study(longer)
-        process = subprocess.Popen([LATCON, "study", study, "-o", self.out, "--skip-verification", "--quiet"])
+        process = subprocess.Popen([LATCON, "study", study, "-o", self.out, "--skip-verification", "--no-report", "--quiet"])
         checkpoints = self.out / "runs" / "low-1.part" / "checkpoints"
         assert wait_for(lambda: checkpoints.exists() and any(checkpoints.glob("*.h5")), process)
         (child,) = (child for child in children(process.pid) if "fracture" in words_of(child))
@@ -214,7 +214,7 @@ class TestTroubles(Small):
         script = (f"mount -t tmpfs -o size={high + low // 2 + 100}k none {disk} || exit 77; \"$@\"; status=$?; "
                   f"cp -r {disk}/out {kept}; exit $status")
         run = subprocess.run(["unshare", "-m", "sh", "-c", script, "sh", LATCON, "study", study, "-o", disk / "out",
-                              "--skip-verification", "--quiet", "--threads", "1"],
+                              "--skip-verification", "--no-report", "--quiet", "--threads", "1"],
                              capture_output=True, text=True, timeout=600, check=False)
         assert run.returncode == 5, run.stdout + run.stderr
         assert "No space left on device" in run.stderr

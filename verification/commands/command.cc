@@ -1,5 +1,6 @@
 #include "verification/commands/command.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <system_error>
@@ -51,6 +52,11 @@ void read_case(const input::Options &options, input::Case &input, input::Paramet
   input.nonlocal.is_used = options.on_continuum;
   input.check(parameters);
   require_same_libraries(input, parameters);
+}
+
+bool has_default_threads(const input::Options &options)
+{
+  return options.threads == 0 && std::getenv("OMP_NUM_THREADS") == nullptr;
 }
 
 void print_dry_run(const input::Options &options, const std::string &text)
@@ -106,7 +112,8 @@ Run::Run(const input::Options &options, const input::Parameters &parameters) : R
 
 Run::Run(const input::Options &options, const input::Parameters *parameters)
   : record_(std::make_shared<Record>(options)), directory_(options.output_dir), is_root_(first_rank()),
-    is_verbose_(is_root_ && !options.quiet), prints_all_(options.verbose), resumes_(options.resume)
+    is_verbose_(is_root_ && !options.quiet), prints_all_(options.verbose), resumes_(options.resume),
+    has_default_threads_(commands::has_default_threads(options))
 {
   if (parameters != nullptr)
   {

@@ -121,6 +121,9 @@ support::ExitCode draw_report(const std::string &directory, bool quiet, bool sho
 /// Reads and checks the case that the options name; parameters.finish() throws its problems. Collective.
 void read_case(const input::Options &options, input::Case &input, input::Parameters &parameters);
 
+/// Returns whether the number of threads is left to the program: neither --threads nor OMP_NUM_THREADS is given.
+bool has_default_threads(const input::Options &options);
+
 /// Prints a part of the output of --dry-run, on the root rank, unless --quiet.
 void print_dry_run(const input::Options &options, const std::string &text);
 
@@ -153,6 +156,7 @@ public:
   bool is_root() const { return is_root_; } ///< true on rank 0
   /// Returns whether to print: on rank 0, unless --quiet.
   bool is_verbose() const { return is_verbose_; }
+  bool has_default_threads() const { return has_default_threads_; } ///< see commands::has_default_threads()
 
   /// Writes results.json, results.csv and the final run.json, and prints the rows. Of many rows it prints the number of
   /// each claim and those that fail, unless --verbose.
@@ -191,7 +195,7 @@ private:
 
   std::shared_ptr<Record> record_;
   std::string directory_;
-  bool is_root_, is_verbose_, prints_all_, resumes_;
+  bool is_root_, is_verbose_, prints_all_, resumes_, has_default_threads_;
 };
 
 /// Writes the exit code of the program into run.json, and its output into log.txt, of the run that began, if any, and
@@ -201,6 +205,10 @@ void record_exit_code(support::ExitCode exit_code, const std::string &message = 
 
 /// Exit code of a program whose results alone decide.
 support::ExitCode exit_code_of(const output::Results &results);
+
+/// Keeps the verdicts of a claim in its small version for the cracks of this program, if it is about the program alone.
+/// To be called by one rank. @return why they are not kept; empty: no problem
+std::string keep_for_cracks(const input::Case &input, const claims::Claim &claim, const claims::ClaimOutcome &outcome);
 
 /// Checks the claims, in their small versions, on the case's own material, shells and pre-stretch, or reuses the
 /// verdicts cached for exactly these inputs and this program. Reports which of the two, in words and in run.json, and

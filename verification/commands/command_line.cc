@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -33,13 +32,11 @@ namespace latcon::commands
 namespace
 {
 
-// Sets the threads of each rank; 0: OMP_NUM_THREADS, or as many as there are cores for it.
-void set_threads(unsigned int threads)
+// Sets the threads of each rank; by default OMP_NUM_THREADS, or as many as there are cores for it.
+void set_threads(const input::Options &options)
 {
   const unsigned int available = support::available_cores_per_rank(); // on all ranks, whatever their variables
-  if (threads == 0 && std::getenv("OMP_NUM_THREADS") == nullptr)
-    threads = available;
-  if (threads > 0)
+  if (const unsigned int threads = has_default_threads(options) ? available : options.threads; threads > 0)
     omp_set_num_threads(static_cast<int>(threads));
 }
 
@@ -392,7 +389,7 @@ support::ExitCode run_program(int argc, char **argv)
         return support::ExitCode::done;
       }
       options.case_file = input::case_path(options.case_file);
-      set_threads(options.threads);
+      set_threads(options);
       check_instruction_set();
       return command();
     });

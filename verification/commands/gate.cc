@@ -83,6 +83,24 @@ void append(std::string &note, const std::string &more)
   note += (note.empty() ? "" : "; ") + more;
 }
 
+// Returns whether the verdicts were kept; if not, says why.
+bool keep(const claims::VerdictKey &key, const claims::Verdicts &verdicts, const std::optional<std::string> &folder,
+          std::string &note)
+{
+  if (!folder)
+    return false;
+  try
+  {
+    claims::VerdictStore(*folder).write(key, claims::verdicts_text(key, verdicts));
+    return true;
+  }
+  catch (const support::OutputError &error)
+  {
+    append(note, std::string("the verdicts are not kept: ") + error.what());
+    return false;
+  }
+}
+
 // Verdicts of some claims, checked now or reused.
 struct Group
 {
@@ -125,16 +143,8 @@ Group verified(const input::Case &input, const std::vector<claims::Claim> &requi
     verdicts.emplace(elements::elements().run_claims(input, required, quick, claims::Shells::own, laws, {}));
     if (const std::string found = problem(verdicts->results); !found.empty())
       verdicts->results.add(output::not_computed(required.front().name, "rows that a crack waits for", found));
-    if (run.is_root() && folder && !key.text.empty())
-      try
-      {
-        claims::VerdictStore(*folder).write(key, claims::verdicts_text(key, *verdicts));
-        kept = true;
-      }
-      catch (const support::OutputError &error)
-      {
-        append(stored.note, std::string("the verdicts are not kept: ") + error.what());
-      }
+    if (run.is_root() && !key.text.empty())
+      kept = keep(key, *verdicts, folder, stored.note);
   }
 
   Group group{std::move(*verdicts), {}, stored.note, {}, {}};
@@ -150,6 +160,22 @@ Group verified(const input::Case &input, const std::vector<claims::Claim> &requi
 }
 
 } // namespace
+
+std::string keep_for_cracks(const input::Case &input, const claims::Claim &claim, const claims::ClaimOutcome &outcome)
+{
+  std::string note;
+  if (claim.is_about_program)
+    try
+    {
+      keep(claims::verdict_key(input, {claim}, {}, quick, support::n_ranks()), claims::Verdicts(outcome),
+           claims::VerdictStore::folder_of_user(), note);
+    }
+    catch (const std::exception &error)
+    {
+      append(note, std::string("no verdicts are kept: ") + error.what());
+    }
+  return note;
+}
 
 output::Results require_verified(const input::Case &input, const std::vector<claims::Claim> &required,
                                  const bridge::Laws &laws, Run &run)

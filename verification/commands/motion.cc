@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <omp.h>
+
 #include "verification/commands/signals.h"
 #include "verification/output/progress.h"
 
@@ -99,6 +101,7 @@ LatticeMotion::LatticeMotion(const input::Case &input, lattice::Simulation &simu
                              output::Checkpoints &checkpoints, Run &run)
   : Motion(input, checkpoints, run, steps_between_signals), simulation_(simulation),
     record_(simulation, input.time_step ? "Time/step" : "Time/safety factor"),
+    threads_(run.has_default_threads() ? omp_get_max_threads() : 1),
     frames_(std::make_shared<output::FieldWriter>(simulation.lattice(), simulation.material(), run.directory()))
 {
 }
@@ -106,6 +109,7 @@ LatticeMotion::LatticeMotion(const input::Case &input, lattice::Simulation &simu
 void LatticeMotion::advance()
 {
   writing_.check();
+  threads_.begin_step();
   after_step(simulation_.step());
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lattice/simulation.h"
+#include "support/dynamic_threads.h"
 #include "support/task_thread.h"
 #include "verification/commands/command.h"
 #include "verification/output/checkpoints.h"
@@ -63,7 +64,8 @@ private:
   double next_frame_; // [s]
 };
 
-/// Motion of the lattice. The root rank writes frames and tables on a thread of its own, while the sheet moves on.
+/// Motion of the lattice. The root rank writes frames and tables on a thread of its own, while the sheet moves on. A
+/// default number of threads is adjusted to the load of the machine.
 class LatticeMotion : public Motion
 {
 public:
@@ -100,6 +102,7 @@ private:
     archive("frames", *frames_);
   }
 
+  support::DynamicThreads threads_;
   std::shared_ptr<output::FieldWriter> frames_; // also of the tasks that are pending
 };
 

@@ -38,6 +38,9 @@ support::ExitCode verify(const input::Options &options)
       if (!options.claims.empty() && found.results.verdict() == output::Verdict::reported)
         found.results.add(output::not_computed(claim.name, "rows that are judged",
                                                "this case has none; a claim that is named must judge something"));
+      if (run.is_root() && options.quick)
+        if (const std::string note = keep_for_cracks(input, claim, found); !note.empty() && run.is_verbose())
+          std::cout << note << std::endl;
       outcome.add(found);
       // Kept if a signal ends one of the following claims.
       if (run.is_root())

@@ -30,6 +30,8 @@ void write_vtk_file(vtkXMLWriter &writer, const std::filesystem::path &path)
   writer.SetFileName(file.name().c_str());
   writer.SetDataModeToAppended();
   writer.EncodeAppendedDataOff();
+  // A tenth of the time of zlib, which took a sixth of a crack run, for files that are half as large again.
+  writer.SetCompressorTypeToLZ4();
   if (writer.Write() != 1 || writer.GetErrorCode() != 0)
     throw support::OutputError(path, reason(writer.GetErrorCode()));
   file.commit(support::Sync::no);

@@ -15,7 +15,7 @@ using namespace claims;
 using namespace input;
 using namespace output;
 
-constexpr unsigned int samples = 200;
+constexpr unsigned int samples = 50;
 
 TEST(Energy, HoldsForBothShellSetsOrientationsAndLaws)
 {

@@ -39,6 +39,8 @@ Results check(const std::string &claim, const Subject &subject, const Change &of
     WaveEnergyOptions options;
     options.states = {Eigen::Matrix2d::Identity()};
     options.kd = {0.25, 0.5};
+    options.mesh.cells = 4;
+    options.travelling_mesh.cells = 6;
     return wave_energy_claim(subject, options).results;
   }
   if (claim == "wave-speeds")
@@ -46,7 +48,7 @@ Results check(const std::string &claim, const Subject &subject, const Change &of
     WaveSpeedsOptions options;
     options.states = {Eigen::Matrix2d::Identity()};
     options.damped_states = {subject.deformation};
-    options.kd = {0.1, 0.5};
+    options.kd = {0.2, 0.4};
     options.mesh.cells = 4;
     options.planted = of_runs;
     return wave_speeds_claim(subject, options).results;
@@ -269,7 +271,7 @@ const Subject &right_subject(bool has_third_shell)
 {
   const auto made = [](bool has_third)
   {
-    input::Case input = subjects::paper_case();
+    input::Case input = subjects::weakly_damped_case();
     input.has_third_nearest = has_third;
     input.third_nearest = {input::ShellCase::Law::mooney_rivlin, 1e5, 1.5e5, 1., 2. / 3., 100.};
     return subject(input);
@@ -310,7 +312,7 @@ TEST(Surroundings, AreThoseOfTheirClosedForms)
   for (const auto integrator :
        {input::Case::Integrator::velocity_verlet, input::Case::Integrator::runge_kutta_chebyshev})
   {
-    input::Case input = subjects::paper_case();
+    input::Case input = subjects::weakly_damped_case();
     input.integrator = integrator;
     const Subject subject = bridge::subject(input);
     const Results right = contact_rows(subject, input);
@@ -335,10 +337,10 @@ TEST(Surroundings, AreThoseOfTheirClosedForms)
     std::cout << row.quantity << ": " << row.error.value_or(-1.) << "\n";
 }
 
-// Without a fault none of them fails.
+// Without a fault none of them fails; that the sheet with a hole does not is seen by Claims.HoldInTheirQuickVersions.
 TEST(FaultMatrix, HoldsWithoutFault)
 {
-  for (const char *claim : {"energy", "energy of waves", "wave-speeds", "intrinsic-length", "prestretch", "hole"})
+  for (const char *claim : {"energy", "energy of waves", "wave-speeds", "intrinsic-length", "prestretch"})
     EXPECT_EQ(faults::failing(check(claim, right_subject(false), {})), 0u) << claim;
   for (const char *claim : {"energy", "intrinsic-length", "prestretch"})
     EXPECT_EQ(faults::failing(check(claim, right_subject(true), {})), 0u) << claim;

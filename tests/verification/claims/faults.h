@@ -95,6 +95,13 @@ inline std::size_t holding(const latcon::output::Results &results, const std::st
   return with_verdict(results, latcon::output::Verdict::holds, text);
 }
 
+/// Returns rest or the state of a case, so that each occurs with each orientation and each set of shells of expect_holds.
+inline Eigen::Matrix2d state_for(const latcon::input::Case &input, const latcon::bridge::Subject &subject)
+{
+  const bool is_across = input.orientation == latcon::lattice::Orientation::rows_across_crack;
+  return is_across == subject.material.next_nearest.has_value() ? Eigen::Matrix2d::Identity() : input.deformation();
+}
+
 /// Expects that no row of a claim fails and some hold, with both sets of shells in both orientations.
 /// @param check results of the claim for a case and its subject
 inline void expect_holds(

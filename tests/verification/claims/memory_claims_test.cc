@@ -277,11 +277,12 @@ TEST(ViscoelasticWaves, FollowTheComplexModulus)
 
 TEST(ViscoelasticWaves, FailForWrongBranches)
 {
-  for (const PlantedFault &fault : planted_faults())
+  for (std::size_t i = 0; i < 2; ++i) // smallest faults; Relaxation.FailsForWrongBranches has all
   {
+    const PlantedFault &fault = planted_faults()[i];
     ViscoelasticWavesOptions options = waves_at_rest();
     options.planted = fault.plant;
-    const bool has_elements = &fault == &planted_faults().front();
+    const bool has_elements = i == 0;
     if (!has_elements)
       options.element_frequencies = {};
     const std::string rows = failing(viscoelastic_waves_claim(subject(case_with_branches()), options));

@@ -21,6 +21,15 @@ inline latcon::input::Case paper_case()
   return input;
 }
 
+/// The same with a tenth of its viscosity: waves that are damped measurably are short then, and run in small sheets.
+inline latcon::input::Case weakly_damped_case()
+{
+  latcon::input::Case input = paper_case();
+  input.nearest.viscosity *= 0.1;
+  input.next_nearest.viscosity *= 0.1;
+  return input;
+}
+
 inline latcon::lattice::Material nearest_only(const latcon::input::Case &input)
 {
   latcon::lattice::Material material = input.material();

@@ -32,12 +32,12 @@ TEST(RunningCrack, LeavesFramesThatCanBeCompared)
   const CrackSides sides = crack_sides(rubber, options);
   const ClaimOutcome outcome = running_crack_claim(rubber, sides, options);
   const Table &table = outcome.tables.at("running_crack_frames");
-  ASSERT_EQ(table.rows().size(), 3u);
+  ASSERT_EQ(table.rows().size(), 4u);
   const auto path = [&](std::size_t row) { return options.frames + "/" + std::get<std::string>(table.rows()[row][2]); };
   const Position tip{{std::get<double>(table.rows()[0][3]), std::get<double>(table.rows()[0][4])}};
   const LatticeFrame lattice = read_lattice_frame(find_frame(path(0), Side::lattice, {}));
   EXPECT_NEAR(lattice.time, sides.drive.n_strides * sides.drive.stride_time(), 1e-9 * lattice.time);
-  for (const std::size_t side : {1u, 2u})
+  for (const std::size_t side : {1u, 2u, 3u})
   {
     const ContinuumFrame continuum = read_continuum_frame(find_frame(path(side), Side::continuum, {}));
     EXPECT_NO_THROW(require_same_time(lattice, continuum));

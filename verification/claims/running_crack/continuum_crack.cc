@@ -6,6 +6,7 @@
 #include <deal.II/grid/grid_generator.h>
 
 #include "continuum/field_writer.h"
+#include "continuum/gradient_viscosity.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/anisotropy.h"
 #include "verification/bridge/homogenisation.h"
@@ -96,6 +97,15 @@ double anisotropy(const continuum::Material &bonds, const dealii::Tensor<2, 2> &
   return (mean - bonds.first_piola_stress(F)).norm();
 }
 
+continuum::FieldDerivatives derivatives(const continuum::PointState &state, double scale)
+{
+  continuum::FieldDerivatives u;
+  for (unsigned int i = 0; i < 2; ++i)
+    u[i] = {(state.F[i][0] - (i == 0 ? 1. : 0.)) / scale, (state.F[i][1] - (i == 1 ? 1. : 0.)) / scale,
+            state.G[i][0][0] / scale, state.G[i][1][1] / scale, state.G[i][0][1] / scale};
+  return u;
+}
+
 // Adds the fields of the continuum at the sites of a sample. @return power dissipated near the tip, of the whole sheet
 // [W/m]
 double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &sheet, const CrackContinuum &medium,
@@ -137,6 +147,14 @@ double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &she
       Fdot /= scale;
       values.opening_stress += medium.viscosity->stress(states[n].F, Fdot)[1][1];
       values.dissipation = medium.viscosity->dissipation(states[n].F, Fdot);
+      if (const continuum::GradientViscosity *gradient = medium.viscosity->gradient())
+      {
+        continuum::PointIntegrand density;
+        clear(density, continuum::Order::value);
+        gradient->cell_density(derivatives(states[n], 1.), derivatives(rates[n], scale), continuum::Order::value, 0.,
+                               density);
+        values.dissipation += density.value;
+      }
     }
     if (std::hypot(sites[n].xi, sites[n].eta) <= near_tip * drive.spacing)
       power += values.dissipation * sheet.site_area();

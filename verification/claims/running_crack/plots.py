@@ -6,16 +6,17 @@ from latcon.report.claim_tables import Plot, groups
 from latcon.report.panels import Grid, entry
 from latcon.report.pictures import BLACK
 
-SIDES = {"lattice": "lattice", "local": "local continuum", "gradient": "gradient continuum"}
+SIDES = {"lattice": "lattice", "local": "local continuum", "gradient": "gradient continuum",
+         "viscous-gradient": "with gradient viscosity"}
 
 TABLES = {
-    "running_crack": ({"shells": None, "side": ("lattice", "local", "gradient")},
+    "running_crack": ({"shells": None, "side": (*SIDES, "bonds-local", "bonds-gradient", "bonds-viscous-gradient")},
                       ("X/d", "Y/d", "v_x [m/s]", "v_y [m/s]", "opening_stress [Pa]", "excess_y [m]")),
 }
 
 
 def draw_running_crack(tables):
-    """Velocity along the crack and opening stress around the tip: lattice, local, gradient."""
+    """Velocity along the crack and opening stress around the tip: lattice and network continua."""
     table = tables["running_crack"]
     shells = [name for (name,), _ in groups(table, "shells")]
     quantities = (("v_x [m/s]", "velocity along the crack [m/s]"), ("opening_stress [Pa]", "opening stress [MPa]"))
@@ -67,9 +68,9 @@ def field(X, Y, values):
 
 PLOTS = (
     Plot("running_crack", draw_running_crack,
-         "The pictures show the fields near the tip in the lattice and in the continua with and without gradient "
-         "energy.",
+         "The pictures show the fields near the tip in the lattice and in the network continua: local, with gradient "
+         "energy, and with gradient viscosity as well.",
          "Fields around the tip of a driven crack in the reference configuration, mean of four samples: lattice, network "
-         "continuum, and the same with gradient energy and micro-inertia, with one scale of colours for each row. Blue "
-         "ahead of the tip: material that moves against the crack.", few_colours=False),
+         "continuum, and the same with gradient energy and micro-inertia, without and with gradient viscosity, with one "
+         "scale of colours for each row. Blue ahead of the tip: material that moves against the crack.", few_colours=False),
 )

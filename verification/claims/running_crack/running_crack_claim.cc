@@ -22,6 +22,8 @@ constexpr double far_from = 5.;                 // inner radius of the far field
 constexpr double near_from = 1.5, near_to = 4.; // annulus of the reported fields near the tip [d]
 constexpr double tip_resolution = 0.5;          // of a lattice: half a spacing [d]
 constexpr double largest_far_tolerance = 0.07;  // of the far field, whatever the parts of its tolerance
+constexpr const char *judged = "local";         // continuum; the others are reported
+constexpr const char *at_effective_tip = " continuum with its tip at the effective one against lattice";
 
 // A compared field at a point.
 struct Quantity
@@ -125,8 +127,7 @@ public:
     const TipRun coarse = drive(2. * options_.finest, {}), fine = drive(options_.finest, frame(name));
     add_frame(name);
     add_fields(name, fine);
-    judge(name, coarse.field, fine.field);
-    report(name, coarse, fine);
+    report(name, coarse, fine, judge(name, coarse.field, fine.field));
   }
 
   ClaimOutcome outcome;
@@ -142,12 +143,14 @@ private:
            far_.norm(field, all, [&](const TipField::Point &point) { return first(point.values.excess_stress); });
   }
 
-  void judge(const std::string &name, const TipField &coarse, const TipField &fine)
+  // Returns the effective tip of the lattice [d].
+  double judge(const std::string &name, const TipField &coarse, const TipField &fine)
   {
     // The local continuum is judged. At the flanks, and with its gradient energy, it lacks what missing bonds take from
     // a lattice (docs/running-crack.md).
-    const bool is_local = name == "local", is_judged = subject_.judges(bridge::Law::mooney_rivlin_network);
+    const bool is_local = name == judged, is_judged = subject_.judges(bridge::Law::mooney_rivlin_network);
     const double d = subject_.spacing, leaves_out = anisotropy(fine);
+    const double ahead = effective_tip(lattice_.field, fine, far_, d);
     std::ostringstream annulus;
     annulus << far_from << " d <= r <= " << options_.far << " d";
     for (const Quantity &quantity : quantities())
@@ -155,25 +158,30 @@ private:
       const double discretisation = far_.distance(fine, coarse, quantity);
       const double tip = far_.distance(fine, fine, quantity, tip_resolution * d);
       const double error = far_.distance(lattice_.field, fine, quantity);
+      const double at_tip = far_.distance(lattice_.field, fine, quantity, ahead * d);
       const output::Tolerance allowed =
         output::limited(discretisation + tip + leaves_out, 0.01, largest_far_tolerance,
                         "change of the mesh, which bounds an error of first order; change by a tip that is d/2 ahead; "
                         "anisotropy of the bonds at the strains of the far field");
       rows.add(quantity.name + ", " + annulus.str() + ", " + name + " continuum against lattice", "1", {}, error,
                is_local && !quantity.on_flank ? allowed : output::Tolerance(), is_judged);
-      outcome.table("running_crack_far", {"shells", "law", "quantity", "error", "discretisation", "tip", "anisotropy"})
-        .add({subject_.name, name, quantity.name, error, discretisation, tip, leaves_out});
+      rows.add(quantity.name + ", " + annulus.str() + ", " + name + at_effective_tip, "1", {}, at_tip);
+      outcome
+        .table("running_crack_far",
+               {"shells", "law", "quantity", "error", "at_effective_tip", "discretisation", "tip", "anisotropy"})
+        .add({subject_.name, name, quantity.name, error, at_tip, discretisation, tip, leaves_out});
     }
-    const double tip = effective_tip(lattice_.field, fine, far_, d);
-    const double tip_of_coarse = effective_tip(lattice_.field, coarse, far_, d);
+    const double ahead_of_coarse = effective_tip(lattice_.field, coarse, far_, d);
     const output::Tolerance of_tip =
-      output::limited(tip_resolution + std::abs(tip - tip_of_coarse), tip_resolution, 0.75,
+      output::limited(tip_resolution + std::abs(ahead - ahead_of_coarse), tip_resolution, 0.75,
                       "half a spacing, to which a lattice has a tip; change of the mesh");
     rows.add("effective tip of the lattice ahead of the cut, in d, from the far velocity of the " + name + " continuum",
-             "1", of_both(tip, 0.), std::abs(tip), is_local ? of_tip : output::Tolerance(), is_judged);
+             "1", of_both(ahead, 0.), std::abs(ahead), is_local ? of_tip : output::Tolerance(), is_judged);
+    return ahead;
   }
 
-  void report(const std::string &name, const TipRun &coarse, const TipRun &fine)
+  // @param ahead effective tip [d]
+  void report(const std::string &name, const TipRun &coarse, const TipRun &fine, double ahead)
   {
     const double d = subject_.spacing;
     std::ostringstream annulus;
@@ -182,6 +190,8 @@ private:
     {
       const std::string where = quantity.name + ", " + annulus.str() + ", " + name + " continuum: ";
       rows.add(where + "against lattice", "1", {}, near_.distance(lattice_.field, fine.field, quantity));
+      rows.add(quantity.name + ", " + annulus.str() + ", " + name + at_effective_tip, "1", {},
+               near_.distance(lattice_.field, fine.field, quantity, ahead * d));
       rows.add(where + "mesh against one of twice the size", "1", {},
                near_.distance(fine.field, coarse.field, quantity));
     }
@@ -271,17 +281,27 @@ CrackSides crack_sides(const bridge::Subject &subject, const RunningCrackOptions
 
   const lattice::TriangularLattice sheet(d, drive.length, drive.height, drive.orientation);
   const double end_depth = bridge::held_depth(sheet, subject.material, {1., 0.});
-  const std::shared_ptr<const continuum::Viscosity> viscosity = bridge::homogenised_viscosity(sheet, subject.material);
-  const double density = subject.material.density;
-  return {drive,
-          {end_depth, sheet.length() - end_depth,
-           0.5 * sheet.height() - bridge::held_depth(sheet, subject.material, {0., 1.})},
-          viscosity,
-          {{subject.network}, {density}, viscosity.get(), &subject.cauchy_born},
-          {{subject.network, *subject.network_gradient},
-           {density, subject.lengths.lattice},
-           viscosity.get(),
-           &subject.cauchy_born}};
+  const std::shared_ptr<const continuum::Viscosity> local = bridge::homogenised_viscosity(sheet, subject.material),
+    gradient = bridge::homogenised_viscosity(sheet, subject.material, subject.lengths.lattice);
+  CrackSides sides{drive,
+                   {end_depth, sheet.length() - end_depth,
+                    0.5 * sheet.height() - bridge::held_depth(sheet, subject.material, {0., 1.})},
+                   {local, gradient},
+                   {}};
+  const auto add = [&](const std::string &prefix, const continuum::Material &law, const continuum::GradientLaw &energy)
+  {
+    const double density = subject.material.density;
+    const continuum::Inertia micro{density, subject.lengths.lattice};
+    const continuum::Constitution with_gradient(law, energy);
+    const continuum::Material *bonds = &subject.cauchy_born;
+    sides.continua.push_back({prefix + "local", {{law}, {density}, local.get(), bonds}});
+    sides.continua.push_back({prefix + "gradient", {with_gradient, micro, local.get(), bonds}});
+    sides.continua.push_back({prefix + "viscous-gradient", {with_gradient, micro, gradient.get(), bonds}});
+  };
+  add("", subject.network, *subject.network_gradient);
+  if (options.anisotropic)
+    add("bonds-", subject.cauchy_born, *subject.lattice_gradient);
+  return sides;
 }
 
 ClaimOutcome running_crack_claim(const bridge::Subject &subject, const RunningCrackOptions &options)
@@ -303,11 +323,19 @@ ClaimOutcome running_crack_claim(const bridge::Subject &subject, const CrackSide
                                  const RunningCrackOptions &options)
 {
   CrackComparison comparison(subject, sides, options);
-  comparison.rows.attempt("local continuum", [&] { comparison.compare("local", sides.local); });
-  // Reported: so is a computation that does not succeed.
-  output::Results failure;
-  if (!failure.attempt("running-crack", "gradient continuum", [&] { comparison.compare("gradient", sides.gradient); }))
-    comparison.rows.add(failure.rows().front().quantity, "1", {});
+  for (const NamedContinuum &side : sides.continua)
+  {
+    const auto compare = [&] { comparison.compare(side.name, side.medium); };
+    if (side.name == judged)
+    {
+      comparison.rows.attempt(side.name + " continuum", compare);
+      continue;
+    }
+    // Reported: so is a computation that does not succeed.
+    output::Results failure;
+    if (!failure.attempt("running-crack", side.name + " continuum", compare))
+      comparison.rows.add(failure.rows().front().quantity, "1", {});
+  }
   return comparison.outcome;
 }
 

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "verification/bridge/subject.h"
 #include "verification/claims/claim_outcome.h"
@@ -20,34 +21,43 @@ struct RunningCrackOptions
   double far = 9.;      ///< outer radius of the far field, whose inner radius is 5
   double finest = 1.;   ///< approximate size of cells along the path; a second mesh has cells twice as large
   unsigned degree = 2;  ///< of the elements
-  std::string frames;   ///< folder for a frame of each side at the end of the drive; empty: none
+  bool anisotropic = false; ///< also the continua of the lattice's own laws
+  std::string frames;       ///< folder for a frame of each side at the end of the drive; empty: none
 };
 
 /// The full version.
 inline RunningCrackOptions full_running_crack()
 {
-  return {66., 48., 18., 30., 12., 0.5, 3, {}};
+  return {66., 48., 18., 30., 12., 0.5, 3, true, {}};
 }
 
-/// Both sides of the comparison: one lattice and two continua. The subject must outlive it.
+/// A continuum with its name in rows and tables.
+struct NamedContinuum
+{
+  std::string name;
+  CrackContinuum medium;
+};
+
+/// Both sides of the comparison: one lattice and several continua. The subject must outlive it.
 struct CrackSides
 {
   CrackDrive drive;
   HalfSheet half; ///< the continuum's sheet
-  std::shared_ptr<const continuum::Viscosity> viscosity;
-  CrackContinuum local;    ///< the network
-  CrackContinuum gradient; ///< the same with its gradient energy and micro-inertia
+  std::vector<std::shared_ptr<const continuum::Viscosity>> viscosities;
+  /// "local", the network, which is judged; "gradient", with its gradient energy and micro-inertia;
+  /// "viscous-gradient", with gradient viscosity as well; if asked for, "bonds-local", "bonds-gradient" and
+  /// "bonds-viscous-gradient", the same with the Cauchy-Born law and gradient energy of the lattice.
+  std::vector<NamedContinuum> continua;
 };
 
 /// The crack runs at half the speed of the slower plane wave along it in the loaded sheet.
 CrackSides crack_sides(const bridge::Subject &subject, const RunningCrackOptions &options);
 
-/// Compares a straight crack that is driven at the same speed through the lattice and through the network continuum,
-/// without and with its gradient energy and micro-inertia (theory-comparison.md, section "A running crack"). The far
-/// field of the former is judged, the latter reported. The sheet
-/// must be loaded without shear, and open the crack. Frames of the sides are NAME-lattice.pvd, NAME-local.pvd and
-/// NAME-gradient.pvd, NAME being that of the subject in lower case ("crack-nn-nnn"); the table `running_crack_frames`
-/// has the position of the tip in them. For other sheets the claim reports that there is no such crack.
+/// Compares a straight crack that is driven at the same speed through the lattice and through the continua of
+/// CrackSides (theory-comparison.md, section "A running crack"). The far field of the local network is judged, the
+/// others are reported. The sheet must be loaded without shear, and open the crack. The frame of a side is
+/// NAME-SIDE.pvd, NAME being that of the subject in lower case ("crack-nn-nnn"); the table `running_crack_frames` has
+/// the position of the tip in it. For other sheets the claim reports that there is no such crack.
 ClaimOutcome running_crack_claim(const bridge::Subject &subject, const RunningCrackOptions &options);
 
 /// Checks the claim for sides that a test has changed.
