@@ -78,7 +78,7 @@ void ShellCase::check_memory(Parameters &parameters, const std::string &section)
   if (plastic_modulus > 0. ? yield_stress == 0. : yield_stress > 0. || hardening > 0.)
     parameters.error(section + (plastic_modulus > 0. ? "/yield stress" : "/plastic modulus"),
                      "plastic stretch needs both a modulus and a yield stress > 0",
-                     {section + "/yield stress", section + "/hardening modulus"});
+                     {section + (plastic_modulus > 0. ? "/plastic modulus" : "/yield stress"), section + "/hardening modulus"});
 }
 
 void ShellCase::check_relaxation_times(Parameters &parameters, const std::string &section, const double step,
