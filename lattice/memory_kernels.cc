@@ -1,6 +1,5 @@
 #include "lattice/memory_kernels.h"
 
-#include <algorithm>
 #include <type_traits>
 #include <variant>
 
@@ -55,21 +54,27 @@ struct Directions
   Lanes nx, ny, stretch;
 };
 
-template <class Step, class Pointer>
-void add_overstress_of(const Step &step, const RowOfBonds &row, const BondsOfKind &bonds,
-                       const RememberedRow<Pointer> &remembered, double *power)
+// @tparam n_branches of a Maxwell memory, so that their variables stay in registers; 0: any number
+template <std::size_t n_branches, class Step, class Pointer>
+// cppcheck-suppress passedByValue ; copies, which no store can change
+void add_overstress_of(Step step, const RowOfBonds row, const BondsOfKind bonds,
+                       const RememberedRow<Pointer> remembered, double *power)
 {
+  if constexpr (n_branches > 0)
+    step.n = n_branches;
   // Partial sums whose order does not depend on the width of a vector.
-  alignas(64) double sums[max_history_variables][block];
+  constexpr std::size_t n_sums = n_branches > 0 ? n_branches : max_history_variables;
+  Lanes sums[n_sums][block];
   for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
-    std::fill_n(sums[m], block, 0.);
+    for (Lanes &sum : sums[m])
+      sum = lanes(0.);
   const double section = bonds.constants.cross_section, volume = section * bonds.constants.rest_length;
   double *const fx = bonds.force[0], *const fy = bonds.force[1];
   const std::size_t end = (row.n + block - 1) / block * block;
   for (std::size_t site = 0; site < end; site += width())
   {
     const Directions now(row, bonds, site);
-    Lanes variables[max_history_variables], dissipation[max_history_variables];
+    Lanes variables[n_sums], dissipation[n_sums];
     for (std::size_t v = 0; v < step.n; ++v)
       variables[v] = load(remembered.variable[v] + site);
     const Lanes stress = advance(step, load(remembered.stretch + site), now.stretch, variables, dissipation);
@@ -91,34 +96,53 @@ void add_overstress_of(const Step &step, const RowOfBonds &row, const BondsOfKin
     store(load(fy + site) + axial * now.ny, fy + site);
     for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
     {
-      double *const sum = sums[m] + site % block;
-      store(load(sum) + now.where_present(dissipation[m]), sum);
+      Lanes &sum = sums[m][site % block / width()];
+      sum = sum + now.where_present(dissipation[m]);
     }
   }
   for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
   {
+    alignas(64) double parts[block];
+    for (std::size_t part = 0; part < block / width(); ++part)
+      store(sums[m][part], parts + part * width());
     double total = 0.;
-    for (const double sum : sums[m])
-      total += sum;
+    for (const double part : parts)
+      total += part;
     power[m] += volume * total;
   }
 }
 template <class Pointer>
-void add_overstress_of(const NoMemory::Step &, const RowOfBonds &, const BondsOfKind &, const RememberedRow<Pointer> &,
-                       double *)
+void add_overstress_of_step(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
+                            const RememberedRow<Pointer> &remembered, double *power)
 {
+  const auto of_step = [&](const auto &of_kind)
+  {
+    using Step = std::decay_t<decltype(of_kind)>;
+    if constexpr (std::is_same_v<Step, MaxwellMemory::Step>)
+    {
+      if (of_kind.n == 1)
+        return add_overstress_of<1>(of_kind, row, bonds, remembered, power);
+      if (of_kind.n == 2)
+        return add_overstress_of<2>(of_kind, row, bonds, remembered, power);
+      if (of_kind.n == 3)
+        return add_overstress_of<3>(of_kind, row, bonds, remembered, power);
+    }
+    if constexpr (!std::is_same_v<Step, NoMemory::Step>)
+      add_overstress_of<0>(of_kind, row, bonds, remembered, power);
+  };
+  std::visit(of_step, step);
 }
 
 void AddOverstress(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
                    const RememberedRow<const double *> &remembered, double *power)
 {
-  std::visit([&](const auto &of_kind) { add_overstress_of(of_kind, row, bonds, remembered, power); }, step);
+  add_overstress_of_step(step, row, bonds, remembered, power);
 }
 
 void UpdateOverstress(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
                       const RememberedRow<double *> &remembered, double *power)
 {
-  std::visit([&](const auto &of_kind) { add_overstress_of(of_kind, row, bonds, remembered, power); }, step);
+  add_overstress_of_step(step, row, bonds, remembered, power);
 }
 
 } // namespace latcon::lattice::kernels::HWY_NAMESPACE

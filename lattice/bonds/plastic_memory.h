@@ -66,7 +66,7 @@ inline double clamped(double value, double limit)
 #endif
 
 /// Updates the variables of a bond while its stretch changes from `before` to `now`.
-/// @param dissipation energy that the slider dissipates meanwhile per reference volume of the bond [Pa]
+/// @param dissipation energy that the slider dissipates meanwhile per reference volume of the bond, eq. (L.43) [Pa]
 /// @return q at the end [Pa]; beyond the yield stress it is that of the new alpha to the bit, so that nothing slips further
 /// while the stretch stays
 template <class Number>

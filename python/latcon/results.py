@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 _ENERGIES = ("elastic", "kinetic", "micro_inertia", "viscous", "broken", "boundary_work", "contact", "imbalance")
 _PATH_UNITS = {"t": "s", "X": "m", "Y": "m", "x": "m", "y": "m", "speed": "m/s", "bonds_broken": "1"}
 _BROKEN_UNITS = {"t": "s", "site": "1", "other_site": "1", "X": "m", "Y": "m", "stretch": "1"}
-_BRANCHES = tuple(f"{shell}_branch_{number}_{what}" for shell in ("nearest", "next_nearest", "third_nearest") for number in range(1, 17)
-                  for what in ("stored", "dissipated"))
+_BRANCHES = tuple(f"{shell}_{mechanism}_{what}" for shell in ("nearest", "next_nearest", "third_nearest")
+                  for mechanism in ("plastic", *(f"branch_{number}" for number in range(1, 17))) for what in ("stored", "dissipated"))
 _ENERGY_UNITS = {"t": "s", "load_factor": "1", **{name: "J/m" for name in (*_ENERGIES, *_BRANCHES)}}
 _RESULT_COLUMNS = ("claim", "quantity", "unit", "lattice", "continuum", "theory", "error", "tolerance", "verdict")
 

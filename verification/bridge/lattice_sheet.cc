@@ -52,7 +52,10 @@ void require_lattice_sheet(const input::Case &input, input::Parameters &p, const
   for (const input::EdgeCase &edge : c.edges)
     check_edge(edge, p, command, moves);
   if (!moves)
+  {
     input::require_constant_loading(input, p, "static equilibrium has one loading");
+    input::require_no_plasticity(input, p, "plastic stretch depends on the path, and static equilibrium has none");
+  }
   else if (input.has_sheet() && (input.lattice().periodic().x || input.lattice().periodic().y))
     input::require_constant_loading(input, p, command + " keeps the period of a sheet");
   if (input.has_inner_edge() && c.edges[4].condition == Condition::held)

@@ -7,6 +7,7 @@
 
 #include "lattice/material.h"
 #include "verification/claims/claim_outcome.h"
+#include "verification/claims/spectrum.h"
 
 namespace latcon::claims
 {
@@ -47,14 +48,14 @@ struct Claim
   /// Returns whether `latcon verify` without names includes the claim. @param material of the lattice
   [[nodiscard]] bool is_default_for(const lattice::Material &material) const
   {
-    return is_default && (!is_about_memory || material.has_memory()) &&
+    return is_default && (!is_about_memory || has_branches(material)) &&
            (!is_about_disorder || !material.disorder.is_none());
   }
   /// Returns whether verification before fracture includes the claim. @param material of the sheet that breaks
   /// @param on_continuum whether the continuum breaks in place of the lattice
   [[nodiscard]] bool is_before_fracture(const lattice::Material &material, bool on_continuum = false) const
   {
-    return gate && (on_continuum || !is_about_continuum_fracture) && (!is_about_memory || material.has_memory());
+    return gate && (on_continuum || !is_about_continuum_fracture) && (!is_about_memory || has_branches(material));
   }
 };
 

@@ -44,6 +44,9 @@ struct ShellCase
   double viscosity = 0.;                     ///< eta [Pa s]
   std::vector<double> branch_moduli = {};    ///< E_i of Maxwell branches [Pa]
   std::vector<double> relaxation_times = {}; ///< tau_i of the branches [s]
+  double plastic_modulus = 0.;               ///< E of a plastic memory [Pa]; 0: none
+  double yield_stress = 0.;                  ///< Y [Pa]
+  double hardening = 0.;                     ///< K [Pa]
   UserLaw user_law = {};                     ///< for Law::expression and Law::library
 
   void declare(Parameters &parameters, const std::string &section);
@@ -65,9 +68,9 @@ struct ShellCase
   lattice::Shell shell(double longest) const;
 
 private:
-  void declare_branches(Parameters &parameters, const std::string &section);
-  void check_branches(Parameters &parameters, const std::string &section) const;
-  /// Returns the Maxwell branches; none also if they are not given as lattice::MaxwellMemory requires.
+  void declare_memory(Parameters &parameters, const std::string &section);
+  void check_memory(Parameters &parameters, const std::string &section) const;
+  /// Returns the Maxwell branches or plastic memory; none also if they are not given as these require.
   lattice::BondMemory memory() const;
 };
 
@@ -264,5 +267,8 @@ inline constexpr double smallest_chebyshev_stretch = 0.45;
 /// Lines `key = value` of all entries that affect results, that is all but those of Checkpoints, and of the SHA-256 of
 /// a mesh file. Their SHA-256 is `case_hash` in run.json and in checkpoints.
 [[nodiscard]] std::string case_lines(const Parameters &parameters);
+
+/// Refuses bonds with plastic stretch, for a `reason`.
+void require_no_plasticity(const Case &input, Parameters &parameters, const std::string &reason);
 
 } // namespace latcon::input

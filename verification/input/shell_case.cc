@@ -20,7 +20,7 @@ void ShellCase::declare(Parameters &parameters, const std::string &section)
                  "s: cross-section of a bond over (sqrt3 / 2) d h, with the thickness h");
   parameters.add(section, "viscosity", viscosity, MagnitudeOrZero{}, "Pa s",
                  "eta of the Kelvin dashpot along the bond");
-  declare_branches(parameters, section);
+  declare_memory(parameters, section);
   user_law.declare(parameters, section);
 }
 
@@ -30,7 +30,7 @@ void ShellCase::check(Parameters &parameters, const std::string &section, const 
     user_law.check(parameters, section, user_law_kind(), {{"a", a}, {"b", b}, {"modulus", modulus}}, longest);
   else if (!has_stiffness())
     parameters.error(section + "/a", "a bond needs stiffness: a + b must be positive", {section + "/b"});
-  check_branches(parameters, section);
+  check_memory(parameters, section);
 }
 
 lattice::Shell ShellCase::shell(const double longest) const
@@ -43,16 +43,22 @@ lattice::Shell ShellCase::shell(const double longest) const
   return {lattice::MooneyRivlinBond{a, b}, area_factor, viscosity, memory()};
 }
 
-void ShellCase::declare_branches(Parameters &parameters, const std::string &section)
+void ShellCase::declare_memory(Parameters &parameters, const std::string &section)
 {
   parameters.add(section, "branch moduli", branch_moduli, Magnitude{}, "Pa",
                  "moduli E_i of Maxwell branches parallel to the bond law, at most " +
                    std::to_string(lattice::max_history_variables) + "; empty: no branches");
   parameters.add(section, "relaxation times", relaxation_times, Magnitude{}, "s",
                  "relaxation times tau_i of the Maxwell branches, in the order of their moduli");
+  parameters.add(section, "plastic modulus", plastic_modulus, MagnitudeOrZero{}, "Pa",
+                 "modulus E of a spring in series with a friction slider, parallel to the bond law; 0: no plastic stretch");
+  parameters.add(section, "yield stress", yield_stress, MagnitudeOrZero{}, "Pa",
+                 "stress Y of the spring beyond which the slider moves; more than 0 with a plastic modulus");
+  parameters.add(section, "hardening modulus", hardening, MagnitudeOrZero{}, "Pa",
+                 "K: growth of the yield stress with the accumulated plastic stretch");
 }
 
-void ShellCase::check_branches(Parameters &parameters, const std::string &section) const
+void ShellCase::check_memory(Parameters &parameters, const std::string &section) const
 {
   const std::string moduli = section + "/branch moduli", times = section + "/relaxation times";
   if (branch_moduli.size() != relaxation_times.size())
@@ -66,6 +72,13 @@ void ShellCase::check_branches(Parameters &parameters, const std::string &sectio
                      "a bond has at most " + std::to_string(lattice::max_history_variables) + " branches, not " +
                        std::to_string(branch_moduli.size()),
                      {times});
+  if (plastic_modulus > 0. && !branch_moduli.empty())
+    parameters.error(section + "/plastic modulus", "bonds have Maxwell branches or plastic stretch, not both; give 0",
+                     {moduli});
+  if (plastic_modulus > 0. ? yield_stress == 0. : yield_stress > 0. || hardening > 0.)
+    parameters.error(section + (plastic_modulus > 0. ? "/yield stress" : "/plastic modulus"),
+                     "plastic stretch needs both a modulus and a yield stress > 0",
+                     {section + (plastic_modulus > 0. ? "/plastic modulus" : "/yield stress"), section + "/hardening modulus"});
 }
 
 void ShellCase::check_relaxation_times(Parameters &parameters, const std::string &section, const double step,
@@ -89,6 +102,8 @@ void ShellCase::check_relaxation_times(Parameters &parameters, const std::string
 
 lattice::BondMemory ShellCase::memory() const
 {
+  if (plastic_modulus > 0. && yield_stress > 0.)
+    return lattice::PlasticMemory(plastic_modulus, yield_stress, hardening);
   if (branch_moduli.empty() || branch_moduli.size() != relaxation_times.size() ||
       branch_moduli.size() > lattice::max_history_variables)
     return lattice::NoMemory();
@@ -96,6 +111,13 @@ lattice::BondMemory ShellCase::memory() const
   for (std::size_t i = 0; i < branch_moduli.size(); ++i)
     branches.push_back({branch_moduli[i], relaxation_times[i]});
   return lattice::MaxwellMemory(std::move(branches));
+}
+
+void require_no_plasticity(const Case &input, Parameters &parameters, const std::string &reason)
+{
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (input.has_shell(number) && input.shell(number).plastic_modulus > 0.)
+      parameters.error(std::string(Case::shell_sections[number]) + "/plastic modulus", reason + "; give 0");
 }
 
 } // namespace latcon::input

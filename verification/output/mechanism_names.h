@@ -15,8 +15,11 @@ inline std::vector<std::string> mechanism_names(const lattice::Material &materia
   std::vector<std::string> names;
   const auto add = [&](const std::string &shell, const lattice::Shell &bonds)
   {
-    for (std::size_t m = 1; m <= lattice::n_mechanisms(bonds.memory); ++m)
-      names.push_back(shell + "_branch_" + std::to_string(m));
+    if (std::holds_alternative<lattice::PlasticMemory>(bonds.memory))
+      names.push_back(shell + "_plastic");
+    else
+      for (std::size_t m = 1; m <= lattice::n_mechanisms(bonds.memory); ++m)
+        names.push_back(shell + "_branch_" + std::to_string(m));
   };
   add("nearest", material.nearest);
   if (material.next_nearest)

@@ -128,7 +128,7 @@ TEST_P(SharedCrack, HasTheBitsOfOneRank)
   Crack shared(variant, RowPartition(sheet, MPI_COMM_WORLD), material), alone(variant, sheet, material);
   Simulation &ours = *shared.simulation, &theirs = *alone.simulation;
   std::size_t touching = 0;
-  for (int step = 0; step < 1500; ++step)
+  for (int step = 0; step < 3000; ++step)
   {
     const std::vector<BrokenBond> &broken = ours.step(), &expected = theirs.step();
     ASSERT_EQ(broken.size(), expected.size()) << "step " << step;
