@@ -283,8 +283,8 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
     bonds.kinds = kinds.data();
     bonds.n_kinds = (has_shell(1) ? 2 : 1) * n_kinds_per_shell;
     for (std::size_t kind = 0; kind < bonds.n_kinds && !scratch.lengths.empty(); ++kind)
-      kinds[kind].lengths = {{&scratch.lengths[2 * kind * lattice_.stride()],
-                              &scratch.lengths[(2 * kind + 1) * lattice_.stride()]}};
+      kinds[kind].lengths = {
+        {&scratch.lengths[2 * kind * lattice_.stride()], &scratch.lengths[(2 * kind + 1) * lattice_.stride()]}};
     sums = kernels::bonds_of_row(laws_, bonds);
     shell = 2;
   }

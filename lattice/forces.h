@@ -84,8 +84,8 @@ public:
   /// Power that each mechanism of Material::n_mechanisms() dissipated at the last evaluation [W/m], in the bonds that
   /// start in a row of the band; a part of viscous_power().
   double mechanism_power(std::size_t mechanism, std::size_t row) const { return row_mechanism_power_[mechanism][row]; }
-  /// Returns whether mechanism_power() is the energy [J/m] dissipated since the last update of the memory, which is no part
-  /// of viscous_power().
+  /// Returns whether mechanism_power() is the energy [J/m] dissipated since the last update of the memory, which is no
+  /// part of viscous_power().
   bool gives_energy(std::size_t mechanism) const { return mechanism_gives_energy_[mechanism]; }
 
   /// Returns whether a row has bonds that were stretched past their limit (or retracted) at the last evaluation.

@@ -23,8 +23,8 @@ namespace latcon::lattice::kernels::HWY_NAMESPACE
 namespace latcon::lattice::kernels::HWY_NAMESPACE
 {
 
-// Stretches and directions of bonds as bonds_of_row computes them, both 0 for absent bonds; from the lengths that it kept,
-// if it did.
+// Stretches and directions of bonds as bonds_of_row computes them, both 0 for absent bonds; from the lengths that it
+// kept, if it did.
 struct Directions
 {
   HWY_INLINE Directions(const RowOfBonds &row, const BondsOfKind &bonds, std::size_t site)

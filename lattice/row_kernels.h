@@ -48,7 +48,8 @@ struct BondsOfKind
   double retraction_stretch = 0.;                         ///< see Forces::set_retraction_threshold; 0: not watched
   const double *stiffness = nullptr, *strength = nullptr; ///< factors by site, as in State; null: all 1
   std::array<double *, 2> force{};                        ///< on the near ends, x (0) and y (1) [N/m]: what is computed
-  /// Lengths [m] and inverse lengths that bonds_of_row() keeps for add_overstress(), 0 for absent bonds; null: not kept.
+  /// Lengths [m] and inverse lengths that bonds_of_row() keeps for add_overstress(), 0 for absent bonds; null: not
+  /// kept.
   std::array<double *, 2> lengths{};
 };
 

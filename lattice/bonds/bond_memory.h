@@ -14,8 +14,8 @@
 ///
 /// A memory declares its number of variables, the mechanisms by which it stores and dissipates energy, and a bound on
 /// its stiffness; its `Step` has what an update over one duration needs, and `advance` is its formula for any type of
-/// number. Variables are 0 at rest and are stored by BondHistory. `advance` gives the power that each mechanism dissipates
-/// at the end of an update, or, if `Step::dissipates_energy`, the energy that it dissipates in the update.
+/// number. Variables are 0 at rest and are stored by BondHistory. `advance` gives the power that each mechanism
+/// dissipates at the end of an update, or, if `Step::dissipates_energy`, the energy that it dissipates in the update.
 namespace latcon::lattice
 {
 

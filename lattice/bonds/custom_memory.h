@@ -34,8 +34,8 @@ public:
   /// Returns whether what the law dissipates does not depend on the rate, as plastic stretch, softening or friction.
   virtual bool is_rate_independent() const noexcept { return false; }
 
-  /// Power dissipated per reference volume of the bond [Pa/s], >= 0; of a rate-independent law the energy dissipated since
-  /// the bond was at rest [Pa], which never decreases.
+  /// Power dissipated per reference volume of the bond [Pa/s], >= 0; of a rate-independent law the energy dissipated
+  /// since the bond was at rest [Pa], which never decreases.
   virtual double dissipation(double stretch, const double *variables) const noexcept = 0;
 
   /// A bound [Pa] on the axial stiffness dq/dlam in fast motion; limits of the time step follow from it. |q| may not

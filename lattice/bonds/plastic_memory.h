@@ -7,10 +7,10 @@
 namespace latcon::lattice
 {
 
-/// A spring in series with a friction slider that hardens, parallel to the elastic law and the dashpot of a bond: plastic
-/// stretch that does not depend on the rate (theory.md, eq. (L.41)). The variables of a bond are its overstress q [Pa] and
-/// its accumulated plastic stretch alpha [-]. An update is exact for a stretch that changes in one direction (theory.md,
-/// eq. (L.42)).
+/// A spring in series with a friction slider that hardens, parallel to the elastic law and the dashpot of a bond:
+/// plastic stretch that does not depend on the rate (theory.md, eq. (L.41)). The variables of a bond are its overstress
+/// q [Pa] and its accumulated plastic stretch alpha [-]. An update is exact for a stretch that changes in one direction
+/// (theory.md, eq. (L.42)).
 class PlasticMemory
 {
 public:
@@ -67,8 +67,8 @@ inline double clamped(double value, double limit)
 
 /// Updates the variables of a bond while its stretch changes from `before` to `now`.
 /// @param dissipation energy that the slider dissipates meanwhile per reference volume of the bond, eq. (L.43) [Pa]
-/// @return q at the end [Pa]; beyond the yield stress it is that of the new alpha to the bit, so that nothing slips further
-/// while the stretch stays
+/// @return q at the end [Pa]; beyond the yield stress it is that of the new alpha to the bit, so that nothing slips
+/// further while the stretch stays
 template <class Number>
 inline Number advance(const PlasticMemory::Step &step, Number before, Number now, Number *variables,
                       Number *dissipation)

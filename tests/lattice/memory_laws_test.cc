@@ -10,6 +10,7 @@
 
 #include "lattice/energy.h"
 #include "lattice/simulation.h"
+#include "support/largest_error.h"
 #include "tests/lattice/sheets.h"
 
 namespace memory_laws_test
@@ -85,9 +86,17 @@ TEST(PlasticMemory, RejectsInvalidConstants)
 {
   EXPECT_NO_THROW(PlasticMemory(1e5, 1e4, 0.));
   const double infinity = std::numeric_limits<double>::infinity(), nan = std::nan("");
-  for (const auto &[modulus, yield_stress, hardening] :
-       {std::array{0., 1., 1.}, {1., 0., 1.}, {1., 1., -1.}, {-1., 1., 1.}, {1., -1., 1.}, {infinity, 1., 1.},
-        {1., infinity, 1.}, {1., 1., infinity}, {nan, 1., 1.}, {1., nan, 1.}, {1., 1., nan}})
+  for (const auto &[modulus, yield_stress, hardening] : {std::array{0., 1., 1.},
+                                                         {1., 0., 1.},
+                                                         {1., 1., -1.},
+                                                         {-1., 1., 1.},
+                                                         {1., -1., 1.},
+                                                         {infinity, 1., 1.},
+                                                         {1., infinity, 1.},
+                                                         {1., 1., infinity},
+                                                         {nan, 1., 1.},
+                                                         {1., nan, 1.},
+                                                         {1., 1., nan}})
     EXPECT_THROW(PlasticMemory(modulus, yield_stress, hardening), std::invalid_argument);
 }
 
@@ -119,7 +128,7 @@ TEST(PlasticMemory, DissipatesWhatACycleTakes)
         const double slope = modulus * hardening / (modulus + hardening), end = at_yield + sign * slope * plastic;
         work += 0.5 * (q + at_yield) * sign * elastic + 0.5 * (at_yield + end) * sign * plastic;
         q = end;
-        yield = std::max(yield, std::abs(end));
+        yield = support::largest_of({yield, std::abs(end)});
         // A dozen roundings of q and of the work per increment.
         const double round_off = 12. * n * 2.3e-16 * modulus * (1. + amplitude);
         EXPECT_NEAR(variables[0], q, 4. * round_off) << n;

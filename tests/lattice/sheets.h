@@ -82,7 +82,8 @@ private:
 class SliderFromOutside : public latcon::lattice::CustomMemoryLaw
 {
 public:
-  SliderFromOutside(double modulus, double yield_stress, double hardening) : E_(modulus), Y_(yield_stress), K_(hardening)
+  SliderFromOutside(double modulus, double yield_stress, double hardening)
+    : E_(modulus), Y_(yield_stress), K_(hardening)
   {
   }
   std::size_t n_variables() const noexcept override { return 2; }

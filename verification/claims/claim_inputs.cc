@@ -18,7 +18,8 @@ constexpr std::array entries_of_subject{
   "Sheet/spacing",    "Sheet/orientation", "Material/density", "Loading/strain x",
   "Loading/strain y", "Loading/shear",     "Continuum/ratio",
 };
-// Those of each shell, in its section; claims are about bonds without plastic stretch, which has no continuum counterpart.
+// Those of each shell, in its section; claims are about bonds without plastic stretch, which has no continuum
+// counterpart.
 constexpr std::array entries_of_shell{
   "present",          "law",         "a",          "b",
   "modulus",          "psi",         "parameters", "library",

@@ -35,6 +35,19 @@ continuum::DynamicSettings dynamic_settings(const input::Case &input, bridge::Co
   return settings;
 }
 
+continuum::Sheet::Vector interpolated(const continuum::Sheet &sheet, const dealii::Function<2> &field)
+{
+  continuum::Sheet::Vector values = sheet.make_owned();
+  dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), field, values);
+  return values;
+}
+
+void add_loading(const input::Case &input, const continuum::Sheet &sheet, continuum::Sheet::Vector &u)
+{
+  if (input.continuum.initial_base == input::ContinuumCase::Base::loading)
+    u += interpolated(sheet, bridge::AffineDisplacement(input.deformation()));
+}
+
 // Results of a motion at its end, or where it was interrupted.
 output::Results motion_results(const continuum::DynamicSolver &solver, const output::LedgerCheck &check,
                                double time_step)
@@ -187,14 +200,14 @@ MovingSheet::MovingSheet(const input::Case &input, bridge::ContinuumModel &model
     memory(bridge::homogenised_memory(input.lattice(), model.subject().material)),
     solver(model.mesh(), model.constitution(), model.conditions(), {input.density, model.inertia_length()}, settings,
            viscosity.get(), {}, memory.get()),
-    added(interpolated(bridge::FieldFunction(input.continuum.initial_displacement, model.extent()))),
-    velocity(interpolated(bridge::FieldFunction(input.continuum.initial_velocity, model.extent())))
+    added(interpolated(solver.sheet(), bridge::FieldFunction(input.continuum.initial_displacement, model.extent()))),
+    velocity(interpolated(solver.sheet(), bridge::FieldFunction(input.continuum.initial_velocity, model.extent())))
 {
   continuum::Sheet::Vector u = solver.sheet().make_owned();
   if (input.continuum.initial_base == input::ContinuumCase::Base::equilibrium)
     u = solver.prescribed_displacement(); // as of an equilibrium
   else
-    add_loading(input, u);
+    add_loading(input, solver.sheet(), u);
   u += added;
   solver.check_start(u, velocity);
 }
@@ -205,23 +218,9 @@ void MovingSheet::start(const input::Case &input, const bridge::ContinuumModel &
   if (input.continuum.initial_base == input::ContinuumCase::Base::equilibrium)
     u = equilibrium_displacement(input, model, solver.sheet(), run);
   else
-    add_loading(input, u);
+    add_loading(input, solver.sheet(), u);
   u += added;
   solver.start(u, velocity);
-}
-
-continuum::Sheet::Vector MovingSheet::interpolated(const dealii::Function<2> &field) const
-{
-  const continuum::Sheet &sheet = solver.sheet();
-  continuum::Sheet::Vector values = sheet.make_owned();
-  dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), field, values);
-  return values;
-}
-
-void MovingSheet::add_loading(const input::Case &input, continuum::Sheet::Vector &u) const
-{
-  if (input.continuum.initial_base == input::ContinuumCase::Base::loading)
-    u += interpolated(bridge::AffineDisplacement(input.deformation()));
 }
 
 output::Results motion(const input::Case &input, const bridge::ContinuumModel &model, MovingSheet &sheet,

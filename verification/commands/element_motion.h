@@ -2,8 +2,6 @@
 
 #include <memory>
 
-#include <deal.II/base/function.h>
-
 #include "continuum/dynamic_solver.h"
 #include "verification/bridge/continuum_model.h"
 #include "verification/commands/command.h"
@@ -30,10 +28,6 @@ struct MovingSheet
 
   /// Gives it the initial state of the case.
   void start(const input::Case &input, const bridge::ContinuumModel &model, Run &run);
-
-private:
-  continuum::Sheet::Vector interpolated(const dealii::Function<2> &field) const;
-  void add_loading(const input::Case &input, continuum::Sheet::Vector &u) const;
 };
 
 /// Moves the sheet until the end time. @return results at the end, or where a signal interrupted it

@@ -50,8 +50,9 @@ void ShellCase::declare_memory(Parameters &parameters, const std::string &sectio
                    std::to_string(lattice::max_history_variables) + "; empty: no branches");
   parameters.add(section, "relaxation times", relaxation_times, Magnitude{}, "s",
                  "relaxation times tau_i of the Maxwell branches, in the order of their moduli");
-  parameters.add(section, "plastic modulus", plastic_modulus, MagnitudeOrZero{}, "Pa",
-                 "modulus E of a spring in series with a friction slider, parallel to the bond law; 0: no plastic stretch");
+  parameters.add(
+    section, "plastic modulus", plastic_modulus, MagnitudeOrZero{}, "Pa",
+    "modulus E of a spring in series with a friction slider, parallel to the bond law; 0: no plastic stretch");
   parameters.add(section, "yield stress", yield_stress, MagnitudeOrZero{}, "Pa",
                  "stress Y of the spring beyond which the slider moves; more than 0 with a plastic modulus");
   parameters.add(section, "hardening modulus", hardening, MagnitudeOrZero{}, "Pa",
@@ -76,9 +77,10 @@ void ShellCase::check_memory(Parameters &parameters, const std::string &section)
     parameters.error(section + "/plastic modulus", "bonds have Maxwell branches or plastic stretch, not both; give 0",
                      {moduli});
   if (plastic_modulus > 0. ? yield_stress == 0. : yield_stress > 0. || hardening > 0.)
-    parameters.error(section + (plastic_modulus > 0. ? "/yield stress" : "/plastic modulus"),
-                     "plastic stretch needs both a modulus and a yield stress > 0",
-                     {section + (plastic_modulus > 0. ? "/plastic modulus" : "/yield stress"), section + "/hardening modulus"});
+    parameters.error(
+      section + (plastic_modulus > 0. ? "/yield stress" : "/plastic modulus"),
+      "plastic stretch needs both a modulus and a yield stress > 0",
+      {section + (plastic_modulus > 0. ? "/plastic modulus" : "/yield stress"), section + "/hardening modulus"});
 }
 
 void ShellCase::check_relaxation_times(Parameters &parameters, const std::string &section, const double step,
