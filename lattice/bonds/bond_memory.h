@@ -26,9 +26,10 @@ struct NoMemory
   std::size_t n_mechanisms() const { return 0; }
   double largest_stiffness() const { return 0.; }
   double stored_energy(std::size_t /*mechanism*/, double /*stretch*/, const double * /*variables*/) const { return 0.; }
+  /// Update over one duration.
   struct Step
   {
-    static constexpr bool dissipates_energy = false;
+    static constexpr bool dissipates_energy = false; ///< see above
   };
   Step step(double /*duration*/) const { return {}; }
 };
