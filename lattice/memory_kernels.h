@@ -17,6 +17,16 @@ struct RememberedRow
   std::array<Pointer, max_history_variables> variable; ///< of BondMemory
 };
 
+/// History of the bonds of a kind, one of BondHistory, that start at a place and the places after it.
+template <class Pointer, class Kind>
+RememberedRow<Pointer> remembered_from(Kind &kind, std::size_t place)
+{
+  RememberedRow<Pointer> row{kind.stretch.data() + place, {}};
+  for (std::size_t v = 0; v < kind.variables.size(); ++v)
+    row.variable[v] = kind.variables[v].data() + place;
+  return row;
+}
+
 /// Adds the overstress of the bonds of one kind that start in a row to their `force`, the present stretch being reached
 /// in the duration of `step` since the last update.
 /// @param power what each mechanism dissipates in them is added [W/m], or [J/m] for energies; see BondMemory

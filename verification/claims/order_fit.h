@@ -12,12 +12,13 @@ namespace latcon::claims
 {
 
 /// Wave numbers kd over which orders are fitted; the smallest error is well above round-off.
-inline const std::vector<double> order_kd{0.05, 0.1, 0.2, 0.4};
+inline const std::vector<double> order_kd{0.05, 0.1, 0.2};
 /// Tolerance of such an order.
 inline constexpr double order_tolerance = 0.05;
-/// Why that tolerance.
+/// Why that tolerance. The next order of undamped waves is (kd)^2 / 12 of the error; damping mixes the polarisations, by
+/// the square of its ratio to critical damping, which is 0.33 at kd = 0.4 (damping_orders).
 inline constexpr const char *reason_of_order =
-  "kd from 0.05 to 0.4: the next order is (kd)^2 / 12 of the error at most, which bends the line by less";
+  "kd from 0.05 to 0.2: the next order is (kd)^2 of the error at most, which bends the line by 0.03";
 
 /// Order p of an error that behaves as e = C h^p: slope of the least-squares line through (log h, log e).
 /// @param h sizes, > 0, two different ones at least; @param errors > 0, one for each

@@ -141,6 +141,8 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
             subject.judges_gradient(F));
 }
 
+constexpr double largest_damped_kd = 0.4; // of damping_orders
+
 // Decays of waves in all directions, against Bloch's: their order in kd, and those of the finite elements. Dashpots are
 // scaled, so that the shortest waves are damped to a third of critical, and long ones measurably.
 void damping_orders(const bridge::Subject &subject, const Eigen::Matrix2d &F, const WaveSpeedsOptions &options,
@@ -153,7 +155,7 @@ void damping_orders(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
   for (const WaveDirection &direction : wave_directions(subject.orientation))
   {
     const bridge::WaveMatrices matrices = bridge::bloch_matrices(
-      sheet, material, F, order_kd.back() / subject.spacing * unit_vector(direction, subject.orientation));
+      sheet, material, F, largest_damped_kd / subject.spacing * unit_vector(direction, subject.orientation));
     for (const bridge::PlaneWave &wave : bridge::plane_waves({matrices.stiffness, Eigen::Matrix2d::Zero()}, {1., 0.}))
       ratio.add(0.5 * matrices.damping.norm() / wave.frequency);
   }
@@ -183,7 +185,7 @@ void damping_orders(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
         gradient_order.add(i, std::abs(gradient[w].decay / bloch[w].decay - 1.));
       }
     }
-    const WaveCell cell = wave_cell(subject.spacing, subject.orientation, direction, order_kd.back());
+    const WaveCell cell = wave_cell(subject.spacing, subject.orientation, direction, largest_damped_kd);
     std::array<bridge::PlaneWave, 2> elements{};
     elements[0].decay = elements[1].decay = unknown;
     rows.attempt("finite elements, damped waves",
