@@ -1,7 +1,9 @@
 """Tests of the Debian packages: their dependencies, and that their contents run where they are unpacked."""
 
 
+import json
 import re
+import shlex
 import types
 
 import pytest
@@ -56,6 +58,18 @@ def test_program_runs_where_it_is_unpacked(once):
                  "share/doc/latcon/copyright"):
         assert (root / "usr" / name).is_file(), name
     check_program(root / "usr")
+
+
+def test_shipped_cases_wait_for_no_claims(once):
+    root = FOLDER / "root-verdicts"
+    run("dpkg-deb", "--extract", once.program, root)
+    assert {path.stat().st_mode & 0o777 for path in (root / "usr/share/latcon/verdicts").glob("*.json")} == {0o644}
+    for case, reused in (("quick", True), ("spectrum", True), ("quick --set Loading/strain\ y=1.84", False)):
+        out = FOLDER / "shipped"
+        run(root / "usr/bin/latcon", "fracture", *shlex.split(case), "--set", "Time/end=1 us", "--no-report", "--output-dir", out)
+        record = json.loads((out / "run.json").read_text())
+        assert record["verification"]["reused"] is reused, case
+        assert record["verification_of_program"]["reused"], case
 
 
 def test_python_package_asks_for_what_it_imports_and_runs_the_program(once):

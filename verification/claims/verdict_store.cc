@@ -24,6 +24,7 @@
 #include "support/atomic_file.h"
 #include "support/errors.h"
 #include "verification/claims/claim_inputs.h"
+#include "verification/input/data_folder.h"
 #include "verification/input/sha256.h"
 #include "verification/output/output_file.h"
 #include "verification/output/run_info.h"
@@ -40,20 +41,20 @@ constexpr std::uintmax_t largest_file = 256UL << 20UL; // [byte]; no check leave
 
 constexpr mode_t writable_by_others = S_IWGRP | S_IWOTH;
 
-// Content of a file that only this user can have written; none if it cannot be read.
-std::optional<std::string> content_of_own_file(const std::string &path)
+// Content of a file that only this user, or the administrator, can have written; none if it cannot be read.
+std::optional<std::string> content_of_trusted_file(const std::string &path)
 {
   const int descriptor = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0)
     return {};
   const std::string opened = "/proc/self/fd/" + std::to_string(descriptor);
   struct stat status = {};
-  const bool is_own =
-    fstat(descriptor, &status) == 0 && status.st_uid == geteuid() && (status.st_mode & writable_by_others) == 0;
-  std::ifstream file(is_own ? opened : "", std::ios::binary); // the file whose owner is known, under any name
+  const bool is_trusted = fstat(descriptor, &status) == 0 && (status.st_uid == geteuid() || status.st_uid == 0) &&
+                          (status.st_mode & writable_by_others) == 0;
+  std::ifstream file(is_trusted ? opened : "", std::ios::binary); // the file whose owner is known, under any name
   const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   close(descriptor);
-  if (!is_own)
+  if (!is_trusted)
     throw UnusableVerdicts("it belongs to another user, or others may write it");
   return file ? std::optional(bytes) : std::nullopt;
 }
@@ -74,15 +75,16 @@ std::string stamp(const std::filesystem::path &file)
   return error ? "" : std::to_string(size) + " bytes, " + std::to_string(time.time_since_epoch().count());
 }
 
-// The shared libraries of this process and their stamps. The rest of the program is linked statically.
+// The shared libraries of this process and their stamps. The rest is the program and its module, whose hash is in the key.
 std::map<std::string, std::string> libraries()
 {
   std::map<std::string, std::string> list;
+  static const std::filesystem::path module = input::module_file();
   dl_iterate_phdr(
     [](dl_phdr_info *library, std::size_t, void *stamps)
     {
       const std::filesystem::path file = library->dlpi_name;
-      if (file.has_parent_path()) // neither the program itself nor the vdso
+      if (file.has_parent_path() && file != module) // neither the program itself nor the vdso
         (*static_cast<std::map<std::string, std::string> *>(stamps))[file] = stamp(file);
       return 0;
     },
@@ -249,6 +251,19 @@ std::optional<std::string> VerdictStore::folder_of_user()
   return {};
 }
 
+std::string shipped_verdicts(const VerdictKey &key)
+{
+  try
+  {
+    const std::string text = VerdictStore(input::data_folder() + "/verdicts").read(key).value_or("");
+    return text.empty() || read_verdicts(key, text).results.all_hold() ? text : "";
+  }
+  catch (const UnusableVerdicts &) // of other libraries, say: as if there were none
+  {
+    return "";
+  }
+}
+
 std::string VerdictStore::path(const VerdictKey &key) const
 {
   return folder_ + "/" + key.hash + ".json";
@@ -263,7 +278,7 @@ std::optional<std::string> VerdictStore::read(const VerdictKey &key) const
     return {};
   if (!std::filesystem::is_regular_file(status) || std::filesystem::file_size(name, error) > largest_file)
     throw UnusableVerdicts("it is no file of verdicts");
-  std::optional<std::string> text = content_of_own_file(name);
+  std::optional<std::string> text = content_of_trusted_file(name);
   if (!text)
     throw UnusableVerdicts("it cannot be read");
   if (text->empty())

@@ -61,15 +61,6 @@ constexpr const char *shared_options =
   "Also, with every command (described by latcon --help): --set, --output-dir, --threads, --quiet,\n"
   "--verbose, --resume, --dry-run, --yes.\n";
 
-// Joins words with blanks, so that names with blanks need no quotes.
-std::string joined(const std::vector<std::string> &words)
-{
-  std::string text;
-  for (const std::string &word : words)
-    text += (text.empty() ? "" : " ") + word;
-  return text;
-}
-
 // Describes the studies that a user can give.
 std::string study_choices()
 {
@@ -354,12 +345,12 @@ support::ExitCode run_program(int argc, char **argv)
   entries_command->add_option("SECTION", section, "section whose entries to list; default: all")->type_name("");
   entries_command->callback([&] { command = [&] { return print_entries(section); }; });
 
-  std::vector<std::string> topic;
+  std::vector<std::string> topic; // names with blanks need no quotes
   CLI::App *help_command =
     add_command("help", "help on a command, a section or an entry of a case", "latcon help Fracture/toughening");
   help_command->add_option("TOPIC", topic, "command, section, or entry (Section/Name or its name alone)")
     ->type_name("");
-  help_command->callback([&] { command = [&] { return print_help(app, joined(topic)); }; });
+  help_command->callback([&] { command = [&] { return print_help(app, CLI::detail::join(topic, " ")); }; });
 
   CLI::App *schema_command =
     add_command("schema", "all entries of a case as JSON, with the values of one", "latcon schema quick");
