@@ -1,6 +1,6 @@
 # Run by `cpack` on what it is about to pack: verdicts on the shipped materials, by the packed program, so that their first
-# crack need not wait for its claims (verification/claims/verdict_store.h). Elsewhere they serve as long as the libraries
-# that the program loads are the same files.
+# crack need not wait for its claims (verification/claims/verdict_store.h). Elsewhere they serve where the
+# libraries that the program loads have the same names, as those of a Debian release have.
 file(GLOB programs ${CPACK_TEMPORARY_DIRECTORY}/*${CPACK_PACKAGING_INSTALL_PREFIX}/bin/latcon)
 if(NOT programs)
   message(FATAL_ERROR "No program below ${CPACK_TEMPORARY_DIRECTORY}")

@@ -67,8 +67,10 @@ public:
 [[nodiscard]] std::string verdicts_text(const VerdictKey &key, const Verdicts &verdicts);
 
 /// Parses such a text.
+/// @param libraries_may_be_updated accept libraries of the same names, which a release of Debian updates for security
 /// @throws UnusableVerdicts if the text is damaged, was changed, or belongs to another key
-[[nodiscard]] Verdicts read_verdicts(const VerdictKey &key, const std::string &text);
+[[nodiscard]] Verdicts read_verdicts(const VerdictKey &key, const std::string &text,
+                                     bool libraries_may_be_updated = false);
 
 /// Folder with a file HASH.json per key. Failing verdicts are kept as well, since the same inputs would fail again.
 /// Files are never removed. Any number of processes may read and write at once.
@@ -113,7 +115,7 @@ private:
 };
 
 /// Returns the text of verdicts that were packed with the program, in verdicts/ of its data folder; empty if there are none
-/// for the key, a row of them fails, or they cannot be used here.
+/// for the key, a row of them fails, or a library of the check is not here.
 [[nodiscard]] std::string shipped_verdicts(const VerdictKey &key);
 
 } // namespace latcon::claims

@@ -143,6 +143,25 @@ TEST(Verdicts, DoNotBelieveAWordAgainstItsNumbers)
   EXPECT_EQ(read_verdicts(key, document.dump()).results.verdict(), output::Verdict::fails);
 }
 
+// Shipped verdicts hold with updated libraries, not with others; those of the user hold with the same files.
+TEST(Verdicts, HoldForTheLibrariesOfTheCheck)
+{
+  const VerdictKey key("inputs=1\n");
+  const auto with_library = [&](const char *library, const char *stamp)
+  {
+    auto document = nlohmann::ordered_json::parse(verdicts_text(key, some_verdicts()));
+    document["libraries"][library] = stamp;
+    document.erase("checksum");
+    document["checksum"] = sha256(document.dump());
+    return document.dump();
+  };
+  const std::string updated = with_library("/proc/self/exe", "7 bytes, 7"), missing = with_library("/none.so", "7 bytes, 7");
+  EXPECT_THROW((void)read_verdicts(key, updated), UnusableVerdicts);
+  EXPECT_NO_THROW((void)read_verdicts(key, updated, true));
+  EXPECT_THROW((void)read_verdicts(key, missing), UnusableVerdicts);
+  EXPECT_THROW((void)read_verdicts(key, missing, true), UnusableVerdicts);
+}
+
 TEST(VerdictStore, KeepsOneFileAKey)
 {
   const TemporaryFolder folder;
