@@ -5,8 +5,7 @@ from pathlib import Path
 from ..errors import UnreadableFile
 from ..files import if_present, read_columns, read_json
 from ..quantities import number_text
-from ..study.outcome import RunState
-from ..study.seeds import statistics
+from ..study.outcome import RunState, statistics
 
 
 @dataclass(frozen=True)

@@ -14,13 +14,12 @@ from ..folder import FolderLock, prepare_run, remove, require_in_place, write_fi
 from .batch import write_batch
 from .outcome import RunOutcome, RunState, is_begun, is_finished, read_outcome
 from .output import StudyResults, plan_table, result_table, study_csv, study_json
-from .plan import PlannedRun, Verification, base_text, plan_runs
+from .plan import (PLAN_FILE, PlannedRun, Verification, base_text, parse_shard, plan_difference, plan_runs, plan_text,
+                   read_requested_study, require_folder_of, require_no_refinement, runs_of_shard, verification_of)
 from .pool import run_processes
 from .program import Ended, InputError, Interrupted, Program, Signals
 from .record import Printed, Progress, Record, draw_page, output_is_lost, say_error
 from .refinement import refined_runs
-from .requested import read_requested_study, require_folder_of, require_no_refinement, verification_of
-from .shard import PLAN_FILE, parse_shard, plan_difference, plan_text, runs_of_shard
 from .table import judge_study
 
 # Each shard holds the lock of the study for the time that writing its plan takes [s].

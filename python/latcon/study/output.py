@@ -11,11 +11,10 @@ import textwrap
 from collections.abc import Sequence
 from typing import Any
 
-from .onset import Interval, OnsetFit
-from .outcome import RunOutcome, RunState
+from .outcome import RunOutcome, RunState, SeedStatistics, group_by_run, statistics
 from .plan import PlannedRun, Verification
-from .seeds import SeedStatistics, group_by_run, statistics
 from .program import Program
+from .statistical_tests import Interval, OnsetFit
 from .study_file import Rule, Study
 from .table import ClaimOutcome, RowOutcome
 

@@ -19,27 +19,15 @@ _LAUNCHER = ("OMPI_", "PMIX_", "PMI_")
 def run_processes(n_jobs: int, limit: int, start: Callable[[int], tuple[Sequence[str], str]],
                   ended: Callable[[int, int], None], waiting: Callable[[Sequence[int]], None],
                   stop: Callable[[], bool]) -> bool:
-    """Runs jobs in their order, at most `limit` at a time, and waits for all of them.
+    """Runs jobs in their order, at most `limit` at a time, and waits for all of them; returns whether all ended by themselves.
 
-    Children have no standard input and no variables of MPI launchers, so that each is a separate job of MPI. They ignore SIGINT:
-    this process handles it. They get SIGTERM if this process dies. A failed job does not stop the others.
+    Children have no standard input and no variables of MPI launchers, so that each is a separate job of MPI. They ignore
+    SIGINT: this process handles it. They get SIGTERM if this process dies. A failed job does not stop the others.
 
-    Parameters
-    ----------
-    start
-        Returns command and log file of a job, called just before it starts. The log gets standard output and error.
-    ended
-        Called when a job has ended by itself, with its exit status: 128 + the signal that killed it, or 127 if it could not start.
-    waiting
-        Called several times per second with the running jobs.
-    stop
-        Called equally often; returns True to end early. Then no more jobs start, and running jobs get SIGTERM, and SIGKILL a
-        minute later.
-
-    Returns
-    -------
-    bool
-        Whether all jobs ended by themselves.
+    `start` returns command and log file of a job, called just before it starts; the log gets standard output and error. `ended`
+    is called when a job has ended by itself, with its exit status: 128 + the signal that killed it, or 127 if it could not
+    start. `waiting` is called several times per second with the running jobs, and equally often `stop`, which returns True to
+    end early: then no more jobs start, and running jobs get SIGTERM, and SIGKILL a minute later.
     """
     running: dict[int, subprocess.Popen[bytes] | None] = {}
     following = 0

@@ -94,10 +94,7 @@ def read_input(path: str) -> tuple[bytes, str]:
 class Program:
     """The program: facts about it and about the entries of a case, and ``latcon resolve``, which answers questions about cases.
 
-    Parameters
-    ----------
-    options
-        Options of the command line.
+    `options` are those of the command line.
     """
 
     def __init__(self, options: Mapping[str, Any]) -> None:
@@ -117,12 +114,8 @@ class Program:
         self.facts: dict[str, Any] = facts["record"] | {"command_line": options["arguments"]}
 
     def ask(self, **question: Any) -> Any:
-        """Returns the answer to a question (``latcon resolve``).
-
-        Raises
-        ------
-        InputError
-            With the problems of a case, or if the machine has too little memory.
+        """Returns the answer to a question (``latcon resolve``); raises InputError with the problems of a case, or if the
+        machine has too little memory.
         """
         assert self._resolver.stdin
         self._resolver.stdin.write(json.dumps(question).encode("ascii") + b"\n")

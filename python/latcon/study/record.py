@@ -53,10 +53,7 @@ def json_text(document: Any, indent: int = 2) -> str:
 class Record:
     """Locked output directory of a study; `run.json` has the exit code however the study ends.
 
-    Parameters
-    ----------
-    resume
-        Whether earlier files stay; otherwise they are moved to a subfolder.
+    With `resume` earlier files stay; otherwise they are moved to a subfolder.
     """
 
     def __init__(self, program: Program, printed: Printed, directory: str, options: Mapping[str, Any], resume: bool) -> None:
@@ -130,12 +127,8 @@ class Record:
         return exit_code
 
     def verify(self, program: Program, case: str, on_continuum: bool) -> None:
-        """Checks the claims that cracks of a case wait for, in a folder of their own, and takes over what is found.
-
-        Raises
-        ------
-        Ended
-            If one does not hold.
+        """Checks the claims that cracks of a case wait for, in a folder of their own, and takes over what is found. Raises
+        Ended if one does not hold.
         """
         folder = f"{self.directory}/.latcon-gate"
         shutil.rmtree(folder, ignore_errors=True)  # of a killed study

@@ -15,19 +15,11 @@ from .sweep import MAX_NAME_LENGTH, combination_name, plain_number
 def refined_runs(study: Study, plan: Sequence[PlannedRun], outcomes: Sequence[RunOutcome], level: int) -> list[StudyRun]:
     """Returns the runs half way between neighbours of a swept grid with different patterns.
 
-    They bracket the boundary between two patterns at half the distance. Neighbours are points at the spacing of this level along
-    one swept entry, with the same values of the others: the spacing of the grid for level 1, half of it for level 2, and so on;
-    values between those of the grid are interpolated. Two points differ unless all seeds of both have the same pattern, where
-    ``undecided`` is a pattern. A point without a measured seed differs from none.
-
-    Parameters
-    ----------
-    study
-        Study with a sweep whose values are numbers, and with the runs of the earlier levels.
-    plan, outcomes
-        Runs with a seed each, and their outcomes in the same order.
-    level
-        From 1.
+    They bracket the boundary between two patterns at half the distance. Neighbours are points at the spacing of this level,
+    from 1, along one swept entry, with the same values of the others: the spacing of the grid for level 1, half of it for level
+    2, and so on; values between those of the grid are interpolated. Two points differ unless all seeds of both have the same
+    pattern, where ``undecided`` is a pattern. A point without a measured seed differs from none. The values of the sweep are
+    numbers; the study has the runs of the earlier levels, with a seed each in `plan`, and `outcomes` in the same order.
     """
     swept = {run.name: run for run in study.runs if run.is_swept}
     planned = {run.run: run for run in plan if run.run in swept}

@@ -10,12 +10,8 @@ from .program import InputError, Program, printable
 
 
 def parse_json(file: str, text: bytes) -> dict[str, Any]:
-    """Parses a JSON object without repeated keys.
-
-    Raises
-    ------
-    InputError
-        If it is not JSON, not an object, nested deeper than 64 levels, or if a key is repeated.
+    """Parses a JSON object without repeated keys; raises InputError if it is not JSON, not an object, nested deeper than 64
+    levels, or if a key is repeated.
     """
     if b"\0" in text:
         raise InputError(f"{file}:{1 + text[:text.index(0)].count(10)}: not a text file: it holds zero bytes")

@@ -98,20 +98,10 @@ class Study:
 
 
 def read_study(program: Program, path: str, quick: bool, text: bytes) -> Study:
-    """Reads a study.
+    """Reads a study, the content of a file whose folder the name of its base case is relative to.
 
-    Parameters
-    ----------
-    path
-        Name of the file; the base case is relative to its folder.
-    text
-        Content of the file.
-
-    Raises
-    ------
-    InputError
-        With all problems and their positions: unknown or missing keys, values of another type or out of range, unknown runs,
-        quantities and entries.
+    Raises InputError with all problems and their positions: unknown or missing keys, values of another type or out of range,
+    unknown runs, quantities and entries.
     """
     return _Reader(program, path, quick).read(text)
 

@@ -36,12 +36,8 @@ class Sweep:
 
 
 def parse_sweep(program: Program, text: str) -> Sweep:
-    """Parses ``Section/Name=START:STOP:COUNT``, both ends included, or ``Section/Name=VALUE,VALUE,...``.
-
-    Raises
-    ------
-    InputError
-        Names the wrong part.
+    """Parses ``Section/Name=START:STOP:COUNT``, both ends included, or ``Section/Name=VALUE,VALUE,...``; raises InputError that
+    names the wrong part.
     """
     def refuse(reason: str) -> NoReturn:
         raise InputError(f"sweep '{printable(text)}': {reason}")
@@ -139,11 +135,7 @@ def combinations(sweeps: Sequence[Sweep], n_seeds: int) -> dict[str, dict[str, s
     """Returns all combinations of values by their names; values of the last sweep vary fastest.
 
     A name that is too long, or that an earlier combination has, is cut, and ends in 16 digits of the SHA-256 of the settings.
-
-    Raises
-    ------
-    InputError
-        For an entry that is swept twice, or more than 100,000 runs.
+    Raises InputError for an entry that is swept twice, or more than 100,000 runs.
     """
     entries = [sweep.entry for sweep in sweeps]
     for i, entry in enumerate(entries):
