@@ -42,13 +42,7 @@ class _Crack:
 
 
 def compare_cracks(program: Program, printed: Printed, options: Mapping[str, Any]) -> int:
-    """Compares the cracks in two output directories. Returns the exit code.
-
-    Raises
-    ------
-    InputError
-        If a file is missing or damaged.
-    """
+    """Compares the cracks in two output directories. Returns the exit code; raises InputError if a file is missing or damaged."""
     directory = options["output_dir"]
     try:
         cracks = [_read_crack(program, options[side]) for side in SIDES]

@@ -124,10 +124,7 @@ class Frames(Sequence[Frame]):
 def read_frame(path: pathlib.Path, time: float, only: Collection[str] | None = None) -> Frame:
     """Reads a frame of a lattice, a `.vtp` file, or of a continuum, also `.vtu`; `only`: the fields to read, None for all.
 
-    Raises
-    ------
-    UnreadableFile
-        If the file is missing or damaged, or is not a frame.
+    Raises UnreadableFile if the file is missing or damaged, or is not a frame.
     """
     sheet = read_vtk(path, _READERS.get(path.suffix, "vtkXMLPolyDataReader"), only)
     if sheet.GetNumberOfPoints() == 0:  # VTK's result for a damaged file
@@ -213,18 +210,9 @@ def _spatial(values: Field) -> Field:
 def read_near_tip(path: pathlib.Path) -> xarray.Dataset:
     """Reads the mean fields around the tip, `near_tip.vti` or `near_tip_folded.vti`.
 
-    Returns
-    -------
-    xarray.Dataset
-        Fields on the dimensions ``Y``, ``X`` (undeformed, relative to the tip [m]), vectors also on ``i``, tensors on ``i``,
-        ``J`` (current index first), each with its unit in ``attrs["units"]``. ``attrs["samples"]`` is the number of samples.
-
-    Raises
-    ------
-    UnreadableFile
-        If the file is missing or damaged.
-    LatconError
-        If xarray is not installed.
+    The fields have the dimensions ``Y``, ``X`` (undeformed, relative to the tip [m]), vectors also ``i``, tensors ``i``, ``J``
+    (current index first), and each its unit in ``attrs["units"]``. ``attrs["samples"]`` is the number of samples. Raises
+    UnreadableFile if the file is missing or damaged, LatconError if xarray is not installed.
     """
     library = optional_package("xarray", "fields near the tip need", "xarray (Debian: python3-xarray)")
     X, Y, fields, units, samples = read_image(path)
@@ -240,12 +228,8 @@ def read_near_tip(path: pathlib.Path) -> xarray.Dataset:
 
 
 def read_image(path: pathlib.Path) -> tuple[Floats, Floats, dict[str, Any], dict[str, str], int | None]:
-    """Reads mean fields around the tip: X, Y, fields by name on (Y, X), their units, number of samples.
-
-    Raises
-    ------
-    UnreadableFile
-        If the file is missing or damaged.
+    """Reads mean fields around the tip: X, Y, fields by name on (Y, X), their units, number of samples; raises UnreadableFile
+    if the file is missing or damaged.
     """
     image = read_vtk(path, "vtkXMLImageDataReader")
     columns, rows, _ = image.GetDimensions()

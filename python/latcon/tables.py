@@ -18,20 +18,9 @@ _LONGEST_CORRELATION = 0.9
 def table_values(folder: str, spacing: float, begin: float, end: float) -> dict[str, float]:
     """Numbers of the path between two X, and energies per area of crack between the first and the last rows of energies there.
 
-    Parameters
-    ----------
-    folder
-        Output directory of a crack.
-    spacing
-        d of the lattice [m].
-    begin, end
-        Window of the measurement, undeformed [m].
-
-    Returns
-    -------
-    dict of float
-        ``path_rms`` [m], ``path_growth`` [1/m] and its uncertainty, ``viscous_per_area`` and ``broken_per_area`` [J/m^2]; those that can
-        be measured.
+    `folder` is the output directory of a crack, `spacing` d of the lattice [m], `begin` and `end` the window of the
+    measurement, undeformed [m]. Returns ``path_rms`` [m], ``path_growth`` [1/m] and its uncertainty, ``viscous_per_area`` and
+    ``broken_per_area`` [J/m^2]; those that can be measured.
     """
     try:
         tip = read_columns(pathlib.Path(folder, "crack.csv"), ("t", "X", "Y"))
@@ -54,15 +43,12 @@ def table_values(folder: str, spacing: float, begin: float, end: float) -> dict[
 
 
 def path_growth(X: ArrayLike, Y: ArrayLike, spacing: float) -> tuple[float, float] | None:
-    """Fits exp(s X), or exp(s X) (a cos k X + b sin k X), to a path about the middle of the sheet, as a linear instability has it.
+    """Fits exp(s X), or exp(s X) (a cos k X + b sin k X), to a path about the middle of the sheet, as a linear instability has
+    it.
 
-    Of the two the one with the higher Bayesian evidence (BIC) is taken. A path that returns to the middle has s < 0.
-
-    Returns
-    -------
-    tuple or None
-        s and its standard deviation [1/m], that of least squares whose residuals are correlated from column to column. None for a
-        path of fewer than 10 columns of 2 d, and for one that stays on the middle.
+    Of the two the one with the higher Bayesian evidence (BIC) is taken. A path that returns to the middle has s < 0. Returns s
+    and its standard deviation [1/m], that of least squares whose residuals are correlated from column to column; None for a
+    path of fewer than 10 columns of 2 d, and for one that stays on the middle.
     """
     from scipy.optimize import least_squares
     x, y = np.asarray(X, float) / spacing, np.asarray(Y, float) / spacing

@@ -13,8 +13,7 @@ import pandas as pd
 from ..case import Case
 from ..errors import LatconError
 from ..frames import Floats
-from .local_model import PRIOR, LocalModel, fit_local_model
-from .misfit import Table, tabulate
+from .misfit import PRIOR, LocalModel, Table, fit_local_model, tabulate
 from .problem import Axis, Problem
 from .record import Evaluation
 

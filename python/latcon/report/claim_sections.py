@@ -53,7 +53,7 @@ def shared_rows(runs):
 def claim_section(name, entries, runs, plots, texts):
     """Contents of the section of one claim: a line that unfolds, open if the claim fails; plots; failing rows, and the others,
     which are folded if there are many."""
-    tally = tally_of(None, name, [check for check, _ in entries])
+    tally = tally_of(name, [check for check, _ in entries])
     counts = ", ".join(f"{tally.count[v]} {plural(tally.count[v], one, many)}"
                        for v, one, many in (("fails", "fails", "fail"), ("holds", "holds", "hold"),
                                             ("reported", "reported", "reported")) if tally.count[v])
