@@ -45,6 +45,11 @@ class Evaluation:
         """``done`` if all runs are, otherwise the end of the first that is not."""
         return next((outcome.ended for outcome in self.outcomes if outcome.ended != "done"), "done")
 
+    @property
+    def message(self) -> str:
+        """Its message; empty if all runs are done."""
+        return next((outcome.message for outcome in self.outcomes if outcome.ended != "done"), "")
+
 
 class Record:
     """Directory of a fit: the problem, and the evaluated points so far.

@@ -57,7 +57,8 @@ def comparisons(run):
         if check.claim != "fracture" or check.theory is None:
             continue
         scale, unit = shown_unit(check.unit)
-        uncertainty = uncertainty_of(check.quantity, run.crack)
+        name = NAMES.get(check.quantity)
+        uncertainty = run.crack[f"{name}_uncertainty"] if name and run.crack is not None else None
         measured = check.continuum if check.lattice is None else check.lattice
         result.append(Comparison(run, check.quantity, unit or "1", *(
             None if value is None else scale * value for value in (check.theory, measured, uncertainty)), check))
@@ -67,11 +68,6 @@ def comparisons(run):
 # Rows of the claim "fracture", and their names in crack.json.
 NAMES = {"Lagrangian crack speed": "speed_lagrangian", "laboratory crack speed": "speed_laboratory",
          "wavelength, undeformed": "wavelength", "amplitude, undeformed": "amplitude"}
-
-
-def uncertainty_of(quantity, crack):
-    """Uncertainty that crack.json gives for the quantity of a row; None if there is none."""
-    return crack[f"{NAMES[quantity]}_uncertainty"] if crack is not None and quantity in NAMES else None
 
 
 def unpublished(run):

@@ -2,11 +2,10 @@
 from __future__ import annotations
 
 import contextlib
-import csv
-import io
 import json
 import math
 import os
+import pathlib
 import resource
 import select
 import shutil
@@ -17,11 +16,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..errors import PACKAGES_MISSING, CLAIM_FAILED, DONE, INTERRUPTED
+from ..files import read_json, read_text
 from ..folder import FolderLock, add_to_list, archive, is_listed, write_atomically, write_file
 from ..program import page_command
 from .program import Ended, Program
 from .pool import end_with_parent, environment_of_children
-from .output import shortest
+from .output import csv_text
 
 
 class Printed:
@@ -109,14 +109,9 @@ class Record:
         verdicts = {claim["verdict"] for claim in claims}
         verdict = next((word for word in ("fails", "holds") if word in verdicts), "reported")
         write_file(f"{self.directory}/results.json", json_text({"claims": claims, "verdict": verdict}))
-        table = io.StringIO()
-        writer = csv.writer(table, lineterminator="\n")
-        writer.writerow(["claim", "quantity", "unit", "lattice", "continuum", "theory", "error", "tolerance", "verdict", "reason",
-                         "gate", "kind"])
-        for claim in claims:
-            writer.writerow(["false" if value is False else shortest(value) if isinstance(value, float) else value
-                             for value in claim.values()])
-        write_file(f"{self.directory}/results.csv", table.getvalue())
+        write_file(f"{self.directory}/results.csv", csv_text(
+            ["claim", "quantity", "unit", "lattice", "continuum", "theory", "error", "tolerance", "verdict", "reason", "gate", "kind"],
+            [["false" if value is False else value for value in claim.values()] for claim in claims]))
         if exit_code == DONE and verdict == "fails":
             exit_code = CLAIM_FAILED
         self.add(verdict=verdict, failed_rows={f"{claim['claim']}: {claim['quantity']}": "claim" for claim in claims
@@ -151,12 +146,10 @@ class Record:
         self._printed.print(printed.decode("utf-8", "surrogateescape"))
         if child.returncode not in (DONE, CLAIM_FAILED):
             raise Ended(max(child.returncode, 1))
-        with open(f"{folder}/run.json", encoding="utf-8") as file:
-            found = json.load(file)
+        found = read_json(pathlib.Path(folder, "run.json"))
         self.add(**{key: found[key] for key in ("verification", "verification_of_program", "failed_rows", "verdict") if key in found})
         self._document["wall_time_s"] |= found["wall_time_s"]
-        with open(f"{folder}/log.txt", encoding="utf-8") as file:
-            message = file.read().partition("\nlatcon: ")[2]
+        message = read_text(pathlib.Path(folder, "log.txt")).partition("\nlatcon: ")[2]
         for name in os.listdir(folder):
             if name not in ("run.json", "log.txt", "base.prm") and not name.startswith("."):
                 add_to_list(self.directory, [name])
@@ -198,13 +191,9 @@ def draw_page(kind: str, directory: str, page: str, repeat: str) -> bool:
 
 def output_is_lost(printed: Printed) -> bool:
     """Whether standard output is closed or full; a reader that closed its end of a pipe loses nothing."""
-    return not printed.is_complete and not any(event & select.POLLERR for _, event in _polled())
-
-
-def _polled() -> list[tuple[int, int]]:
     poll = select.poll()
     poll.register(1, 0)
-    return poll.poll(0)
+    return not printed.is_complete and not any(event & select.POLLERR for _, event in poll.poll(0))
 
 
 class Progress:
