@@ -22,27 +22,6 @@ MOST_LEFT_OUT = 20  # names of runs that the quick version omits
 LARGEST_PICTURE = 400_000  # [bytes] per picture of a run, since the page contains all of them
 
 
-def draw_pictures(study):
-    """Draws all pictures for which the runs have data; see contents() for the result."""
-    folder = study.folder / "pictures"
-    folder.mkdir(exist_ok=True)
-    drawn = {"paths": {}, "sweeps": {}, "speeds": None, "runs": []}
-    for number, claim in enumerate(study.claims):
-        names = list(dict.fromkeys(name for row in claim["rows"] for name in row["runs"] if name in study.runs))
-        png = folder / f"paths-{number + 1}.png"
-        if draw_paths(study, names, png):
-            drawn["paths"][number] = png
-        drawn["sweeps"][number] = draw_sweeps(study, number, claim, folder)
-    drawn["overview"] = draw_overview(study, folder)
-    shown = [name for name in study.document["pictures"] if name in study.runs]
-    if draw_speeds(study, folder / "speeds.png"):
-        drawn["speeds"] = folder / "speeds.png"
-    for name in shown:
-        if seed := next((seed for seed in study.runs[name][2] if seed.is_measured), None):
-            drawn["runs"].append((name, seed.seed, draw_run(seed, folder, LARGEST_PICTURE)))
-    return drawn
-
-
 def draw_overview(study, folder):
     """Draws the map over two swept entries, or the sweep along one unless a claim shows it: [(caption, PNG), ...]."""
     png = folder / "map.png"
@@ -102,30 +81,36 @@ def draw_run(seed, folder, most, kinds=tuple(RUN_PICTURES)):
 def study_page(folder):
     """Draws the pictures and writes the page. Returns its path."""
     study = read_study(folder)
-    write_page(folder / "study.html", "study.html", **contents(study, draw_pictures(study)))
+    write_page(folder / "study.html", "study.html", **contents(study))
     return folder / "study.html"
 
 
-def contents(study, pictures):
-    """Values of the template.
-
-    pictures: {"overview": [(caption, PNG), ...], "paths": {claim number: PNG},
-    "sweeps": {claim number: [(caption, PNG), ...]}, "speeds": PNG or None,
-    "runs": [(run, seed, {kind of RUN_PICTURES: PNG}), ...]}
-    """
+def contents(study):
+    """Draws all pictures for which the runs have data, and returns the values of the template."""
+    folder = study.folder / "pictures"
+    folder.mkdir(exist_ok=True)
+    claims = []
+    for number, claim in enumerate(study.claims):
+        names = list(dict.fromkeys(name for row in claim["rows"] for name in row["runs"] if name in study.runs))
+        paths = folder / f"paths-{number + 1}.png"
+        claims.append({**claim, "rows": [claim_row(judged) for judged in claim["rows"]],
+                       "sweeps": draw_sweeps(study, number, claim, folder), "paths": paths if draw_paths(study, names, paths) else None})
+    shown = [(name, next((seed for seed in study.runs[name][2] if seed.is_measured), None))
+             for name in study.document["pictures"] if name in study.runs]
+    speeds = folder / "speeds.png"
     return {
         "title": study.document["title"], "with_viewer": False, "with_plots": False,
-        "facts": facts(study), "result": banner(study), "overview": pictures["overview"],
+        "facts": facts(study), "result": banner(study), "overview": draw_overview(study, folder),
         "summary": [row(CLAIM_KINDS[claim["verdict"]],
                         [("words", Markup('<a href="#claim-{}">{}</a>').format(number, claim["claim"])),
                          *(("number", str(count)) for count in counts(claim["rows"]).values())], claim["verdict"])
                     for number, claim in enumerate(study.claims)],
-        "claims": [{**claim, "rows": [claim_row(r) for r in claim["rows"]], "sweeps": pictures["sweeps"].get(number, []),
-                    "paths": pictures["paths"].get(number)} for number, claim in enumerate(study.claims)],
-        "speeds": pictures["speeds"], "pictures": pictures["runs"], "captions": RUN_PICTURES,
+        "claims": claims, "speeds": speeds if draw_speeds(study, speeds) else None,
+        "pictures": [(name, seed.seed, draw_run(seed, folder, LARGEST_PICTURE)) for name, seed in shown if seed],
+        "captions": RUN_PICTURES,
         "runs": [("", [("short", name), ("words", about),
-                            ("words", "\n".join(f"{key} = {value}" for key, value in changed.items()) or "–"),
-                            ("short", ", ".join(str(seed.seed) for seed in seeds))])
+                       ("words", "\n".join(f"{key} = {value}" for key, value in changed.items()) or "–"),
+                       ("short", ", ".join(str(seed.seed) for seed in seeds))])
                  for name, (about, changed, seeds) in study.runs.items()],
         "measured": measured_table(study, MEASURED), "near_tip": measured_table(study, NEAR_TIP), "settings": settings(study.document),
     }

@@ -3,7 +3,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import UnreadableFile
-from ..files import if_present, read_columns, read_json
+from ..files import if_present, read_json
 from ..quantities import number_text
 from ..study.outcome import RunOutcome, RunState, statistics
 

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NoReturn
 
-from ..schema import SEED_ENTRY, Entry
+from ..schema import SEED_ENTRY
 from .program import InputError, Program, printable
 
 MAX_RUNS = 100000
