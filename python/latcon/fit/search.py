@@ -44,7 +44,10 @@ def propose(table: Table, parameters: int, first: int, count: int, evaluations: 
     """
     sobol = min(evaluations, max(2 * parameters + 1, evaluations // 4))
     tpe = max(sobol, evaluations // 2)
-    points = [("sobol", point) for point in _sobol(parameters, seed, sobol)[first:first + count]]
+    qmc = optional_package("scipy.stats.qmc", "fits need", "scipy (Debian: python3-scipy)")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # a number of points that is no power of two
+        points = [("sobol", point) for point in qmc.Sobol(parameters, seed=seed).random(sobol)[first:first + count]]
     if left := min(count, tpe - first) - len(points):
         if left > 0:
             points += [("tpe", point) for point in _tpe(table, parameters, first, left, seed)]
@@ -56,13 +59,6 @@ def propose(table: Table, parameters: int, first: int, count: int, evaluations: 
         else:
             points += [("local", point) for point in _around(model, first, left, (first - tpe) / max(1, count), seed)]
     return points
-
-
-def _sobol(parameters: int, seed: int, count: int) -> list[Floats]:
-    qmc = optional_package("scipy.stats.qmc", "fits need", "scipy (Debian: python3-scipy)")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # a number of points that is no power of two
-        return list(qmc.Sobol(parameters, seed=seed).random(count))
 
 
 def _tpe(table: Table, parameters: int, first: int, count: int, seed: int) -> list[Floats]:

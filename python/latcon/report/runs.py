@@ -12,6 +12,9 @@ from .raster import Mesh
 
 # A folder with any of these files is the output directory of a run, complete or interrupted.
 SIGNS_OF_A_RUN = ("results.json", "run.json", "crack.json", "crack.csv", "lattice.pvd")
+# Numbers of crack.json that the page shows, None where they were not measured.
+CRACK_NUMBERS = (*(name + ending for name in ("speed_lagrangian", "speed_laboratory", "wavelength", "amplitude")
+                   for ending in ("", "_uncertainty")), "window_begin", "window_end")
 # First columns of energy.csv of an equilibrium and of a motion of the continuum.
 CONTINUUM_ENERGIES = ("load_factor,", "t,elastic,kinetic,micro_inertia,")
 
@@ -153,8 +156,8 @@ def read_run(folder):
         has_results=rows is not None,
         info=info,
         case_text=if_present(read_text, folder / "case.prm"),
-        crack=read_crack(folder / "crack.json"),
-        near_tip=read_near_tip(folder / "near_tip.json"),
+        crack=read_numbers(folder / "crack.json", "pattern", CRACK_NUMBERS),
+        near_tip=read_numbers(folder / "near_tip.json", "reason"),
         tip=if_present(read_columns, folder / "crack.csv", ("t", "X", "Y")),
         broken=if_present(read_columns, folder / "broken_bonds.csv", ("t", "site", "other_site", "X", "Y")),
         energy=read_energy(folder / "energy.csv"),
@@ -190,28 +193,15 @@ def read_claims(path):
         raise UnreadableFile(path, f"holds no list of claims with name, title and statement: {error!r}") from error
 
 
-def read_crack(path):
-    """Reads crack.json and checks its numbers; None if there is none."""
-    crack = if_present(read_json, path)
-    if crack is None:
+def read_numbers(path, text, names=None):
+    """Reads crack.json or near_tip.json, which must have a text, and checks some numbers or all; None if there is none."""
+    found = if_present(read_json, path)
+    if found is None:
         return None
-    if not isinstance(crack.get("pattern"), str):
-        raise UnreadableFile(path, '"pattern" is missing')
-    measured = ("speed_lagrangian", "speed_laboratory", "wavelength", "amplitude")
-    for key in measured + tuple(f"{name}_uncertainty" for name in measured) + ("window_begin", "window_end"):
-        crack[key] = checked_number(path, key, crack.get(key))
-    return crack
-
-
-def read_near_tip(path):
-    """Reads near_tip.json and checks its numbers; None if there is none."""
-    near_tip = if_present(read_json, path)
-    if near_tip is None:
-        return None
-    if not isinstance(near_tip.get("reason"), str):
-        raise UnreadableFile(path, '"reason" is missing')
-    return {key: value if key in ("reason", "units") else checked_number(path, key, value)
-            for key, value in near_tip.items()}
+    if not isinstance(found.get(text), str):
+        raise UnreadableFile(path, f'"{text}" is missing')
+    names = [name for name in found if name not in (text, "units")] if names is None else names
+    return found | {name: checked_number(path, name, found.get(name)) for name in names}
 
 
 FIELDS = ("displacement", "stretch", "velocity", "cauchy_stress", "damage", "site")  # that pictures show

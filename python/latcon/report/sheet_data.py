@@ -92,7 +92,10 @@ def contents(run, motion, frames):
         "ranges": {"stretch": [float(low), max(float(breaking or high), float(low) + 1e-3)],
                    "speed": [0.0, float(max(np.percentile(speed, 99) for speed in speeds)) or 1.0],
                    "damage": [0.0, 1.0]},
-        "colours": {name: colour_table(*parts) for name, parts in COLOURS.items()},
+        # Tables of 256 colours (RGB), in base64.
+        "colours": {name: base64.b64encode(np.round(255 * matplotlib.colormaps[colours](np.linspace(low, high, 256))[:, :3])
+                                           .astype(np.uint8).tobytes()).decode("ascii")
+                    for name, (colours, low, high) in COLOURS.items()},
     }
 
 
@@ -117,12 +120,6 @@ def tip_points(tip, times, reference):
     rows = np.maximum(np.searchsorted(tip["t"], times, side="right") - 1, 0)
     places = np.column_stack((tip["X"], tip["Y"]))[rows]
     return [int(((reference - place) ** 2).sum(axis=1).argmin()) for place in places]
-
-
-def colour_table(name, low, high):
-    """Table of 256 colours (RGB), in base64."""
-    colours = np.round(255 * matplotlib.colormaps[name](np.linspace(low, high, 256))[:, :3]).astype(np.uint8)
-    return base64.b64encode(colours.tobytes()).decode("ascii")
 
 
 def packed(integers):

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Callable, Sequence
+from typing import Any
 
 _POLL_INTERVAL = 0.02  # [s]
 _PATIENCE = 60.0  # [s] until a child that does not end is killed
@@ -54,30 +55,25 @@ def run_processes(n_jobs: int, limit: int, start: Callable[[int], tuple[Sequence
         _end([child for child in running.values() if child is not None])
 
 
-def environment_of_children() -> dict[str, str]:
-    """Returns the variables of this process without those that would make a child a rank of another job."""
-    return {name: value for name, value in os.environ.items()
-            if not name.startswith(_LAUNCHER) and name not in ("FLUX_JOB_ID", "LATCON_PROGRESS", "PYTHONPATH")}
-
-
-def end_with_parent(number: int) -> Callable[[], None]:
-    """Returns what a child has to do before it starts, so that it gets a signal when this process dies."""
+def start_child(command: Sequence[str], last_signal: int, **streams: Any) -> subprocess.Popen[bytes]:
+    """Starts a child, which gets a signal when this process dies, without the variables that would make it a rank of another job."""
     parent, libc = os.getpid(), ctypes.CDLL(None)
 
     def prepare() -> None:
-        libc.prctl(_PR_SET_PDEATHSIG, number)
+        libc.prctl(_PR_SET_PDEATHSIG, last_signal)
         if os.getppid() != parent:
             os._exit(_NOT_STARTED)
         signal.signal(signal.SIGINT, signal.SIG_IGN)
 
-    return prepare
+    environment = {name: value for name, value in os.environ.items()
+                   if not name.startswith(_LAUNCHER) and name not in ("FLUX_JOB_ID", "LATCON_PROGRESS", "PYTHONPATH")}
+    return subprocess.Popen(command, env=environment, preexec_fn=prepare, **streams)
 
 
 def _start(command: Sequence[str], log: str) -> subprocess.Popen[bytes] | None:
     output = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW, 0o666)
     try:
-        return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=output, env=environment_of_children(),
-                                preexec_fn=end_with_parent(signal.SIGTERM))
+        return start_child(command, signal.SIGTERM, stdin=subprocess.DEVNULL, stdout=output, stderr=output)
     except FileNotFoundError:
         return None
     finally:

@@ -20,7 +20,7 @@ from ..files import read_json, read_text
 from ..folder import FolderLock, add_to_list, archive, is_listed, write_atomically, write_file
 from ..program import page_command
 from .program import Ended, Program
-from .pool import end_with_parent, environment_of_children
+from .pool import start_child
 from .output import csv_text
 
 
@@ -133,8 +133,7 @@ class Record:
         words = [program.executable, "gate", f"{folder}/base.prm", "--side", "continuum" if on_continuum else "lattice",
                  "--output-dir", folder, *["--quiet"] * options["quiet"]]
         words += ["--threads", str(options["threads"])] if options["threads"] else []
-        with subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, env=environment_of_children(),
-                              process_group=0, preexec_fn=end_with_parent(signal.SIGKILL)) as child:
+        with start_child(words, signal.SIGKILL, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, process_group=0) as child:
             try:
                 assert child.stdout
                 printed = child.stdout.read()
