@@ -25,7 +25,7 @@ extensions = ["myst_parser", "nbsphinx", "sphinx.ext.autodoc", "sphinx.ext.mathj
 exclude_patterns = ["pictures", "images"]
 nitpicky = True
 # Types of other packages, aliases that interfaces.md explains, the parts of a fit, and what a started run is made of.
-nitpick_ignore_regex = [("py:.*", r"(?!latcon\.).*|latcon\.fit\.(local_model|problem|record)\..*|latcon\.program\.Process")]
+nitpick_ignore_regex = [("py:.*", r"(?!latcon\.).*|latcon\.fit\.(misfit|problem|record)\..*|latcon\.program\.Process")]
 
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 4

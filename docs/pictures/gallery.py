@@ -23,12 +23,10 @@ from latcon.files import if_present, read_text
 from latcon.folder import write_file
 from latcon.report.animation import draw_animation
 from latcon.report.crack_path import draw_crack_path
-from latcon.report.motion import read_last_frame, read_motion
 from latcon.report.pictures import draw_sheet, shrink
-from latcon.report.runs import has_rows, read_run
+from latcon.report.runs import has_rows, read_last_frame, read_motion, read_run
 from latcon.report.study import draw_run
-from latcon.report.study_plots import draw_sweep, pattern_text
-from latcon.report.study_quantities import asked_quantities, sweeps_of
+from latcon.report.study_plots import asked_quantities, draw_sweep, pattern_text, sweeps_of
 from latcon.report.study_runs import mean_of, read_study, value_text
 
 LARGEST_PICTURE, LARGEST_ANIMATION = 250_000, 1_000_000  # [bytes]

@@ -78,10 +78,8 @@ class Case:
         ----------
         file
             The resolved case, `case.prm`.
-        entries
-            Texts of all entries in SI units by key, from `run.json`.
-        text
-            Content of the file.
+        entries, text
+            Texts of all entries in SI units by key, from `run.json`; content of the file.
         """
         case = cls(file)
         case._known = ResolvedCase({key: _recorded(value) for key, value in entries.items()}, text)

@@ -1,9 +1,7 @@
 """``latcon compare`` of two cracks: quantities, entries of their cases, distance of their paths."""
 from __future__ import annotations
 
-import csv
 import dataclasses
-import io
 import math
 import os
 import pathlib
@@ -18,7 +16,7 @@ from .folder import write_file
 from .frames import Floats
 from .quantities import quantity_text
 from .study.outcome import measured_values, unfit_rows
-from .study.output import shortest
+from .study.output import csv_text
 from .study.program import InputError, Program
 from .study.record import Printed, Record, draw_page, json_text
 
@@ -42,13 +40,7 @@ class _Crack:
 
 
 def compare_cracks(program: Program, printed: Printed, options: Mapping[str, Any]) -> int:
-    """Compares the cracks in two output directories. Returns the exit code.
-
-    Raises
-    ------
-    InputError
-        If a file is missing or damaged.
-    """
+    """Compares the cracks in two output directories. Returns the exit code; raises InputError if a file is missing or damaged."""
     directory = options["output_dir"]
     try:
         cracks = [_read_crack(program, options[side]) for side in SIDES]
@@ -72,11 +64,8 @@ def compare_cracks(program: Program, printed: Printed, options: Mapping[str, Any
                 "entries": entries, "paths": paths and paths | {
                     f"{name}_over_d": paths[name] / cracks[0].spacing for name in ("rms_distance", "largest_distance")}}
     write_file(f"{directory}/compare.json", json_text(document))
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    writer.writerow(["quantity", "unit", *_PARTS])
-    writer.writerows([row["name"], row["unit"], *(shortest(row[part]) for part in _PARTS)] for row in quantities)
-    write_file(f"{directory}/compare.csv", table.getvalue())
+    write_file(f"{directory}/compare.csv", csv_text(
+        ["quantity", "unit", *_PARTS], [[row["name"], row["unit"], *(row[part] for part in _PARTS)] for row in quantities]))
     code = record.end([], DONE)
     is_drawn = not options["no_report"] and draw_page("compare", directory, "compare.html", "repeat the command")
     if not options["quiet"]:

@@ -49,10 +49,6 @@ def optional_package(module: str, purpose: str, package: str) -> Any:
 class _EndOfProgram(BaseException):
     """Message, exit code and output directory of a program that ended with a non-zero exit code."""
 
-    message: str
-    exit_code: int
-    directory: pathlib.Path | None
-
     def __init__(self, message: str, exit_code: int, directory: pathlib.Path | None = None) -> None:
         super().__init__(message)
         self.message = message

@@ -1,4 +1,4 @@
-"""Readers of single files of a run; errors name the file."""
+"""Readers of single files of a run. All raise UnreadableFile if the file is missing or damaged."""
 from __future__ import annotations
 
 import csv
@@ -19,13 +19,7 @@ Result = TypeVar("Result")
 
 
 def read_text(path: pathlib.Path) -> str:
-    """Returns the text of a file.
-
-    Raises
-    ------
-    UnreadableFile
-        If it is missing, cannot be read, or is not UTF-8 text.
-    """
+    """Returns the UTF-8 text of a file."""
     try:
         return path.read_text(encoding="utf-8")
     except OSError as error:
@@ -35,13 +29,7 @@ def read_text(path: pathlib.Path) -> str:
 
 
 def read_json(path: pathlib.Path) -> dict[str, Any]:
-    """Returns the object in a JSON file.
-
-    Raises
-    ------
-    UnreadableFile
-        If it is missing or damaged, or does not contain an object.
-    """
+    """Returns the object in a JSON file."""
     try:
         value = json.loads(read_text(path))
     except ValueError as error:
@@ -52,13 +40,7 @@ def read_json(path: pathlib.Path) -> dict[str, Any]:
 
 
 def read_rows(path: pathlib.Path) -> list[dict[str, Any]]:
-    """Returns the rows of a `results.json`: claim, quantity, unit and verdict; numbers, None where they do not apply.
-
-    Raises
-    ------
-    UnreadableFile
-        If it is missing or damaged.
-    """
+    """Returns the rows of a `results.json`: claim, quantity, unit and verdict; numbers, None where they do not apply."""
     rows = read_json(path).get("claims")
     if not isinstance(rows, list):
         raise UnreadableFile(path, 'the list "claims" is missing')
@@ -88,19 +70,8 @@ def checked_number(path: pathlib.Path, what: str, value: Any) -> float | None:
 
 
 def read_table(path: pathlib.Path, units: Mapping[str, str]) -> pd.DataFrame:
-    """Returns the table in a CSV file of numbers; columns of whole numbers are integers.
-
-    Parameters
-    ----------
-    path
-        The file.
-    units
-        Unit of each column; those of the columns that the file has become ``attrs["units"]``.
-
-    Raises
-    ------
-    UnreadableFile
-        If it is missing, a cell is not a number, or rows differ in length.
+    """Returns the table in a CSV file of numbers; columns of whole numbers are integers. The units of the columns that it has
+    become ``attrs["units"]``.
     """
     import pandas as pd
     columns = read_columns(path, None, finite=False)
@@ -112,19 +83,8 @@ def read_table(path: pathlib.Path, units: Mapping[str, str]) -> pd.DataFrame:
 
 def read_columns(path: pathlib.Path, columns: Sequence[str] | None, texts: Sequence[str] = (), finite: bool = True
                  ) -> dict[str, Any]:
-    """Returns columns of a CSV file as arrays by name; other columns are ignored.
-
-    Parameters
-    ----------
-    columns
-        Columns of numbers, all finite if `finite`; None: all.
-    texts
-        Columns of words.
-
-    Raises
-    ------
-    UnreadableFile
-        If it is missing, lacks a column, or a cell is not such a number.
+    """Returns columns of numbers of a CSV file, None for all, as arrays by name, and columns `texts` of words; other columns
+    are ignored. Damaged is also a file with numbers that are not finite, if `finite`.
     """
     rows = list(csv.reader(read_text(path).splitlines()))
     if not rows:
@@ -155,13 +115,7 @@ def if_present(read: Callable[..., Result], path: pathlib.Path, *arguments: Any,
 
 
 def read_series(path: pathlib.Path) -> list[tuple[float, pathlib.Path]]:
-    """Returns times [s] and files of the frames listed in a `.pvd`.
-
-    Raises
-    ------
-    UnreadableFile
-        If it is missing or damaged.
-    """
+    """Returns times [s] and files of the frames listed in a `.pvd`."""
     try:
         return [(float(frame.attrib["timestep"]), path.parent / frame.attrib["file"])
                 for frame in ElementTree.fromstring(read_text(path)).iter("DataSet")]

@@ -25,15 +25,7 @@ _held: dict[str, FolderLock] = {}  # by absolute path
 class FolderLock:
     """Exclusive lock on an existing folder, that of the program; see support/folder_lock.h.
 
-    Parameters
-    ----------
-    patience
-        Time to wait for another process to end [s].
-
-    Raises
-    ------
-    InputError
-        If another process holds it.
+    Waits for another process to end with `patience` [s]; raises InputError if it still holds the lock then.
     """
 
     def __init__(self, folder: str, patience: float = 1.0) -> None:

@@ -124,12 +124,10 @@ class Frames(Sequence[Frame]):
 def read_frame(path: pathlib.Path, time: float, only: Collection[str] | None = None) -> Frame:
     """Reads a frame of a lattice, a `.vtp` file, or of a continuum, also `.vtu`; `only`: the fields to read, None for all.
 
-    Raises
-    ------
-    UnreadableFile
-        If the file is missing or damaged, or is not a frame.
+    Raises UnreadableFile if the file is missing or damaged, or is not a frame.
     """
     sheet = read_vtk(path, _READERS.get(path.suffix, "vtkXMLPolyDataReader"), only)
+    from vtkmodules.util.numpy_support import vtk_to_numpy
     if sheet.GetNumberOfPoints() == 0:  # VTK's result for a damaged file
         raise UnreadableFile(path, "truncated, damaged, or without sites")
     fields, units = arrays_of(sheet.GetPointData())
@@ -141,7 +139,7 @@ def read_frame(path: pathlib.Path, time: float, only: Collection[str] | None = N
     ends = np.empty((0, 2), dtype=np.int64) if is_grid else _nodes(path, sheet.GetLines())
     sites = sheet.GetNumberOfCells() if len(cells) else sheet.GetNumberOfVerts()  # cell data begin with the vertices
     bond_fields = {name: values[sites:] for name, values in cell_fields.items()}
-    reference = _converter()(sheet.GetPoints().GetData())[:, :2].astype(float)
+    reference = vtk_to_numpy(sheet.GetPoints().GetData())[:, :2].astype(float)
     position, stretch = reference + fields["displacement"], bond_fields.get("stretch", np.empty(0))
     if len(ends) != len(stretch) or not np.isfinite(position).all() or not np.isfinite(stretch).all():
         raise UnreadableFile(path, "damaged: its bonds or positions are inconsistent")
@@ -153,7 +151,8 @@ def read_frame(path: pathlib.Path, time: float, only: Collection[str] | None = N
 def _nodes(path: pathlib.Path, cells: Any) -> NDArray[np.int64]:
     if not (count := cells.GetNumberOfCells()):
         return np.empty((0, 2), dtype=np.int64)
-    connectivity = _converter()(cells.GetConnectivityArray()).astype(np.int64)
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    connectivity = vtk_to_numpy(cells.GetConnectivityArray()).astype(np.int64)
     if len(connectivity) % count:
         raise UnreadableFile(path, "damaged, or with cells of different kinds")
     return connectivity.reshape(count, -1)
@@ -213,18 +212,9 @@ def _spatial(values: Field) -> Field:
 def read_near_tip(path: pathlib.Path) -> xarray.Dataset:
     """Reads the mean fields around the tip, `near_tip.vti` or `near_tip_folded.vti`.
 
-    Returns
-    -------
-    xarray.Dataset
-        Fields on the dimensions ``Y``, ``X`` (undeformed, relative to the tip [m]), vectors also on ``i``, tensors on ``i``,
-        ``J`` (current index first), each with its unit in ``attrs["units"]``. ``attrs["samples"]`` is the number of samples.
-
-    Raises
-    ------
-    UnreadableFile
-        If the file is missing or damaged.
-    LatconError
-        If xarray is not installed.
+    The fields have the dimensions ``Y``, ``X`` (undeformed, relative to the tip [m]), vectors also ``i``, tensors ``i``, ``J``
+    (current index first), and each its unit in ``attrs["units"]``. ``attrs["samples"]`` is the number of samples. Raises
+    UnreadableFile if the file is missing or damaged, LatconError if xarray is not installed.
     """
     library = optional_package("xarray", "fields near the tip need", "xarray (Debian: python3-xarray)")
     X, Y, fields, units, samples = read_image(path)
@@ -240,12 +230,8 @@ def read_near_tip(path: pathlib.Path) -> xarray.Dataset:
 
 
 def read_image(path: pathlib.Path) -> tuple[Floats, Floats, dict[str, Any], dict[str, str], int | None]:
-    """Reads mean fields around the tip: X, Y, fields by name on (Y, X), their units, number of samples.
-
-    Raises
-    ------
-    UnreadableFile
-        If the file is missing or damaged.
+    """Reads mean fields around the tip: X, Y, fields by name on (Y, X), their units, number of samples; raises UnreadableFile
+    if the file is missing or damaged.
     """
     image = read_vtk(path, "vtkXMLImageDataReader")
     columns, rows, _ = image.GetDimensions()
@@ -277,19 +263,14 @@ def read_vtk(path: pathlib.Path, reader_name: str, only: Collection[str] | None 
     return reader.GetOutput()
 
 
-def _converter() -> Any:
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-    return vtk_to_numpy
-
-
 def arrays_of(data: Any) -> tuple[dict[str, Any], dict[str, str]]:
     """Returns arrays by name, with the in-plane components of vectors and tensors, and the units of those that have one."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkDataArray
-    numpy_of = _converter()
     arrays, units = {}, {}
     for index in range(data.GetNumberOfArrays()):
         array = data.GetArray(index)
-        name, values = array.GetName(), numpy_of(array)
+        name, values = array.GetName(), vtk_to_numpy(array)
         if values.ndim == 2 and values.shape[1] == 3:
             values = values[:, :2]
         elif values.ndim == 2 and values.shape[1] == 9:

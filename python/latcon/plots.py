@@ -53,19 +53,10 @@ def draw_sheet(frame: Frame, color: str, ax: matplotlib.axes.Axes | None, **styl
 
 
 def bond_values(frame: Frame, color: str) -> Floats:
-    """Returns the values of a field on the bonds; for a field of the sites, the mean of both ends.
+    """Returns the values of a field on the bonds: ``"FIELD"`` of a scalar, ``"FIELD x"`` of a vector, ``"FIELD xy"`` of a
+    tensor; for a field of the sites, the mean of both ends.
 
-    Parameters
-    ----------
-    frame
-        Frame with bonds.
-    color
-        ``"FIELD"`` of a scalar, ``"FIELD x"`` of a vector, ``"FIELD xy"`` of a tensor.
-
-    Raises
-    ------
-    ValueError
-        If the frame has no bonds or no such field, or if the component does not match the field.
+    Raises ValueError if the frame has no bonds or no such field, or if the component does not match the field.
     """
     if not len(frame.bonds):
         raise ValueError("the frame has no bonds; use a frame of run.frames")

@@ -13,7 +13,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Sequence
-from typing import IO
 
 from .errors import OUTPUT_FAILED, PACKAGES_MISSING, ProgramNotFound, error_of
 
@@ -64,23 +63,13 @@ def find_program() -> pathlib.Path:
 
 
 def ask(*arguments: str) -> str:
-    """Returns the standard output of a short command of the program.
-
-    Raises
-    ------
-    ProgramError
-        If the program ends with an error.
-    """
+    """Returns the standard output of a short command of the program; raises ProgramError if it ends with an error."""
     return _output([find_program(), *arguments])
 
 
 def draw_report(directory: pathlib.Path) -> None:
-    """Draws `report.html` of an output directory, in a process of its own.
-
-    Raises
-    ------
-    ProgramError
-        If that fails; with exit code 5 also if a package is missing.
+    """Draws `report.html` of an output directory, in a process of its own; raises ProgramError if that fails, with exit code 5
+    also if a package is missing.
     """
     _output(page_command("report", directory))
 
@@ -100,24 +89,13 @@ def _output(command: Sequence[str | os.PathLike[str]]) -> str:
 
 
 def run(arguments: Sequence[str], directory: pathlib.Path, progress: Progress) -> None:
-    """Runs a command of the program to its end.
+    """Runs a command of the program to its end; raises ProgramError or Interrupted if its exit code is not 0.
 
-    Ctrl-C sends SIGINT to the program, which writes a checkpoint and all results, and waits for its end; a second Ctrl-C
-    kills it. The program runs in a separate session, so that a signal from the terminal reaches it only once.
+    Ctrl-C sends SIGINT to the program, which writes a checkpoint and all results, and waits for its end; a second Ctrl-C kills
+    it. The program runs in a separate session, so that a signal from the terminal reaches it only once.
 
-    Parameters
-    ----------
-    arguments
-        Command and options.
-    directory
-        Output directory, for error messages.
-    progress
-        True: progress indicator on standard error. False: none. A function: called with each progress line.
-
-    Raises
-    ------
-    ProgramError, Interrupted
-        If the exit code of the program is not 0.
+    `directory` is the output directory, for messages. With `progress` True an indicator is shown on standard error, a function
+    is called with each progress line.
     """
     indicator = progress_indicator(progress)
     job = Process(arguments, directory)
@@ -144,13 +122,7 @@ def interrupt_runs(directory: pathlib.Path) -> None:
 
 
 class Process:
-    """Command of the program that runs in a session of its own.
-
-    Attributes
-    ----------
-    progress : str
-        Last progress line; empty before the first.
-    """
+    """Command of the program that runs in a session of its own; `progress` is its last progress line, empty before the first."""
 
     def __init__(self, arguments: Sequence[str], directory: pathlib.Path) -> None:
         self.directory, self.progress = directory, ""
@@ -196,15 +168,11 @@ class Process:
         lines = _COLOUR.sub("", self._errors.read().decode("utf-8", "replace")).splitlines()
         messages = "\n".join(line.rstrip() for line in lines if line.strip())
         if self.child.returncode != 0:
-            raise error_of(self.child.returncode, _message(messages, _tail(self._output)), self.directory)
+            self._output.seek(max(0, self._output.seek(0, os.SEEK_END) - _TAIL))
+            printed = self._output.read().decode("utf-8", "replace")
+            raise error_of(self.child.returncode, _message(messages, printed), self.directory)
         if messages:
             print(messages, file=sys.stderr)
-
-
-def _tail(output: IO[bytes]) -> str:
-    size = output.seek(0, os.SEEK_END)
-    output.seek(max(0, size - _TAIL))
-    return output.read().decode("utf-8", "replace")
 
 
 def _message(errors: str, output: str) -> str:
@@ -214,21 +182,18 @@ def _message(errors: str, output: str) -> str:
 
 
 class _Shower:
-    """Progress indicator; the base class shows nothing."""
+    """Progress indicator that calls a function with each line, or shows nothing."""
 
-    def line(self, text: str, seconds_left: float | None = None) -> None:
-        """Shows a progress line."""
-
-    def close(self) -> None:
-        """Ends the indicator."""
-
-
-class _Function(_Shower):
-    def __init__(self, function: Callable[[str], None]) -> None:
+    def __init__(self, function: Callable[[str], None] | None = None) -> None:
         self._function = function
 
     def line(self, text: str, seconds_left: float | None = None) -> None:
-        self._function(text)
+        """Shows a progress line."""
+        if self._function:
+            self._function(text)
+
+    def close(self) -> None:
+        """Ends the indicator."""
 
 
 class _Stream(_Shower):
@@ -273,7 +238,7 @@ class _Bar(_Shower):
 def progress_indicator(progress: Progress) -> _Shower:
     """Indicator of progress lines: a bar of tqdm if it is installed, a function's, or none."""
     if callable(progress):
-        return _Function(progress)
+        return _Shower(progress)
     if not progress:
         return _Shower()
     return _Bar() if importlib.util.find_spec("tqdm") else _Stream()

@@ -80,14 +80,7 @@ def shown_unit(unit: str) -> tuple[float, str]:
 def number_text(value: float, uncertainty: float | None, sign: str = "±", scale: float = 1.0) -> str:
     """Formats a number to the digits that its uncertainty justifies, "20.06 ± 0.23"; four digits if there is none.
 
-    Parameters
-    ----------
-    value, uncertainty
-        Number and one standard deviation.
-    sign
-        Between both.
-    scale
-        Factor for both.
+    `uncertainty` is one standard deviation, `sign` stands between both, `scale` is a factor for both.
     """
     value, uncertainty = scale * value, None if uncertainty is None else scale * uncertainty
     if uncertainty is None or not 1e-12 * abs(value) < uncertainty < math.inf:  # of equal values it is round-off

@@ -122,19 +122,8 @@ class ResolvedCase:
 
 
 def resolve(file: str | os.PathLike[str], overrides: Sequence[str]) -> ResolvedCase:
-    """Reads a case with the program.
-
-    Parameters
-    ----------
-    file
-        Case file.
-    overrides
-        ``Section/Name=value``, replacing entries of the file.
-
-    Raises
-    ------
-    BadInput
-        With every problem that the program found.
+    """Reads a case file with the program; `overrides` are ``Section/Name=value``, replacing entries of the file. Raises
+    BadInput with every problem that the program found.
     """
     words = [word for override in overrides for word in ("--set", override)]
     case = json.loads(ask("schema", os.fspath(file), *words))["case"]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import latcon
-from latcon.fit import Observation, Parameter, fit_case, runs
+from latcon.fit import Observation, Parameter, fit_case, search
 from latcon.fit.misfit import UNDETERMINED
 
 STRETCH, DENSITY, SEED = "Fracture/breaking stretch", "Material/density", "Lattice/noise seed"
@@ -71,7 +71,7 @@ def without_crack(code, message):
 @pytest.fixture
 def crack(monkeypatch):
     found = Crack()
-    monkeypatch.setattr(runs, "run_processes", found.pool)
+    monkeypatch.setattr(search, "run_processes", found.pool)
     return found
 
 

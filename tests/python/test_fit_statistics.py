@@ -7,8 +7,7 @@ import pytest
 from scipy.stats import chi2
 
 from latcon.fit import Fit, Observation
-from latcon.fit.local_model import PRIOR, fit_local_model
-from latcon.fit.misfit import UNDETERMINED, tabulate
+from latcon.fit.misfit import PRIOR, UNDETERMINED, fit_local_model, tabulate
 from latcon.fit.problem import Axis, Problem
 from latcon.fit.record import Evaluation, Outcome
 from latcon.fit.result import _pivoted_basis

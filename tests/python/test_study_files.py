@@ -7,10 +7,9 @@ import time
 import latcon
 import pytest
 
-from latcon.study.plan import PlannedRun, Verification, plan_runs
+from latcon.study.plan import (PlannedRun, Verification, parse_shard, plan_difference, plan_runs, plan_text, runs_of_shard)
 from latcon.study.pool import run_processes
 from latcon.study.program import InputError, Program
-from latcon.study.shard import parse_shard, plan_difference, plan_text, runs_of_shard
 from latcon.study.study_file import read_study
 from latcon.study.sweep import combinations, parse_sweep, sweep_study
 

@@ -5,12 +5,11 @@ import numpy as np
 import pytest
 
 from latcon.quantities import quantity_text
-from latcon.study.onset import fit_onset
-from latcon.study.outcome import RunOutcome, RunState
+from latcon.study.command import refined_runs
+from latcon.study.outcome import RunOutcome, RunState, statistics
 from latcon.study.plan import PlannedRun
-from latcon.study.refinement import refined_runs
-from latcon.study.seeds import statistics
 from latcon.study.statistical_tests import SampleMean, adjust_by_holm, isotonic_test, level_probabilities, welch_p_value
+from latcon.study.statistical_tests import fit_onset
 from latcon.study.study_file import Rule, Study, StudyRow, StudyRun
 from latcon.study.table import Verdict, judge
 

@@ -4,7 +4,7 @@ import csv
 import numpy as np
 import pytest
 
-from latcon.tables import path_growth, table_values
+from latcon.study.outcome import path_growth, table_values
 
 D = 0.625e-3
 

@@ -18,8 +18,7 @@ from made_up_sheet import FRAMES, SPACING, write_torn_sheet
 from report_test import HOLDS, REPORTED, main, write_verification
 
 from latcon.report import sheet_data
-from latcon.report.motion import read_motion
-from latcon.report.runs import read_run
+from latcon.report.runs import read_motion, read_run
 
 SCREEN = 800  # height of a window [pixels]
 # Half of the last digit shown, and half of the step stored (sheet_data.py).

@@ -22,8 +22,7 @@ from near_tip_plots_test import write_field
 from report_test import Page, main, write_fracture
 
 from latcon.report import phase_map, study, study_plots
-from latcon.report.study_plots import draw_sweep
-from latcon.report.study_quantities import MEASURED, NEAR_TIP, PATH, asked_quantities
+from latcon.report.study_plots import MEASURED, NEAR_TIP, PATH, asked_quantities, draw_sweep
 from latcon.report.study_runs import read_study
 
 QUANTITIES = {quantity: None for quantity, *_ in MEASURED + NEAR_TIP} | {"speed_laboratory": 40.0, "end_time": 3e-3}

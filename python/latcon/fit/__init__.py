@@ -9,6 +9,6 @@ Examples
 """
 from .problem import Observation, Parameter
 from .result import Fit
-from .start import fit_case
+from .search import fit_case
 
 __all__ = ["Fit", "Observation", "Parameter", "fit_case"]

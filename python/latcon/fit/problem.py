@@ -184,14 +184,8 @@ class Problem:
 
 def resolve_problem(case: CaseLike, parameters: Sequence[Parameter], observations: Sequence[Observation], command: str,
                     seeds: Sequence[int] | None, skip_verification: bool, entries: Entries | None = None) -> Problem:
-    """Checks a problem of a fit and converts its bounds.
-
-    Raises
-    ------
-    ValueError
-        If parameters, observations, seeds or the command are wrong.
-    BadInput
-        If the case or a bound is wrong.
+    """Checks a problem of a fit and converts its bounds; raises ValueError if parameters, observations, seeds or the command
+    are wrong, BadInput if the case or a bound is.
     """
     base = as_case(case)
     if command not in COMMANDS:

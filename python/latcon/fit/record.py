@@ -7,7 +7,6 @@ import math
 import os
 import pathlib
 from collections.abc import Mapping
-from types import TracebackType
 from typing import Any
 
 from ..errors import LatconError, UnreadableFile
@@ -22,16 +21,8 @@ FORMAT_VERSION = 1
 class Outcome:
     """End of one run of a point.
 
-    Attributes
-    ----------
-    seed : int
-        Its noise seed.
-    ended : str
-        ``done``, ``refused`` (bad input, or a claim or the energy ledger of the run does not hold) or ``failed``.
-    message : str
-        Message of the program unless done.
-    measured : mapping
-        Quantities by name.
+    `ended` is ``done``, ``refused`` (bad input, or a claim or the energy ledger of the run does not hold) or ``failed``;
+    `message` that of the program unless done; `measured` are the quantities by name.
     """
 
     seed: int
@@ -54,19 +45,18 @@ class Evaluation:
         """``done`` if all runs are, otherwise the end of the first that is not."""
         return next((outcome.ended for outcome in self.outcomes if outcome.ended != "done"), "done")
 
+    @property
+    def message(self) -> str:
+        """Its message; empty if all runs are done."""
+        return next((outcome.message for outcome in self.outcomes if outcome.ended != "done"), "")
+
 
 class Record:
     """Directory of a fit: the problem, and the evaluated points so far.
 
     Files: `case.prm`, the resolved base case; `fit.json`, the problem; `evaluations.jsonl`, a line of JSON per evaluated point,
-    appended when its runs have ended.
-
-    Raises
-    ------
-    LatconError
-        If the directory holds another fit, or one that another process works on.
-    UnreadableFile
-        If a file is damaged. An incomplete last line, which a killed process leaves, is removed.
+    appended when its runs have ended. Raises LatconError if the directory holds another fit, or one that another process works
+    on, UnreadableFile if a file is damaged. An incomplete last line, which a killed process leaves, is removed.
     """
 
     def __init__(self, directory: pathlib.Path, problem: Problem) -> None:
@@ -76,7 +66,7 @@ class Record:
         self._lock = FolderLock(os.fspath(directory))
         try:
             self._open_problem()
-            self.evaluations = read_evaluations(directory, remove_incomplete=True)
+            self.evaluations = _read_evaluations(directory)
         except BaseException:
             self._lock.release()
             raise
@@ -84,7 +74,7 @@ class Record:
     def __enter__(self) -> Record:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(self, *_: object) -> None:
         self._lock.release()
 
     @property
@@ -122,20 +112,14 @@ class Record:
             raise LatconError(f"{self.directory}: holds another fit; different: {', '.join(different)}; choose another directory")
 
 
-def read_evaluations(directory: pathlib.Path, remove_incomplete: bool = False) -> dict[int, Evaluation]:
-    """Evaluated points of a fit by number.
-
-    Raises
-    ------
-    UnreadableFile
-        If a complete line is damaged.
-    """
+def _read_evaluations(directory: pathlib.Path) -> dict[int, Evaluation]:
+    """Evaluated points of a fit by number; raises UnreadableFile if a complete line is damaged."""
     path = directory / "evaluations.jsonl"
     if not path.exists():
         return {}
     text = read_text(path)
     complete = text[:text.rfind("\n") + 1]
-    if remove_incomplete and complete != text:
+    if complete != text:
         os.truncate(path, len(complete.encode()))
     found = {}
     for number, line in enumerate(complete.splitlines(), start=1):
@@ -149,13 +133,10 @@ def read_evaluations(directory: pathlib.Path, remove_incomplete: bool = False) -
 
 def _evaluation(line: Mapping[str, Any]) -> Evaluation:
     outcomes = tuple(Outcome(item["seed"], item["ended"], item["message"],
-                             {name: (_read(value), _read(uncertainty)) for name, (value, uncertainty) in item["measured"].items()})
+                             {name: (math.nan if value is None else value, math.nan if uncertainty is None else uncertainty)
+                              for name, (value, uncertainty) in item["measured"].items()})
                      for item in line["outcomes"])
     return Evaluation(int(line["number"]), line["stage"], {key: float(value) for key, value in line["values"].items()}, outcomes)
-
-
-def _read(value: Any) -> Any:
-    return math.nan if value is None else value
 
 
 def _plain(value: Any) -> Any:

@@ -13,9 +13,8 @@ import pandas as pd
 from ..case import Case
 from ..errors import LatconError
 from ..frames import Floats
-from .local_model import PRIOR, LocalModel, fit_local_model
-from .misfit import Table, tabulate
-from .problem import Axis, Problem
+from .misfit import PRIOR, LocalModel, Table, fit_local_model, tabulate
+from .problem import Problem
 from .record import Evaluation
 
 # A parameter or direction is determined if the observations reduce its standard deviation by this factor below that of a
@@ -63,8 +62,8 @@ class Fit:
         table = self._table
         columns: dict[str, object] = {"stage": [evaluation.stage for evaluation in self._evaluations],
                                       "ended": [evaluation.ended for evaluation in self._evaluations],
-                                      "message": [_message(evaluation) for evaluation in self._evaluations]}
-        for axis in self._axes:
+                                      "message": [evaluation.message for evaluation in self._evaluations]}
+        for axis in self.problem.axes:
             columns[axis.key] = [evaluation.values[axis.key] for evaluation in self._evaluations]
         for column, observation in enumerate(self.problem.observations):
             columns[observation.quantity] = table.means[:, column]
@@ -102,7 +101,7 @@ class Fit:
         """Rows of `points` that the observations do not distinguish from the best with 95 % confidence, best first."""
         from scipy.stats import chi2
         points = self.points
-        limit = self.misfit + float(chi2.ppf(_CONFIDENCE, len(self._axes)))
+        limit = self.misfit + float(chi2.ppf(_CONFIDENCE, len(self.problem.axes)))
         return points[points["misfit"] <= limit].sort_values("misfit")
 
     @functools.cached_property
@@ -114,16 +113,17 @@ class Fit:
         is less than half that of a uniform distribution between the bounds. NaN without a local model.
         """
         rows = []
-        for number, axis in enumerate(self._axes):
+        for number, axis in enumerate(self.problem.axes):
             if self.model is None:
                 estimate, free, fixed = math.nan, math.nan, math.nan
             else:
                 at, free = self.model.center[number], math.sqrt(self.model.covariance[number, number])
                 fixed = 1 / math.sqrt(self.model.metric[number, number])
                 estimate = axis.value(float(at))
-            slope = _slope(axis, estimate)
+            # Derivative of the value by the coordinate.
+            slope = estimate * math.log(axis.upper / axis.lower) if axis.logarithmic else axis.upper - axis.lower
             rows.append((estimate, free * slope, fixed * slope, axis.lower, axis.upper, axis.unit, free < _DETERMINED * PRIOR))
-        return pd.DataFrame(rows, index=pd.Index([axis.key for axis in self._axes], name="parameter"),
+        return pd.DataFrame(rows, index=pd.Index([axis.key for axis in self.problem.axes], name="parameter"),
                             columns=["estimate", "uncertainty", "fixed_others", "lower", "upper", "unit", "determined"])
 
     @functools.cached_property
@@ -134,7 +134,7 @@ class Fit:
         each parameter; all in fractions of the range between the bounds. Empty without a local model. Directions along which the
         misfit does not change have no unique basis: the first of them is that of the parameter which can change most along them.
         """
-        names = [axis.key for axis in self._axes]
+        names = [axis.key for axis in self.problem.axes]
         if self.model is None:
             return pd.DataFrame(columns=["uncertainty", "determined", *names])
         values, vectors = np.linalg.eigh(self.model.metric - np.eye(len(names)) / PRIOR**2)
@@ -177,7 +177,7 @@ class Fit:
         found = []
         for _, row in self.directions.iterrows():
             if not row["determined"]:
-                parts = [(axis.key, float(row[axis.key])) for axis in self._axes if abs(row[axis.key]) >= _NAMED]
+                parts = [(axis.key, float(row[axis.key])) for axis in self.problem.axes if abs(row[axis.key]) >= _NAMED]
                 if len(parts) == 1:
                     found.append(f"{parts[0][0]} is not determined")
                 else:
@@ -187,7 +187,7 @@ class Fit:
 
     def __str__(self) -> str:
         lines = [f"{_count(len(self._evaluations), 'point')}, least misfit {self.misfit:.4g} with "
-                 f"{_count(len(self.problem.observations), 'observation')} and {_count(len(self._axes), 'parameter')}"]
+                 f"{_count(len(self.problem.observations), 'observation')} and {_count(len(self.problem.axes), 'parameter')}"]
         for ended in ("refused", "failed"):
             if count := sum(evaluation.ended == ended for evaluation in self._evaluations):
                 lines.append(f"{count} {ended}")
@@ -195,25 +195,12 @@ class Fit:
             value = f"{row['estimate']:.6g} ± {row['uncertainty']:.2g} {row['unit']}"
             lines.append(f"{key}: {value}" + ("" if row["determined"] else " (not determined)"))
         if self.model is None:
-            lines[-len(self._axes):] = ["no estimate: too few points are done"]
+            lines[-len(self.problem.axes):] = ["no estimate: too few points are done"]
         return "\n".join([*lines, *self.describe_directions()])
-
-    @property
-    def _axes(self) -> tuple[Axis, ...]:
-        return self.problem.axes
 
 
 def _count(number: int, thing: str) -> str:
     return f"{number} {thing}{'s' * (number != 1)}"
-
-
-def _message(evaluation: Evaluation) -> str:
-    return next((outcome.message for outcome in evaluation.outcomes if outcome.ended != "done"), "")
-
-
-def _slope(axis: Axis, value: float) -> float:
-    """Derivative of the value by the coordinate."""
-    return value * math.log(axis.upper / axis.lower) if axis.logarithmic else axis.upper - axis.lower
 
 
 def _with_positive_largest(vectors: Floats) -> Floats:
@@ -223,10 +210,7 @@ def _with_positive_largest(vectors: Floats) -> Floats:
 
 def _pivoted_basis(vectors: Floats) -> Floats:
     """Orthonormal basis, by columns, of the space that orthonormal columns span; independent of their choice."""
-    projector = vectors @ vectors.T
-    basis = np.empty_like(vectors)
-    for column in basis.T:
-        pivot = int(np.argmax(np.diag(projector)))
-        column[:] = projector[pivot] / math.sqrt(projector[pivot, pivot])
-        projector = projector - np.outer(column, column)
-    return basis
+    from scipy.linalg import qr
+    basis, triangle, _ = qr(vectors @ vectors.T, pivoting=True)
+    n = vectors.shape[1]
+    return np.asarray(basis[:, :n] * np.sign(np.diag(triangle)[:n]))

@@ -1,14 +1,32 @@
-"""Choice of the points that a fit evaluates: Sobol points, then Optuna's TPE, then points around the local minimum."""
+"""The search of a fit: batches of points are chosen, run and recorded.
+
+Sobol points come first, then those of Optuna's TPE, then points around the local minimum.
+"""
 from __future__ import annotations
 
+import os
+import pathlib
+import shutil
+import time
 import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 
-from ..errors import optional_package
+from ..case import Case
+from ..commands import CaseLike, run_words
+from ..errors import BadInput, ClaimFailed, Interrupted, LatconError, OutputFailed, error_of, optional_package
+from ..folder import absolute, prepare_run
 from ..frames import Floats
-from .local_model import LocalModel, fit_local_model
-from .misfit import Table
+from ..program import Progress, find_program, progress_indicator
+from ..results import open_run
+from ..schema import SEED_ENTRY
+from ..study.outcome import content, last_words, unfit_rows
+from ..study.pool import run_processes
+from .misfit import LocalModel, Table, fit_local_model, tabulate
+from .problem import Entries, Observation, Parameter, Problem, resolve_problem
+from .record import Evaluation, Outcome, Record
+from .result import Fit
 
 # Points around the minimum of the local model are spread by this many standard deviations, which determines its slopes well
 # without leaving the quadratic neighbourhood.
@@ -20,26 +38,16 @@ _WIDEST, _SHRINKING, _NARROWEST = 0.15, 0.8, 0.02
 def propose(table: Table, parameters: int, first: int, count: int, evaluations: int, seed: int) -> list[tuple[str, Floats]]:
     """Next points to evaluate, with the name of their stage.
 
-    They depend on the evaluated points, the number of the first and the seed alone: not on how often the fit was interrupted.
-
-    Parameters
-    ----------
-    table
-        Points before `first`.
-    parameters
-        Number of parameters.
-    first
-        Number of the first point.
-    count
-        Points in this batch.
-    evaluations
-        Points of the whole fit, whose first quarter are Sobol points and whose second are TPE's.
-    seed
-        Seed of the search.
+    They depend on the evaluated points before `first`, the number of the first, and the seed of the search alone: not on how
+    often the fit was interrupted. Of all `evaluations` the first quarter are Sobol points and the second TPE's; `count` is the
+    size of the batch.
     """
     sobol = min(evaluations, max(2 * parameters + 1, evaluations // 4))
     tpe = max(sobol, evaluations // 2)
-    points = [("sobol", point) for point in _sobol(parameters, seed, sobol)[first:first + count]]
+    qmc = optional_package("scipy.stats.qmc", "fits need", "scipy (Debian: python3-scipy)")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # a number of points that is no power of two
+        points = [("sobol", point) for point in qmc.Sobol(parameters, seed=seed).random(sobol)[first:first + count]]
     if left := min(count, tpe - first) - len(points):
         if left > 0:
             points += [("tpe", point) for point in _tpe(table, parameters, first, left, seed)]
@@ -51,13 +59,6 @@ def propose(table: Table, parameters: int, first: int, count: int, evaluations: 
         else:
             points += [("local", point) for point in _around(model, first, left, (first - tpe) / max(1, count), seed)]
     return points
-
-
-def _sobol(parameters: int, seed: int, count: int) -> list[Floats]:
-    qmc = optional_package("scipy.stats.qmc", "fits need", "scipy (Debian: python3-scipy)")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # a number of points that is no power of two
-        return list(qmc.Sobol(parameters, seed=seed).random(count))
 
 
 def _tpe(table: Table, parameters: int, first: int, count: int, seed: int) -> list[Floats]:
@@ -89,3 +90,169 @@ def _around(model: LocalModel, first: int, count: int, batch: float, seed: int) 
     drawn = generator.multivariate_normal(model.center, np.linalg.inv(metric), count - 1)
     folded = np.abs(drawn) % 2
     return [model.center, *np.minimum(folded, 2 - folded)]
+
+
+Point = tuple[int, str, Mapping[str, float]]
+"""Number, stage and values of a point to evaluate."""
+
+
+def evaluate(record: Record, points: Iterable[Point], workers: int, keep_runs: bool, added: Callable[[], None]
+             ) -> None:
+    """Runs points, and adds each to the record once its runs have ended; calls `added` after each.
+
+    An exception, Ctrl-C included, stops all runs; they are continued when the fit is called again. Raises OutputFailed if a run
+    could not write its files, Interrupted if a signal ended one, ValueError if one does not have an observed quantity.
+    """
+    problem = record.problem
+    wanted = {number: (stage, values) for number, stage, values in points}
+    outcomes: dict[int, dict[int, Outcome]] = {number: {} for number in wanted}
+    jobs = [(number, seed) for number in wanted for seed in problem.seeds]
+
+    def folder(job: int) -> pathlib.Path:
+        return record.directory / "runs" / "{:05}-{}".format(*jobs[job])
+
+    def start(job: int) -> tuple[list[str], str]:
+        number, seed = jobs[job]
+        case, place = problem.of(Case(record.case), wanted[number][1]).set(SEED_ENTRY, seed), folder(job)
+        continues = prepare_run(os.fspath(place), lambda: content(f"{place}/case.prm") == case.text())
+        options = [] if problem.command != "fracture" else ["--no-report", *["--skip-verification"] * problem.skip_verification]
+        words = run_words(problem.command, case, place, 1, continues, False, options)
+        return [os.fspath(find_program()), *words], f"{place}/log.txt"
+
+    def ended(job: int, status: int) -> None:
+        number, seed = jobs[job]
+        outcomes[number][seed] = _outcome(problem, seed, folder(job), status)
+        if not keep_runs:
+            shutil.rmtree(folder(job), ignore_errors=True)
+        if len(outcomes[number]) == len(problem.seeds):
+            stage, values = wanted[number]
+            record.add(Evaluation(number, stage, dict(values), tuple(outcomes[number][seed] for seed in problem.seeds)))
+            added()
+
+    run_processes(len(jobs), workers, start, ended, lambda _running: None, lambda: False)
+
+
+def _outcome(problem: Problem, seed: int, folder: pathlib.Path, status: int) -> Outcome:
+    message = last_words(content(f"{folder}/log.txt")).removeprefix("latcon: ")
+    error = error_of(status, message, folder) if status else None
+    if isinstance(error, (OutputFailed, Interrupted)):
+        raise error
+    if isinstance(error, ClaimFailed) and problem.command == "fracture" and (folder / "crack.json").is_file():
+        # A crack that differs from the case's own reference values was measured; one whose energies do not balance was not.
+        if unfit := unfit_rows(open_run(folder).info):
+            return Outcome(seed, "refused", f"failed its checks: {unfit}", {})
+    elif error:
+        return Outcome(seed, "refused" if isinstance(error, (BadInput, ClaimFailed)) else "failed", message, {})
+    run = open_run(folder)
+    return Outcome(seed, "done", "", {one.quantity: one.of(run) for one in problem.observations})
+
+
+def fit_case(case: CaseLike, parameters: Sequence[Parameter], observations: Sequence[Observation],
+             directory: str | os.PathLike[str], *, command: str = "fracture", seeds: Sequence[int] | None = None,
+             entries: Entries | None = None, evaluations: int = 40, batch: int = 8, workers: int | None = None,
+             skip_verification: bool = False, keep_runs: bool = False, search_seed: int = 0, progress: Progress = True) -> Fit:
+    """Fits parameters of a case to observations.
+
+    Sobol points come first, then those of Optuna's TPE sampler, and the second half of the points lies around the minimum of a
+    local quadratic model of the quantities. Each point is a run per seed. A fit that was interrupted or killed continues if it
+    is called again with the same directory, also with more evaluations, or with other observed values of the same quantities.
+    Without an interruption the points are the same, and for any number of workers.
+
+    Parameters
+    ----------
+    case
+        Base case, or what :class:`latcon.Case` accepts.
+    parameters
+        Entries to vary, with bounds.
+    observations
+        Observed quantities with uncertainties.
+    directory
+        Directory of the fit; created if needed.
+    command
+        ``fracture``, ``lattice`` or ``continuum``.
+    seeds
+        Noise seeds over which quantities are averaged; default: that of the case.
+    entries
+        Function of the values of all parameters, by name, that returns further entries of the case: for parameters with a unit
+        of their own, such as a factor of several entries or a number in a list. It must return the same for the same values.
+    evaluations
+        Points to evaluate, those of earlier calls included.
+    batch
+        Points that are chosen together. All runs of a batch may run at once.
+    workers
+        Concurrent runs, single-threaded each; default: all cores that this process may use.
+    skip_verification
+        Whether cracks run unverified. The verification before fracture takes about 15 s for each point whose rubber differs.
+    keep_runs
+        Whether the output of the runs stays in `runs/` of the directory.
+    search_seed
+        Seed of the search.
+    progress
+        Progress indicator, as in :func:`latcon.fracture`.
+
+    Returns
+    -------
+    Fit
+        The result.
+
+    Raises
+    ------
+    ValueError
+        If an argument is wrong, or a run does not have an observed quantity.
+    BadInput
+        If the case or a bound is wrong.
+    LatconError
+        If the directory holds another fit or is in use, optuna or scipy is missing, or no run of the first batch is done.
+    OutputFailed
+        If a run cannot write its files. Other errors of a run are recorded with the point, which gets a misfit worse than
+        that of all others.
+    KeyboardInterrupt
+        After Ctrl-C, or a signal to a run: all runs are stopped, with checkpoints.
+    """
+    for name, number in (("evaluations", evaluations), ("batch", batch), ("workers", workers or 1)):
+        if number < 1:
+            raise ValueError(f"{name} = {number}: must be positive")
+    problem = resolve_problem(case, parameters, observations, command, seeds, skip_verification, entries)
+    with Record(absolute(directory), problem) as record:
+        _Search(record, evaluations, batch, workers or len(os.sched_getaffinity(0)), keep_runs, search_seed).run(progress)
+        return Fit(record.directory, problem, tuple(record.evaluations.values()))
+
+
+class _Search:
+    """Loop over the batches of a fit."""
+
+    def __init__(self, record: Record, evaluations: int, batch: int, workers: int, keep_runs: bool, seed: int) -> None:
+        self._record, self._evaluations, self._batch = record, evaluations, batch
+        self._workers, self._keep_runs, self._seed = workers, keep_runs, seed
+
+    def run(self, progress: Progress) -> None:
+        problem, evaluated = self._record.problem, self._record.evaluations
+        indicator = progress_indicator(progress)
+        begin, held = time.monotonic(), len(evaluated)
+
+        def show() -> None:
+            done = len(evaluated)
+            rate = (time.monotonic() - begin) / max(1, done - held)
+            misfits = tabulate(problem, list(evaluated.values())).misfits
+            left = max(0, self._evaluations - done) * rate
+            indicator.line(f"{done} of {self._evaluations} points, least misfit {misfits.min():.4g}, {left:.0f} s left", left)
+        try:
+            for first in range(0, self._evaluations, self._batch):
+                numbers = range(first, min(first + self._batch, self._evaluations))
+                if not all(number in evaluated for number in numbers):
+                    earlier = tabulate(problem, [evaluation for number, evaluation in evaluated.items() if number < first])
+                    chosen = propose(earlier, len(problem.axes), first, len(numbers), self._evaluations, self._seed)
+                    points = [(number, stage, problem.values(at)) for number, (stage, at) in zip(numbers, chosen)
+                              if number not in evaluated]
+                    evaluate(self._record, points, self._workers, self._keep_runs, show)
+                if first == 0:
+                    self._check_first_batch()
+        finally:
+            indicator.close()
+
+    def _check_first_batch(self) -> None:
+        found = list(self._record.evaluations.values())[:self._batch]
+        if not any(outcome.ended == "done" for evaluation in found for outcome in evaluation.outcomes):
+            outcome = found[0].outcomes[0]
+            raise LatconError(f"{self._record.directory}: no run of the first {len(found)} points is done; the first was "
+                              f"{outcome.ended}: {outcome.message}")

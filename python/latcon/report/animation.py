@@ -24,24 +24,22 @@ LEFT, TOP, FOOT, BAR = 0.85, 0.5, 0.62, 0.75  # margins of the axes and room of 
 
 def draw_animation(motion, gif, still=None, largest=LARGEST):
     """Writes the animation as GIF of at most `largest` bytes, and its last picture as PNG."""
-    shown = durations([frame.time for frame in motion.frames])
+    times = [frame.time for frame in motion.frames]
+    # Uniform slow motion; GIF's unit is 10 ms.
+    shown = [max(20, 10 * round(100 * seconds))
+             for seconds in [*np.diff(times) / (times[-1] - times[0]) * SECONDS, LAST_SECONDS]]
     film = None
     for width, shades in SIZES:
         if film is None or film.width != width:
             film = Film(motion.frames, motion.mesh, width)
-        pictures = film.pictures(shades)
-        data = gif_of(pictures, shown)
-        if len(data) <= largest:
+        pictures, data = film.pictures(shades), io.BytesIO()
+        pictures[0].save(data, format="GIF", save_all=True, append_images=pictures[1:], duration=shown, loop=0, disposal=1,
+                         optimize=False)
+        if data.tell() <= largest:
             break
-    write_file(str(gif), data)
+    write_file(str(gif), data.getvalue())
     if still is not None:
         save_png(pictures[-1].convert("RGB"), still)
-
-
-def durations(times):
-    """Duration of each frame in uniform slow motion [ms], a multiple of GIF's unit of 10 ms."""
-    shown = np.diff(times) / (times[-1] - times[0]) * SECONDS
-    return [max(20, 10 * round(100 * seconds)) for seconds in [*shown, LAST_SECONDS]]
 
 
 class Film:
@@ -99,10 +97,3 @@ def axes_of_sheet(low, high, scale):
                     ticks=ticks)
     corner = np.array((LEFT, TOP))
     return page, PIXELS_PER_INCH * np.concatenate((corner, corner + (width, height)))
-
-
-def gif_of(pictures, shown):
-    """Returns a GIF of the pictures that repeats for ever."""
-    data, (first, *others) = io.BytesIO(), pictures
-    first.save(data, format="GIF", save_all=True, append_images=others, duration=shown, loop=0, disposal=1, optimize=False)
-    return data.getvalue()

@@ -18,13 +18,10 @@ FRACTURE = (
 
 def claim_sections(runs, plots):
     """A section per claim, failing claims first. `plots`: {folder of a run: {plot name: (PNG file, metrics)}}."""
-    entries, texts = shared_rows(runs), claim_texts(runs)
+    entries = shared_rows(runs)
+    # {name: (title, statement)} of the claims that the runs checked, in the order in which they are checked
+    texts = {**{name: text for run in runs for name, text in run.claims.items()}, "fracture": FRACTURE}
     return [claim_section(name, entries.get(name, []), runs, plots, texts) for name in claim_order(entries, plots, texts)]
-
-
-def claim_texts(runs):
-    """{name: (title, statement)} of the claims that the runs checked, in the order in which they are checked."""
-    return {**{name: text for run in runs for name, text in run.claims.items()}, "fracture": FRACTURE}
 
 
 def claim_order(entries, plots, texts):
@@ -53,14 +50,14 @@ def shared_rows(runs):
 def claim_section(name, entries, runs, plots, texts):
     """Contents of the section of one claim: a line that unfolds, open if the claim fails; plots; failing rows, and the others,
     which are folded if there are many."""
-    tally = tally_of(None, name, [check for check, _ in entries])
-    counts = ", ".join(f"{tally.count[v]} {plural(tally.count[v], one, many)}"
-                       for v, one, many in (("fails", "fails", "fail"), ("holds", "holds", "hold"),
-                                            ("reported", "reported", "reported")) if tally.count[v])
+    tally = tally_of(name, [check for check, _ in entries])
+    counts = ", ".join(f"{count} {plural(count, one, many)}" for one, many, count in (
+        ("fails", "fail", tally.count["fails"]), ("holds", "hold", tally.count["holds"]),
+        ("reported", "reported", tally.count["reported"])) if count)
     show_runs = len(runs) > 1
-    failing = [claim_row(check, names, show_runs) for check, names in entries if check.verdict == "fails"]
-    others = [claim_row(check, names, show_runs) for check, names in entries if check.verdict != "fails"]
-    folded = f"{len(others)} {plural(len(others), 'row', 'rows')}"
+    rows = {fails: [claim_row(check, names, show_runs) for check, names in entries if (check.verdict == "fails") == fails]
+            for fails in (True, False)}
+    folded = f"{len(rows[False])} {plural(len(rows[False]), 'row', 'rows')}"
     drawn = {plot for made in plots.values() for plot in made}
     return {
         "name": name, "kind": tally.kind, "verdict": f"{MARKS[tally.kind]} {WORDS[tally.kind]}",
@@ -71,8 +68,8 @@ def claim_section(name, entries, runs, plots, texts):
         "plots": [figure for plot in PLOTS.get(name, ()) for figure in plot_figures(plot, runs, plots)],
         "head": ["verdict", "quantity", "unit", "#lattice", "#continuum", "#published" if name == "fracture" else "#theory",
                  "#error", "#tolerance", *["run"] * show_runs],
-        "failing": failing, "others": others, "is_short": len(others) <= MOST_OPEN_ROWS,
-        "summary": folded + (plural(len(others), " that does not fail", " that do not fail") if failing else ""),
+        "failing": rows[True], "others": rows[False], "is_short": len(rows[False]) <= MOST_OPEN_ROWS,
+        "summary": folded + (plural(len(rows[False]), " that does not fail", " that do not fail") if rows[True] else ""),
     }
 
 

@@ -40,12 +40,8 @@ def groups(table, *columns):
 
 def states(table):
     """Groups of one set of shells and one deformation, each with its name: [(name, part)]."""
-    return [(state_name(*key), part) for key, part in groups(table, "shells", *STATE)]
-
-
-def state_name(shells, F_xx, F_yy):
-    """Shells and deformation in a few words."""
-    return f"{shells}, F = I" if F_xx == F_yy == 1 else f"{shells}, F = diag({F_xx:.4g}, {F_yy:.4g})"
+    return [(f"{shells}, F = I" if xx == yy == 1 else f"{shells}, F = diag({xx:.4g}, {yy:.4g})", part)
+            for (shells, xx, yy), part in groups(table, "shells", *STATE)]
 
 
 def sorted_by(part, column):

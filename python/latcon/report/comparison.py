@@ -4,10 +4,9 @@ import numpy as np
 from ..errors import UnreadableFile
 from ..files import read_json
 from ..quantities import number_text, shown_unit
-from .pages import FAILED, has_dygraphs, plain_row, write_page
-from .live import rows_of, thinned
-from .motion import read_motion
-from .runs import has_rows, read_run
+from .crack_section import rows_of, thinned
+from .pages import FAILED, has_dygraphs, write_page
+from .runs import has_rows, read_motion, read_run
 from .sheet_data import LARGEST_SHEETS, sheet_data, sheet_of
 
 SIDES = ("first", "second")
@@ -22,7 +21,7 @@ def quantity_rows(rows):
     for row in rows:
         scale, unit = shown_unit(row["unit"])
         ratio = row["difference_over_uncertainty"]
-        lines.append(plain_row([("words", row["name"].replace("_", " ")),
+        lines.append(("", [("words", row["name"].replace("_", " ")),
                                 *(("number", value(row, scale, key)) for key in (*SIDES, "difference")),
                                 ("number", "–" if ratio is None else f"{ratio:+.1f}"), ("short", unit)]))
     return lines
@@ -79,7 +78,7 @@ def comparison_page(folder):
         films=[{"name": name, "side": side, "pattern": comparison["pattern"][side], "run": run.name, "sheet": sheet}
                for name, side, run, sheet in zip(names, SIDES, runs, sheets)],
         quantities=quantity_rows(comparison["quantities"]),
-        entries=[plain_row([("words", entry["key"]), ("short", entry["first"]), ("short", entry["second"]),
+        entries=[("", [("words", entry["key"]), ("short", entry["first"]), ("short", entry["second"]),
                             ("short", "" if entry["unit"] == "1" else entry["unit"])]) for entry in comparison["entries"]],
         with_viewer=any(sheets), with_plots=plot is not None)
     return folder / "compare.html"

@@ -78,7 +78,9 @@ def draw_crack_path(run, path):
     page = Page(TOP + upper + (0.7 + lower + 1.35 if broken is not None else 0.6))
 
     axes = page.axes(LEFT, TOP, width, upper)
-    axes.plot(X, Y, color=BLUE, label=tip_label(run.crack))
+    speed = None if run.crack is None else run.crack["speed_lagrangian"]
+    axes.plot(X, Y, color=BLUE, label="tip" if speed is None else
+              f"tip, {number_text(speed, run.crack['speed_lagrangian_uncertainty'])} m/s")
     draw_measurement(axes, run)
     larger = f",\n{exaggeration} times the scale of X" if exaggeration > 1 else ""
     axes.set(xlim=X_range, ylim=(centre - half, centre + half), ylabel=f"Y of the tip [cm]{larger}")
@@ -93,13 +95,6 @@ def draw_crack_path(run, path):
                   xlabel="X in the undeformed sheet [cm]", title="midpoints of broken bonds, equal axes")
         page.colour_bar(dots, LEFT, page.height - 0.68, width, 0.13, "time of breaking [ms]")
     save(page.figure, path)
-
-
-def tip_label(crack):
-    """Legend entry of the tip."""
-    if crack is None or crack["speed_lagrangian"] is None:
-        return "tip"
-    return f"tip, {number_text(crack['speed_lagrangian'], crack['speed_lagrangian_uncertainty'])} m/s"
 
 
 def draw_measurement(axes, run):

@@ -1,9 +1,12 @@
 """The section of a crack: path, sheet over time, energies, measurements near the tip, still pictures."""
+import numpy as np
 from markupsafe import Markup
 
-from .pages import first_sentence, has_dygraphs
-from .live import energy_plot, path_plot
-from .near_tip_table import near_tip_rows
+from ..quantities import number_text
+from .crack_path import measured_sinusoid
+from .pages import first_sentence, has_dygraphs, superscripts
+from .pictures import SHARES, energy_shares
+from .runs import has_rows
 
 CAPTIONS = {
     "animation.gif": "Animation of the crack in uniform slow motion: the deformed sheet, coloured by the speed of the "
@@ -69,3 +72,93 @@ def pattern_sentence(crack):
         return "The run did not reach the measurement of its crack (no crack.json)"
     phrase = pattern_phrase(crack)
     return phrase[:1].upper() + phrase[1:] + (f": {crack['reason']}" if crack.get("reason") else "")
+
+
+# Rows of the table: name in near_tip.json, label, unit shown, scale to it, meaning.
+QUANTITIES = (
+    ("negative_zone_area", "negative velocity, area", "mm^2", 1e6,
+             "region ahead of the tip that moves backwards at more than 1 % of the crack speed"),
+    ("negative_zone_length", "negative velocity, length", "mm", 1e3, "extent of this region along the crack"),
+    ("negative_zone_depth", "negative velocity, largest", "m/s", 1, "fastest backward motion ahead of the tip"),
+    ("velocity_asymmetry", "asymmetry", "1", 1,
+             "of the mean velocity, with samples of a descending path mirrored: 0 symmetric, 2 antisymmetric"),
+    ("samples_with_vortex", "samples with a vortex", "%", 100,
+             "share of single samples in which material rotates around a point near the tip"),
+    ("process_zone_length", "process zone, length", "mm", 1e3,
+             "extent of the material that follows the tip at more than half the speed of relaxed rubber"),
+    ("process_zone_share", "process zone, share", "%", 100,
+             "share of such material just behind the tip: 3 to 14 d behind it, up to 3 d to either side"),
+    ("opening_stress_angle_4d", "opening stress, angle", "degrees", 1,
+             "of the peak at 4 d from the tip, from the direction of the crack"),
+    ("opening_stress_ratio_4d", "opening stress, ratio", "1", 1,
+             "of the peak to the stress straight ahead; above 1 there is a lobe on either side"),
+    ("opening_stress_concentration_4d", "opening stress, concentration", "1", 1,
+             "peak at 4 d from the tip over the stress of the loaded sheet"),
+    ("opening_stress_peak_4d", "opening stress, peak", "MPa", 1e-6, "at 4 d from the tip, Cauchy"),
+    ("wedge_angle", "wedge angle", "degrees", 1, "between the flanks, mean over samples"),
+    ("speed_over_shear", "speed over shear waves", "1", 1,
+             "waves along the crack in the loaded sheet; the paper calls cracks above 1 supersonic"),
+    ("speed_over_longitudinal", "speed over longitudinal waves", "1", 1,
+             "waves along the crack in the loaded sheet"),
+)
+
+
+def near_tip_rows(near_tip):
+    """Samples, reason and rows of near_tip.json; no samples if nothing could be measured; None for None."""
+    if near_tip is None:
+        return None
+    rows = [("", [("short", label), ("number", "–" if near_tip[name] is None else number_text(
+        near_tip[name], near_tip.get(f"{name}_uncertainty"), scale=scale)), ("short", superscripts(unit)), ("words", meaning)])
+        for name, label, unit, scale, meaning in QUANTITIES if name in near_tip]
+    return {"samples": near_tip.get("samples") or 0, "reason": near_tip["reason"], "rows": rows}
+
+
+MOST_ROWS = 2000  # per interactive plot
+
+
+def path_plot(run):
+    """The path of the tip, with the sinusoid of an oscillating crack; None without a path."""
+    if not has_rows(run.tip, 2):
+        return None
+    tip = thinned(run.tip)
+    curves = {"X [cm]": 100 * tip["X"], "Y of the tip [mm]": 1e3 * tip["Y"]}
+    curve = measured_sinusoid(run)
+    crack = run.crack or {}
+    window = [crack.get("window_begin"), crack.get("window_end")]
+    if curve is not None:
+        inside = (tip["X"] >= window[0]) & (tip["X"] <= window[1])
+        curves["measured sinusoid [mm]"] = np.where(inside, 1e3 * curve(tip["X"]), np.nan)
+    return {
+        "labels": list(curves), "rows": rows_of(curves), "colours": ["--first", "--second"][:len(curves) - 1],
+        "dashed": [False, True][:len(curves) - 1], "x": "X in the undeformed sheet [cm]", "y": "Y [mm]", "follows": "tip",
+        "window": None if None in window or window[1] <= window[0] else [100 * end for end in window],
+    }
+
+
+def energy_plot(run):
+    """Conversion of the elastic energy; None without energies."""
+    if not has_rows(run.energy, 2):
+        return None
+    energy = thinned(run.energy)
+    released, shares = energy_shares(energy)
+    curves = {"t [ms]": 1e3 * energy["t"], "released [J/m]": released}
+    curves.update({f"{SHARES[name][0]} [J/m]": values for name, values in shares})
+    return {
+        "labels": list(curves), "rows": rows_of(curves), "colours": ["--text", *(f"--{name}" for name, _ in shares)],
+        "dashed": [True] + [False] * len(shares), "stacked": 2, "x": "time [ms]", "y": "energy [J/m]", "follows": "time",
+        "window": None,
+    }
+
+
+def thinned(table):
+    """A table reduced to at most MOST_ROWS rows, including the first and the last."""
+    count = len(table["t"])
+    rows = np.unique(np.round(np.linspace(0, count - 1, min(count, MOST_ROWS))).astype(int))
+    return {name: values[rows] for name, values in table.items()}
+
+
+def rows_of(curves):
+    """Rows of numbers to seven digits, sorted by the first column without repeated values; None for NaN."""
+    values = np.column_stack(list(curves.values()))
+    _, first = np.unique(values[:, 0], return_index=True)
+    return [[None if not np.isfinite(value) else float(f"{value:.7g}") for value in row] for row in values[first]]

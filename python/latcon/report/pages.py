@@ -37,13 +37,8 @@ def plural(count, one, many):
 
 
 def row(verdict, cells, word=None):
-    """A table row in the colour of its verdict. The first cell is the verdict, or `word`; cells are (class, text)."""
+    """A table row in the colour of its verdict, "" for none. The first cell is the verdict, or `word`; cells are (class, text)."""
     return verdict, [("verdict", f"{MARKS[verdict]} {word or verdict}"), *cells]
-
-
-def plain_row(cells):
-    """A table row without a verdict; cells are (class, text)."""
-    return "", list(cells)
 
 
 def number(value, form):

@@ -64,13 +64,6 @@ def colours_of(values, name, unit=""):
     return colours, [entry(f"{name} {value:.4g}{unit}", "-", colours[value]) for value in values]
 
 
-def plain_numbers(axis):
-    """Sets the ticks of a logarithmic axis to 1, 2, 5, as plain numbers."""
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.4g}"))
-    axis.set_minor_locator(NullLocator())
-
-
 def logarithmic(axes, x=True):
     """Makes axes logarithmic: decades along y, at least two, and plain numbers along x. Call this after drawing."""
     axes.set_yscale("log")
@@ -88,7 +81,9 @@ def logarithmic_along_x(axes):
     if not any(np.isfinite(np.asarray(line.get_ydata(), dtype=float)).any() for line in axes.lines):
         axes.set_xlim(0.1, 1)  # no data: without limits the logarithm would fail
     axes.set_xscale("log")
-    plain_numbers(axes.xaxis)
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.4g}"))
+    axes.xaxis.set_minor_locator(NullLocator())
 
 
 def note(axes, lines, corner="upper left"):

@@ -1,20 +1,23 @@
-"""Draws the pictures of runs and writes report.html."""
+"""Draws the pictures of runs and writes report.html, the contents of the template of that name."""
+import json
 import os
 import sys
 from pathlib import Path
 
+from markupsafe import Markup
+
 from ..errors import UnreadableFile
+from ..quantities import number_text
 from .claim_plots import all_plots
+from .claim_sections import WORDS, claim_sections
 from .crack_path import draw_crack_path
-from .field_pictures import draw_fields, has_fields
-from .pages import write_page
-from .motion import read_last_frame, read_motion
+from .crack_section import crack_section, pattern_phrase
 from .near_tip_plots import opening_stress_picture, velocity_picture
-from .page import contents
-from .pictures import draw_energy, draw_sheet
-from .runs import Unreadable, find_runs, has_rows
+from .pages import FAILED, has_dygraphs, number, plural, row, superscripts, write_page
+from .pictures import draw_energy, draw_fields, draw_sheet, has_fields
+from .runs import Unreadable, find_runs, has_rows, read_last_frame, read_motion
 from .sheet_data import LARGEST_SHEETS, sheet_data
-from .summary import text_summary
+from .summary import comparisons, percent, ratio_text, tallies, tally_of, text_summary, unpublished
 
 
 def draw_pictures(run, motion, folder):
@@ -58,13 +61,6 @@ def draw_plots(run, folder):
     return made
 
 
-def place_for(run, folder, output):
-    """Folder for the pictures of a run in `folder`: its place in `output`."""
-    place = output / run.folder.relative_to(folder)
-    place.mkdir(parents=True, exist_ok=True)
-    return place
-
-
 def report(folder, output_dir=None, quiet=False, animated=False):
     """Draws and writes the report of a folder.
 
@@ -78,7 +74,8 @@ def report(folder, output_dir=None, quiet=False, animated=False):
     for run in found:
         try:  # frames and fields are read here
             motion = read_motion(run) if run.is_fracture else None
-            place = place_for(run, folder, output)
+            place = output / run.folder.relative_to(folder)
+            place.mkdir(parents=True, exist_ok=True)
             pictures[run.folder] = draw_pictures(run, motion if animated else None, place) if run.is_fracture else {}
             sheets[run.folder] = None if motion is None else sheet_data(run, motion, most)
             plots[run.folder] = draw_plots(run, place)
@@ -96,3 +93,108 @@ def report(folder, output_dir=None, quiet=False, animated=False):
     if unreadable:
         return 2
     return 3 if any(c.verdict == "fails" for run in runs for c in run.checks) else 0
+
+
+def contents(title, runs, pictures, plots, sheets, unreadable=(), animated=False):
+    """Values of the template.
+
+    animated: whether animations were asked for. unreadable: runs that cannot be read
+    pictures: pictures of cracks, {folder of a run: {name of crack_section.CAPTIONS: (picture, still for print or None)}}
+    plots: plots of claims, {folder of a run: {plot name: (PNG file, error metrics)}}
+    sheets: viewer data of cracks (sheet_data.py), {folder of a run: data or None}
+    """
+    versions = sorted({f"latcon {run.info['version']}" for run in runs if run.info and "version" in run.info})
+    several = sum(run.crack is not None for run in runs) > 1
+    cracks = [crack_section(run, position, pictures.get(run.folder, {}), sheets.get(run.folder), animated)
+              for position, run in enumerate(runs) if run.is_fracture]
+    return {
+        "title": title, "versions": ", ".join(versions) or "latcon", "result": banner(runs, unreadable), "cracks": cracks,
+        "key_head": ["verdict", *(["run"] if several else []), "quantity", "#latcon", "#paper", "unit", "#difference"],
+        "key_rows": key_rows(runs, several), "claims": claim_sections(runs, plots), "counts": counts(runs),
+        "inputs": [{"name": run.name, "facts": facts(run), "case": run.case_text, "info": None if run.info is None else json.dumps(
+            run.info, indent=2, ensure_ascii=False)} for run in runs],
+        "with_plots": has_dygraphs() and bool(cracks), "with_viewer": any(sheet is not None for sheet in sheets.values()),
+    }
+
+
+def banner(runs, unreadable=()):
+    """The overall verdict: (class, text, most important notes)."""
+    checks = [check for run in runs for check in run.checks]
+    total = tally_of("", checks).count
+    checked = total["holds"] + total["fails"]
+    incomplete = [run for run in runs if run.state != "complete"]
+    unverified = [run for run in runs if run.skipped_verification]
+    notes = []
+    if total["fails"]:
+        kind, head = "fails", f"✗ Fails: {total['fails']} of {checked} checks {plural(total['fails'], 'fails', 'fail')}"
+        notes += [FAILED.format(f"{run.name}, {check.claim}: {check.quantity}", f", error {number(check.error, '.3g')}, allowed "
+                                                                                f"{number(check.tolerance, '.3g')}")
+                  for run in runs for check in run.checks if check.verdict == "fails"]
+    elif incomplete or unreadable:
+        kind, head = "warns", f"! Not complete: {'all checks made so far hold' if checked else 'nothing was checked'}"
+    elif unverified:
+        kind, head = "warns", f"! Not verified: {'all checks made hold' if checked else 'nothing was checked'}"
+    elif checked:
+        kind, head = "holds", f"✓ Holds: all {checked} checks are within their tolerances"
+    else:
+        kind, head = "reported", "· Reported: nothing here has a tolerance"
+    notes += [FAILED.format(f"{run.name}: cannot be read, not shown", f": {run.problem}") for run in unreadable]
+    notes += [f"{run.name}: the run {'was interrupted' if run.state == 'interrupted' else 'has not ended'}; "
+              "the results written so far are shown" for run in incomplete]
+    notes += [f"{run.name}: the crack was run without verification of its material and pre-stretch "
+              "(--skip-verification)" for run in unverified]
+    notes += [Markup("{}: {}").format(run.name, pattern_phrase(run.crack)) for run in runs if run.crack is not None]
+    if total["reported"]:
+        rows = plural(total["reported"], "1 row has", f"{total['reported']} rows have")
+        notes.append(f"{rows} no tolerance and {plural(total['reported'], 'is', 'are')} for information only")
+    return kind, head, notes
+
+
+def counts(runs):
+    """Rows of the table of counts by run and claim."""
+    rows = []
+    for position, run in enumerate(runs):
+        link = Markup('<a href="#run-{}">{}</a>').format(position, run.name)
+        for tally in tallies(run):
+            rows.append(row(tally.kind, [
+                ("short", link), ("short", Markup('<a href="#claim-{0}">{0}</a>').format(tally.claim)),
+                *(("number", str(tally.count[v])) for v in ("holds", "fails", "reported")),
+                ("number", ratio_text(tally.worst))], WORDS[tally.kind]))
+        if not run.checks:
+            word = "reported" if run.state == "complete" else run.state
+            rows.append(row(word, [("short", link), ("short", "none"), *[("number", "–")] * 4]))
+    return rows
+
+
+def facts(run):
+    """Version, commit, time and memory in one line, as far as run.json contains them."""
+    info = run.info or {}
+    found = []
+    if "version" in info:
+        found.append(f"latcon {info['version']}")
+    if "git_commit" in info:
+        commit, _, changed = str(info["git_commit"]).partition("-")
+        found.append(f"commit {commit[:12]}{' and changes' if changed else ''}")
+    if isinstance(info.get("wall_time_total_s"), (int, float)):
+        found.append(f"{info['wall_time_total_s']:.3g} s on {info.get('threads', '?')} threads")
+    if isinstance(info.get("peak_memory_bytes"), (int, float)):
+        found.append(f"{info['peak_memory_bytes'] / 1e6:.0f} MB")
+    verification = info.get("verification")
+    if isinstance(verification, dict) and verification.get("reused"):
+        found.append(f"cached verdicts of {verification.get('checked_at')}")
+    if run.state != "complete":
+        found.append(run.state)
+    return " · ".join(found)
+
+
+def key_rows(runs, several):
+    """Measured values of the cracks, with published values where there are any; with names if there are several runs."""
+    rows = [row(c.check.kind, [
+        *([("short", run.name)] if several else []), ("words", superscripts(c.quantity)),
+        ("number", "not measured" if c.measured is None else number_text(c.measured, c.uncertainty)),
+        ("number", number(c.published, ".4g")), ("short", superscripts(c.unit)), ("number", percent(c.difference))],
+        c.check.word) for run in runs for c in comparisons(run)]
+    return rows + [row("reported", [
+        *([("short", run.name)] if several else []), ("words", superscripts(quantity)),
+        ("number", number_text(value, uncertainty)), ("number", "–"), ("short", unit), ("number", "–")], "measured")
+        for run in runs for quantity, unit, value, uncertainty in unpublished(run)]

@@ -1,15 +1,20 @@
-"""Reader of the runs in a folder: their checks and measurements."""
+"""Reader of the runs in a folder: their checks and measurements, the last frame of a sheet, and those of its motion."""
 import math
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import INTERRUPTED, UnreadableFile
-from ..files import checked_number, if_present, read_columns, read_json, read_rows, read_text
+from ..files import checked_number, if_present, read_columns, read_json, read_rows, read_series, read_text
 from ..folder import EARLIER
+from ..frames import Frame, read_frame
 from .claim_plots import read_claim_tables
+from .raster import Mesh
 
 # A folder with any of these files is the output directory of a run, complete or interrupted.
 SIGNS_OF_A_RUN = ("results.json", "run.json", "crack.json", "crack.csv", "lattice.pvd")
+# Numbers of crack.json that the page shows, None where they were not measured.
+CRACK_NUMBERS = (*(name + ending for name in ("speed_lagrangian", "speed_laboratory", "wavelength", "amplitude")
+                   for ending in ("", "_uncertainty")), "window_begin", "window_end")
 # First columns of energy.csv of an equilibrium and of a motion of the continuum.
 CONTINUUM_ENERGIES = ("load_factor,", "t,elastic,kinetic,micro_inertia,")
 
@@ -151,8 +156,8 @@ def read_run(folder):
         has_results=rows is not None,
         info=info,
         case_text=if_present(read_text, folder / "case.prm"),
-        crack=read_crack(folder / "crack.json"),
-        near_tip=read_near_tip(folder / "near_tip.json"),
+        crack=read_numbers(folder / "crack.json", "pattern", CRACK_NUMBERS),
+        near_tip=read_numbers(folder / "near_tip.json", "reason"),
         tip=if_present(read_columns, folder / "crack.csv", ("t", "X", "Y")),
         broken=if_present(read_columns, folder / "broken_bonds.csv", ("t", "site", "other_site", "X", "Y")),
         energy=read_energy(folder / "energy.csv"),
@@ -174,7 +179,7 @@ def read_checks(path, rows, verified):
     """Checks of the rows of results.json, whose verdicts must follow from their numbers."""
     checks = [Check(**row, verified=verified) for row in rows]
     for number, check in enumerate(checks, start=1):
-        if check.verdict != expected_verdict(check):
+        if check.verdict != ("reported" if check.tolerance is None else "holds" if check.ratio <= 1 else "fails"):
             raise UnreadableFile(path, f"row {number} of \"claims\": the verdict {check.verdict!r} contradicts its numbers")
     return checks
 
@@ -188,32 +193,58 @@ def read_claims(path):
         raise UnreadableFile(path, f"holds no list of claims with name, title and statement: {error!r}") from error
 
 
-def expected_verdict(check):
-    """The verdict that follows from the numbers of a row."""
-    if check.tolerance is None:
-        return "reported"
-    return "holds" if check.ratio <= 1 else "fails"
-
-
-def read_crack(path):
-    """Reads crack.json and checks its numbers; None if there is none."""
-    crack = if_present(read_json, path)
-    if crack is None:
+def read_numbers(path, text, names=None):
+    """Reads crack.json or near_tip.json, which must have a text, and checks some numbers or all; None if there is none."""
+    found = if_present(read_json, path)
+    if found is None:
         return None
-    if not isinstance(crack.get("pattern"), str):
-        raise UnreadableFile(path, '"pattern" is missing')
-    measured = ("speed_lagrangian", "speed_laboratory", "wavelength", "amplitude")
-    for key in measured + tuple(f"{name}_uncertainty" for name in measured) + ("window_begin", "window_end"):
-        crack[key] = checked_number(path, key, crack.get(key))
-    return crack
+    if not isinstance(found.get(text), str):
+        raise UnreadableFile(path, f'"{text}" is missing')
+    names = [name for name in found if name not in (text, "units")] if names is None else names
+    return found | {name: checked_number(path, name, found.get(name)) for name in names}
 
 
-def read_near_tip(path):
-    """Reads near_tip.json and checks its numbers; None if there is none."""
-    near_tip = if_present(read_json, path)
-    if near_tip is None:
+FIELDS = ("displacement", "stretch", "velocity", "cauchy_stress", "damage", "site")  # that pictures show
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A sheet in motion; sites are numbered as in the frames."""
+
+    mesh: Mesh
+    whole: Frame  # first full frame, with bonds
+    frames: list  # of Frame, without bonds
+
+
+def read_last_frame(folder):
+    """Reads the last existing frame of points and lines listed in lattice.pvd; None if there is none."""
+    found = [(path, time) for time, path in if_present(read_series, folder / "lattice.pvd") or []
+             if path.suffix == ".vtp" and path.exists()]
+    return read_sheet(*found[-1]) if found else None
+
+
+def read_sheet(path, time):
+    """Reads a frame with its bonds."""
+    frame = read_frame(path, time, FIELDS)
+    if not len(frame.bonds):
+        raise UnreadableFile(path, "truncated, or without bonds")
+    return frame
+
+
+def read_motion(run):
+    """Reads the frames listed in motion.pvd of a run; None for fewer than two, or without the table of broken bonds."""
+    frames = [(time, path) for time, path in if_present(read_series, run.folder / "motion.pvd") or [] if path.exists()]
+    sheets = if_present(read_series, run.folder / "lattice.pvd")
+    if len(frames) < 2 or not sheets or not sheets[0][1].exists() or run.broken is None:
         return None
-    if not isinstance(near_tip.get("reason"), str):
-        raise UnreadableFile(path, '"reason" is missing')
-    return {key: value if key in ("reason", "units") else checked_number(path, key, value)
-            for key, value in near_tip.items()}
+    whole = read_sheet(sheets[0][1], sheets[0][0])
+    mesh = Mesh(whole, run.broken)
+    return Motion(mesh, whole, [read_reduced_frame(path, time, mesh) for time, path in frames])
+
+
+def read_reduced_frame(path, time, mesh):
+    """Reads a frame without bonds, with the sites of the mesh."""
+    frame = read_frame(path, time, FIELDS)
+    if "velocity" not in frame.fields or len(frame.position) <= mesh.bonds.max(initial=0):
+        raise UnreadableFile(path, "not a frame of the motion of this sheet: velocities or sites are missing")
+    return frame

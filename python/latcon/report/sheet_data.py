@@ -68,7 +68,8 @@ def contents(run, motion, frames):
     quantum = max(spacing / STEPS_PER_SPACING, float(np.abs(positions).max()) / LARGEST_INTEGER)
     speed_quantum = float(speeds.max()) / SPEED_STEPS or 1.0
     steps = np.round(positions / quantum).astype(np.int64)
-    stretch = [ends_distance(frame.position, mesh.bonds) / length for frame in (frames[0], frames[-1])]
+    stretch = [np.linalg.norm(frame.position[mesh.bonds[:, 0]] - frame.position[mesh.bonds[:, 1]], axis=1) / length
+               for frame in (frames[0], frames[-1])]
     breaking = run.input_number("Fracture/breaking stretch")
     low, high = np.percentile(np.concatenate(stretch), (1, 99)) if len(length) else (1.0, 2.0)
     return {
@@ -78,7 +79,7 @@ def contents(run, motion, frames):
         "speedQuantum": speed_quantum,
         "position": packed(np.diff(steps, axis=0, prepend=0)),
         "speed": packed(np.round(speeds / speed_quantum)),
-        "reference": packed_floats(whole.reference.T),
+        "reference": deflated(whole.reference.T.astype("<f8")),
         "site": packed(whole.fields.get("site", np.arange(len(whole.reference)))),
         "degree": packed(bonds_at_first(whole, mesh)),
         "bonds": packed(mesh.bonds.T),
@@ -91,7 +92,10 @@ def contents(run, motion, frames):
         "ranges": {"stretch": [float(low), max(float(breaking or high), float(low) + 1e-3)],
                    "speed": [0.0, float(max(np.percentile(speed, 99) for speed in speeds)) or 1.0],
                    "damage": [0.0, 1.0]},
-        "colours": {name: colour_table(*parts) for name, parts in COLOURS.items()},
+        # Tables of 256 colours (RGB), in base64.
+        "colours": {name: base64.b64encode(np.round(255 * matplotlib.colormaps[colours](np.linspace(low, high, 256))[:, :3])
+                                           .astype(np.uint8).tobytes()).decode("ascii")
+                    for name, (colours, low, high) in COLOURS.items()},
     }
 
 
@@ -100,11 +104,6 @@ def box_of(positions):
     low, high = np.percentile(positions, 0.1, axis=2).min(axis=0), np.percentile(positions, 99.9, axis=2).max(axis=0)
     low, high = np.minimum(low, positions[0].min(axis=1)), np.maximum(high, positions[0].max(axis=1))
     return np.column_stack((low, high)).tolist()
-
-
-def ends_distance(position, bonds):
-    """Current lengths of bonds [m]."""
-    return np.linalg.norm(position[bonds[:, 0]] - position[bonds[:, 1]], axis=1)
 
 
 def bonds_at_first(frame, mesh):
@@ -123,12 +122,6 @@ def tip_points(tip, times, reference):
     return [int(((reference - place) ** 2).sum(axis=1).argmin()) for place in places]
 
 
-def colour_table(name, low, high):
-    """Table of 256 colours (RGB), in base64."""
-    colours = np.round(255 * matplotlib.colormaps[name](np.linspace(low, high, 256))[:, :3]).astype(np.uint8)
-    return base64.b64encode(colours.tobytes()).decode("ascii")
-
-
 def packed(integers):
     """Compresses integers of at most 31 bits; differences are taken along the last axis."""
     integers = np.asarray(integers).astype(np.int64)
@@ -136,13 +129,7 @@ def packed(integers):
     return deflated(((steps << 1) ^ (steps >> 63)).astype("<u4"))
 
 
-def packed_floats(values):
-    """Compresses numbers in double precision."""
-    return deflated(np.ascontiguousarray(values, dtype="<f8"))
-
-
 def deflated(array):
-    """Shape of an array, and its bytes grouped by significance and deflated."""
+    """Shape of an array, and its bytes grouped by significance, deflated, in base64."""
     weights = np.ascontiguousarray(array).reshape(-1).view(np.uint8).reshape(-1, array.itemsize).T
-    data = base64.b64encode(zlib.compress(weights.tobytes())).decode("ascii")
-    return {"shape": list(array.shape), "data": data}
+    return {"shape": list(array.shape), "data": base64.b64encode(zlib.compress(weights.tobytes())).decode("ascii")}

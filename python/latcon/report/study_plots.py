@@ -1,11 +1,66 @@
-"""Plots of a study: paths of cracks, quantities along a sweep, speeds by pattern."""
+"""Plots of a study: paths of cracks, quantities along a sweep, speeds by pattern; names and customary units of quantities."""
 import numpy as np
 from matplotlib.lines import Line2D
 
+from ..files import if_present, read_columns
+from ..quantities import shown_unit
 from .phase_map import COLOURS, Cell, draw_phase_map
 from .pictures import BLACK, BLUE, GREEN, GREY, RED, SKY, WIDTH, Page, save
-from .study_quantities import against_axis, entry_axis, quantity_axis
-from .study_runs import mean_of, patterns_of, tip_path
+from .study_runs import mean_of, patterns_of
+
+# Columns of the tables of runs: quantity, scale to the unit shown, head.
+MEASURED = (("speed_lagrangian", 1, "speed\n[m/s]"), ("wavelength", 100, "wavelength\n[cm]"),
+            ("amplitude", 100, "amplitude of\nsinusoid [cm]"),
+            ("crest_amplitude", 100, "half trough\nto crest [cm]"),
+            ("bridged_length", 100, "bridged\nlength [cm]"), ("detached_sites", 1, "detached\nsites"))
+NEAR_TIP = (("speed_over_shear", 1, "speed over\nshear speed"),
+            ("negative_zone_area", 1e6, "area of negative\nvelocity [mm²]"),
+            ("negative_zone_depth", 1, "most negative\nv_x [m/s]"),
+            ("velocity_asymmetry", 1, "asymmetry\nof velocity"),
+            ("process_zone_length", 1e3, "process\nzone [mm]"),
+            ("opening_stress_ratio_4d", 1, "σ_yy at 4 d:\npeak / ahead"),
+            ("opening_stress_angle_4d", 1, "angle of\nthe peak [°]"), ("wedge_angle", 1, "wedge\nangle [°]"))
+# Quantities that describe the shape of a path.
+PATH = ("wavelength", "amplitude", "crest_amplitude")
+# Abscissas: scale to the unit shown, label.
+AGAINST = {"zeta": (1, "ζ = (η/a) / (d √(ρ/a))"), "Sheet/spacing": (1e3, "d [mm]"),
+           "Sheet/height": (100, "height of the sheet, undeformed [cm]"),
+           "Sheet/length": (100, "length of the sheet, undeformed [cm]"),
+           "Lattice/noise amplitude": (1, "noise amplitude / d"),
+           "Loading/strain x": (1, "strain x, along the crack"), "Loading/strain y": (1, "strain y, across the crack")}
+
+
+def quantity_axis(quantity, unit):
+    """(scale to the unit shown, label) of a quantity with an SI unit."""
+    for name, scale, head in MEASURED + NEAR_TIP:
+        if name == quantity:
+            return scale, head.replace("\n", " ")
+    scale, shown = shown_unit(unit)
+    return scale, f"{quantity.replace('_', ' ')} [{shown or '1'}]"
+
+
+def entry_axis(name, unit):
+    """(scale to the unit shown, label) of an entry of a case with an SI unit, or of zeta."""
+    if name in AGAINST:
+        return AGAINST[name]
+    scale, shown = shown_unit(unit)
+    return scale, f"{name} [{shown}]" if shown else name
+
+
+def asked_quantities(rows):
+    """Quantities of rows along one abscissa; those that describe the path in place of the pattern."""
+    names = [name for row in rows for name in (PATH if row["quantity"] == "pattern" else (row["quantity"],))]
+    return list(dict.fromkeys(names))
+
+
+def sweeps_of(rows):
+    """Rows with an abscissa, grouped by abscissa and runs: [[row, ...], ...]."""
+    sweeps = {}
+    for row in rows:
+        if row["against"]:
+            sweeps.setdefault((row["against"], tuple(row["runs"])), []).append(row)
+    return list(sweeps.values())
+
 
 # Marker and colour of each pattern, as in the map.
 PATTERNS = {pattern: (marker, COLOURS[pattern]) for pattern, marker in (
@@ -54,8 +109,10 @@ def draw_map(study, path):
 
 def draw_paths(study, names, path):
     """Draws paths of the tip, one panel per run with its seeds superimposed. @return whether there are any"""
-    paths = {name: [(seed, way) for seed in study.runs[name][2] if (way := tip_path(seed)) is not None]
-             for name in names}
+    tables = {name: [(seed, if_present(read_columns, seed.folder / "crack.csv", ("X", "Y"))) for seed in study.runs[name][2]]
+              for name in names}
+    paths = {name: [(seed, (tip["X"], tip["Y"])) for seed, tip in found if tip is not None and len(tip["X"]) > 1]
+             for name, found in tables.items()}
     paths = {name: ways for name, ways in paths.items() if ways}
     if not paths:
         return False
@@ -89,7 +146,7 @@ def draw_sweep(study, row, quantities, path, onsets=None):
     points = [(x, seeds) for x, seeds in points if patterns_of(seeds)]
     if not points:
         return False
-    unit, name = against_axis(row)
+    unit, name = entry_axis(row["against"], row["against_unit"])
     points = [(unit * x, seeds) for x, seeds in points]
     columns = min(3, len(quantities))
     panels = Panels(len(quantities), columns, 2.2 if columns == 3 else 2.6)
@@ -111,7 +168,9 @@ def draw_sweep(study, row, quantities, path, onsets=None):
         if min(x for x, _ in points) > 0 and max(x for x, _ in points) > DECADES * min(x for x, _ in points):
             axes.set_xscale("log")
     shown = {next(iter(patterns_of(seeds))) for _, seeds in points}
-    panels.page.figure.legend(handles=[legend_entry(pattern) for pattern in PATTERNS if pattern in shown],
+    panels.page.figure.legend(handles=[
+        Line2D([], [], linestyle="none", marker=marker, color=colour, label=pattern)
+        for pattern, (marker, colour) in PATTERNS.items() if pattern in shown],
                               loc="upper left", bbox_to_anchor=(LEFT / WIDTH, 1), ncol=4)
     save(panels.page.figure, path)
     return True
@@ -122,12 +181,6 @@ def draw_onset(axes, fit, unit, scale, end):
     distance = np.linspace(0, end / unit - fit["onset"]["value"], 200)
     axes.plot(unit * (fit["onset"]["value"] + distance), scale * fit["prefactor"] * distance ** fit["exponent"]["value"],
               color=GREY, linewidth=1)
-
-
-def legend_entry(pattern):
-    """Legend entry with the symbol and colour of a pattern."""
-    marker, colour = PATTERNS[pattern]
-    return Line2D([], [], linestyle="none", marker=marker, color=colour, label=pattern)
 
 
 def draw_speeds(study, path):

@@ -3,24 +3,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import UnreadableFile
-from ..files import if_present, read_columns, read_json
+from ..files import if_present, read_json
 from ..quantities import number_text
-from ..study.outcome import RunState
-from ..study.seeds import statistics
+from ..study.outcome import RunOutcome, RunState, statistics
 
 
-@dataclass(frozen=True)
-class Seed:
-    """One run with one seed."""
+@dataclass
+class Seed(RunOutcome):
+    """One run with one seed; without a pattern if it was not measured."""
 
-    run: str
-    seed: int
-    folder: Path
-    state: RunState
-    problem: str
-    pattern: str  # None if not measured
-    wall_time: float  # [s]
-    values: dict  # {quantity: number}, SI; without those that were not measured
+    folder: Path = Path()
 
     @property
     def is_measured(self):
@@ -69,9 +61,9 @@ def read_study(folder):
     path = folder / "study.json"
     document = read_json(path)
     try:
-        seeds = [Seed(s["run"], s["seed"], folder / s["folder"], RunState(s["state"]), s["problem"], s["pattern"],
-                      wall_time(folder / s["folder"]), {name: value for name, value in s["values"].items() if value is not None})
-                 for s in document["seeds"]]
+        seeds = [Seed(s["run"], s["seed"], RunState(s["state"]), problem=s["problem"], pattern=s["pattern"],
+                      values={name: value for name, value in s["values"].items() if value is not None},
+                      wall_time=wall_time(folder / s["folder"]), folder=folder / s["folder"]) for s in document["seeds"]]
         runs = {run["run"]: (run["about"], run["set"], [seed for seed in seeds if seed.run == run["run"]])
                 for run in document["runs"]}
     except (AttributeError, KeyError, TypeError, ValueError) as error:
@@ -95,17 +87,6 @@ def patterns_of(seeds):
     """Number of seeds with each pattern, the most frequent first: {pattern: count}."""
     found = [seed.pattern for seed in seeds if seed.pattern]
     return {pattern: found.count(pattern) for pattern in sorted(set(found), key=lambda p: (-found.count(p), p))}
-
-
-def tip_path(seed):
-    """Path of the tip in the undeformed sheet, (X, Y) in m; None if the run has none."""
-    table = if_present(read_columns, seed.folder / "crack.csv", ("X", "Y"))
-    return None if table is None or len(table["X"]) < 2 else (table["X"], table["Y"])
-
-
-def first_measured(study, name):
-    """The first seed of a run that was measured; None if there is none."""
-    return next((seed for seed in study.runs[name][2] if seed.is_measured), None)
 
 
 def value_text(mean, scale=1.0):

@@ -12,7 +12,6 @@ VERDICTS = ("fails", "holds", "reported")
 class Tally:
     """Number of rows of one claim in one run, by verdict."""
 
-    run: Run
     claim: str
     count: dict  # verdict: number of rows
     worst: float  # largest error over tolerance; None if no row has a tolerance
@@ -32,11 +31,6 @@ class Comparison:
     check: Check  # the row
 
     @property
-    def verdict(self):
-        """Its verdict."""
-        return self.check.verdict
-
-    @property
     def difference(self):
         """Relative difference from the published value [1]; None if nothing was measured."""
         return None if self.measured is None or self.published == 0 else self.measured / self.published - 1
@@ -44,19 +38,16 @@ class Comparison:
 
 def tallies(run):
     """One Tally per claim, in the order in which the claims were checked."""
-    result = []
-    for claim in dict.fromkeys(check.claim for check in run.checks):
-        rows = [check for check in run.checks if check.claim == claim]
-        result.append(tally_of(run, claim, rows))
-    return result
+    return [tally_of(claim, [check for check in run.checks if check.claim == claim])
+            for claim in dict.fromkeys(check.claim for check in run.checks)]
 
 
-def tally_of(run, claim, checks):
+def tally_of(claim, checks):
     """Tally of the given rows."""
     ratios = [check.ratio for check in checks if check.ratio is not None]
     count = {verdict: sum(check.verdict == verdict for check in checks) for verdict in VERDICTS}
     kind = next((kind for kind in ("fails", "warns", "holds") if any(check.kind == kind for check in checks)), "reported")
-    return Tally(run, claim, count, max(ratios, default=None), kind)
+    return Tally(claim, count, max(ratios, default=None), kind)
 
 
 def comparisons(run):
@@ -66,7 +57,8 @@ def comparisons(run):
         if check.claim != "fracture" or check.theory is None:
             continue
         scale, unit = shown_unit(check.unit)
-        uncertainty = uncertainty_of(check.quantity, run.crack)
+        name = NAMES.get(check.quantity)
+        uncertainty = run.crack[f"{name}_uncertainty"] if name and run.crack is not None else None
         measured = check.continuum if check.lattice is None else check.lattice
         result.append(Comparison(run, check.quantity, unit or "1", *(
             None if value is None else scale * value for value in (check.theory, measured, uncertainty)), check))
@@ -76,11 +68,6 @@ def comparisons(run):
 # Rows of the claim "fracture", and their names in crack.json.
 NAMES = {"Lagrangian crack speed": "speed_lagrangian", "laboratory crack speed": "speed_laboratory",
          "wavelength, undeformed": "wavelength", "amplitude, undeformed": "amplitude"}
-
-
-def uncertainty_of(quantity, crack):
-    """Uncertainty that crack.json gives for the quantity of a row; None if there is none."""
-    return crack[f"{NAMES[quantity]}_uncertainty"] if crack is not None and quantity in NAMES else None
 
 
 def unpublished(run):
@@ -145,7 +132,7 @@ def text_summary(runs, unreadable=()):
         parts.append(text_table(["run", "fails", "error / tolerance"], failing, (2,)))
     compared = [[shortened(c.run.name), c.quantity, c.unit, f"{c.published:.4g}",
                  "-" if c.measured is None else number_text(c.measured, c.uncertainty, "+-"),
-                 percent(c.difference), c.verdict]
+                 percent(c.difference), c.check.verdict]
                 for run in runs for c in comparisons(run)]
     if compared:
         parts.append(text_table(["run", "quantity", "unit", "paper", "latcon", "difference", "verdict"], compared,

@@ -13,10 +13,9 @@ from ..errors import DONE
 from ..case import set_options
 from ..folder import FolderLock, write_file
 from .output import plan_table
-from .plan import plan_runs
-from .record import Printed
-from .requested import RequestedStudy, read_requested_study, require_folder_of, require_no_refinement, verification_of
+from .plan import RequestedStudy, plan_runs, read_requested_study, require_folder_of, require_no_refinement, verification_of
 from .program import InputError, Program, printable
+from .record import Printed
 
 _MAX_DEFAULT_TASKS = 1000  # MaxArraySize of Slurm is 1001 unless configured
 

@@ -1,6 +1,9 @@
 """``latcon study``, ``latcon batch`` and ``latcon compare`` of two cracks, with the options that the program has parsed."""
 from __future__ import annotations
 
+import bisect
+import dataclasses
+import math
 import os
 import signal
 import time
@@ -14,13 +17,13 @@ from ..folder import FolderLock, prepare_run, remove, require_in_place, write_fi
 from .batch import write_batch
 from .outcome import RunOutcome, RunState, is_begun, is_finished, read_outcome
 from .output import StudyResults, plan_table, result_table, study_csv, study_json
-from .plan import PlannedRun, Verification, base_text, plan_runs
+from .plan import (PLAN_FILE, PlannedRun, Verification, base_text, parse_shard, plan_difference, plan_runs, plan_text,
+                   read_requested_study, require_folder_of, require_no_refinement, runs_of_shard, verification_of)
 from .pool import run_processes
-from .program import Ended, InputError, Interrupted, Program, Signals
+from .program import Ended, InputError, Interrupted, Program, Signals, read_input
 from .record import Printed, Progress, Record, draw_page, output_is_lost, say_error
-from .refinement import refined_runs
-from .requested import read_requested_study, require_folder_of, require_no_refinement, verification_of
-from .shard import PLAN_FILE, parse_shard, plan_difference, plan_text, runs_of_shard
+from .study_file import Study, StudyRun
+from .sweep import MAX_NAME_LENGTH, combination_name, plain_number
 from .table import judge_study
 
 # Each shard holds the lock of the study for the time that writing its plan takes [s].
@@ -262,12 +265,10 @@ class _StudyCommand:
     def require_plan(self, text: str) -> None:
         """Checks that a plan is the recorded one of the study whose shards run in the directory."""
         file = os.path.join(self.directory, PLAN_FILE)
-        try:
-            with open(file, encoding="utf-8", errors="replace") as stream:
-                stored = stream.read()
-        except OSError:
-            raise InputError(f"{file} cannot be read: no shard of this study was run in {self.directory}") from None
-        if difference := plan_difference(stored, text):
+        stored, problem = read_input(file)
+        if problem:
+            raise InputError(f"{file} cannot be read: no shard of this study was run in {self.directory}")
+        if difference := plan_difference(stored.decode("utf-8", "replace"), text):
             raise InputError(f"{self.directory} belongs to the runs of another plan: {difference}; choose another folder "
                              "(--output-dir)")
 
@@ -287,3 +288,63 @@ class _StudyCommand:
             named = ", ".join(missing[:8]) + (", ..." if len(missing) > 8 else "")
             raise InputError(f"--collect: {len(missing)} of {len(self.results.plan)} runs have not been run to their end by this "
                              f"program: {named}; run their shards again")
+
+
+def refined_runs(study: Study, plan: Sequence[PlannedRun], outcomes: Sequence[RunOutcome], level: int) -> list[StudyRun]:
+    """Returns the runs half way between neighbours of a swept grid with different patterns.
+
+    They bracket the boundary between two patterns at half the distance. Neighbours are points at the spacing of this level,
+    from 1, along one swept entry, with the same values of the others: the spacing of the grid for level 1, half of it for level
+    2, and so on; values between those of the grid are interpolated. Two points differ unless all seeds of both have the same
+    pattern, where ``undecided`` is a pattern. A point without a measured seed differs from none. The values of the sweep are
+    numbers; the study has the runs of the earlier levels, with a seed each in `plan`, and `outcomes` in the same order.
+    """
+    swept = {run.name: run for run in study.runs if run.is_swept}
+    planned = {run.run: run for run in plan if run.run in swept}
+    def value(run: PlannedRun, entry: str) -> float:
+        number = run.value(entry)
+        assert number is not None, f"{entry} is not a number"
+        return number
+
+    axes = [sorted({value(run, entry) for run in planned.values() if swept[run.run].level == 0}) for entry in study.swept]
+    per_interval = 2**level  # points of this level are at odd indices
+    points = {tuple(_index(axis, value(run, entry), per_interval) for entry, axis in zip(study.swept, axes)): name
+              for name, run in planned.items()}
+    patterns: dict[str, set[str]] = {}
+    for outcome in outcomes:
+        if outcome.state is RunState.MEASURED:
+            patterns.setdefault(outcome.run, set()).add(outcome.pattern)
+    found: dict[tuple[int, ...], StudyRun] = {}
+    for at, name in sorted(points.items()):
+        for i in range(len(axes)):
+            middle, following = (at[:i] + (at[i] + shift,) + at[i + 1:] for shift in (1, 2))
+            if following not in points or middle in points:
+                continue
+            seen = patterns.get(name, set()), patterns.get(points[following], set())
+            if not all(seen) or seen[0] == seen[1] and len(seen[0]) == 1 or middle in found:
+                continue
+            values = [plain_number(_value_at(axis, index, per_interval)) for axis, index in zip(axes, middle)]
+            own = dict(zip(study.swept, values))
+            run = swept[name]
+            found[middle] = dataclasses.replace(run, name=combination_name(study.swept, values), level=level, own=run.own | own,
+                                                all=run.all | own)
+    names = {run.name for run in study.runs}
+    refined = [run for _, run in sorted(found.items())]
+    for number, run in enumerate(refined, 1):
+        if len(run.name) > MAX_NAME_LENGTH or run.name in names:
+            run.name = f"level-{level}-{number}"
+    return refined
+
+
+def _value_at(axis: Sequence[float], index: int, per_interval: int) -> float:
+    left, rest = divmod(index, per_interval)
+    return axis[left] if rest == 0 else axis[left] + rest / per_interval * (axis[left + 1] - axis[left])
+
+
+def _index(axis: Sequence[float], value: float, per_interval: int) -> int:
+    """Returns the index of the finest level closest to a value, since values are written with twelve digits."""
+    if len(axis) < 2:
+        return 0
+    above = bisect.bisect_right(axis, value, 1, len(axis) - 1)
+    share = (value - axis[above - 1]) / (axis[above] - axis[above - 1])
+    return (above - 1) * per_interval + math.floor(share * per_interval + 0.5)

@@ -3,23 +3,26 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import functools
 import io
 import json
 import math
+import operator
 import re
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
-from .onset import Interval, OnsetFit
-from .outcome import RunOutcome, RunState
+import numpy as np
+
+from .outcome import RunOutcome, RunState, group_by_run, statistics
 from .plan import PlannedRun, Verification
-from .seeds import SeedStatistics, group_by_run, statistics
 from .program import Program
 from .study_file import Rule, Study
 from .table import ClaimOutcome, RowOutcome
 
 _WIDTH = 120
+_INTERVAL = ("value", "low", "high")
 
 
 @dataclasses.dataclass
@@ -43,7 +46,11 @@ def study_json(program: Program, results: StudyResults) -> str:
         "settings": study.settings, "units": program.units,
         "runs": [{"run": run.name, "about": run.about, "set": run.own, "level": run.level} for run in study.runs],
         "swept": study.swept, "varied": _varied(program, results), "left_out": study.left_out, "pictures": study.pictures,
-        "seeds": [_seed(program, planned, outcome) for planned, outcome in zip(results.plan, results.outcomes)],
+        "seeds": [{"run": outcome.run, "seed": outcome.seed, "folder": f"runs/{planned.folder}", "state": outcome.state.value,
+                   "exit_code": outcome.exit_code, "problem": outcome.problem, "pattern": outcome.pattern or None,
+                   "reason": outcome.reason, "side": planned.side, "sites": int(planned.size),
+                   "values": {name: outcome.values.get(name) for name in program.units}}
+                  for planned, outcome in zip(results.plan, results.outcomes)],
         "claims": [{"claim": claim.claim.claim, "paper": claim.claim.paper, "note": claim.claim.note,
                     "verdict": claim.verdict.value, "rows": [_row(row) for row in claim.rows]} for claim in results.claims]}
     return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
@@ -54,42 +61,25 @@ def _finite(value: float | None) -> float | str | None:
     return value if value is None or math.isfinite(value) else str(value)
 
 
-def _seed(program: Program, planned: PlannedRun, outcome: RunOutcome) -> dict[str, Any]:
-    return {"run": outcome.run, "seed": outcome.seed, "folder": f"runs/{planned.folder}", "state": outcome.state.value,
-            "exit_code": outcome.exit_code, "problem": outcome.problem, "pattern": outcome.pattern or None, "reason": outcome.reason,
-            "side": planned.side, "sites": int(planned.size),
-            "values": {name: outcome.values.get(name) for name in program.units}}
-
-
 def _row(outcome: RowOutcome) -> dict[str, Any]:
-    row = outcome.row
-    document: dict[str, Any] = {"runs": row.runs, "quantity": row.quantity, "unit": row.unit, "against": row.against or None,
-                "against_unit": row.against_unit if row.against else None, "expected": outcome.expected,
-                "measured": "; ".join(outcome.measured), "number": _finite(outcome.number)}
+    row, fit = outcome.row, outcome.onset
+    document: dict[str, Any] = {
+        "runs": row.runs, "quantity": row.quantity, "unit": row.unit, "against": row.against or None,
+        "against_unit": row.against_unit if row.against else None, "expected": outcome.expected,
+        "measured": "; ".join(outcome.measured), "number": _finite(outcome.number)}
     if row.rule is Rule.ONSET_EXPONENT:
-        document["onset"] = _onset(outcome.onset)
-    return document | {"note": "; ".join(outcome.note), "verdict": outcome.verdict.value,
-                       "values": [_statistics(seeds) for seeds in outcome.runs]}
-
-
-def _statistics(seeds: SeedStatistics) -> dict[str, Any]:
-    return {"run": seeds.run, "against": _finite(seeds.abscissa), "seeds": seeds.n_seeds, "n": seeds.n, "mean": _finite(seeds.mean),
-            "standard_deviation": _finite(seeds.deviation), "patterns": seeds.patterns, "undecided": seeds.n_undecided}
-
-
-def _onset(fit: OnsetFit | None) -> dict[str, Any] | None:
-    def interval(values: Interval) -> dict[str, float]:
-        return dict(zip(("value", "low", "high"), values))
-
-    return None if fit is None else {"exponent": interval(fit.exponent), "onset": interval(fit.onset), "prefactor": fit.prefactor, "p_fit": fit.p_fit}
+        document["onset"] = fit and {
+            "exponent": dict(zip(_INTERVAL, fit.exponent)), "onset": dict(zip(_INTERVAL, fit.onset)), "prefactor": fit.prefactor,
+            "p_fit": fit.p_fit}
+    return document | {"note": "; ".join(outcome.note), "verdict": outcome.verdict.value, "values": [
+        {"run": seeds.run, "against": _finite(seeds.abscissa), "seeds": seeds.n_seeds, "n": seeds.n, "mean": _finite(seeds.mean),
+         "standard_deviation": _finite(seeds.deviation), "patterns": seeds.patterns, "undecided": seeds.n_undecided}
+        for seeds in outcome.runs]}
 
 
 def _varied(program: Program, results: StudyResults) -> list[dict[str, Any]]:
     """Entries in which the runs differ, with their value in each run: a number, or a text."""
-    runs: list[PlannedRun] = []
-    for run in results.plan:
-        if not runs or runs[-1].run != run.run:
-            runs.append(run)
+    runs = list({run.run: run for run in reversed(results.plan)}.values())[::-1]  # the first seed of each
     keys = dict.fromkeys(key for run in results.study.runs for key in run.own)
     entries = [{"entry": key, "unit": program.entries[key].unit or "", "values": [run.values.get(key, "") for run in runs]} for key in keys]
     return [entry for entry in entries if any(value != entry["values"][0] for value in entry["values"])]
@@ -97,32 +87,23 @@ def _varied(program: Program, results: StudyResults) -> list[dict[str, Any]]:
 
 def study_csv(program: Program, results: StudyResults) -> str:
     """Returns the content of `study.csv`: a line per run and seed, empty fields for quantities that were not measured."""
-    text = io.StringIO()
-    table = csv.writer(text, lineterminator="\n")
-    table.writerow(["run", "seed", "set", "state", "pattern", *(f"{name} [{unit}]" for name, unit in program.units.items())])
     own = {run.name: "; ".join(f"{key}={value}" for key, value in run.own.items()) for run in results.study.runs}
-    for outcome in results.outcomes:
-        table.writerow([outcome.run, outcome.seed, own[outcome.run], outcome.state.value, outcome.pattern,
-                        *(shortest(outcome.values.get(name)) for name in program.units)])
+    return csv_text(["run", "seed", "set", "state", "pattern", *(f"{name} [{unit}]" for name, unit in program.units.items())],
+                    [[outcome.run, outcome.seed, own[outcome.run], outcome.state.value, outcome.pattern,
+                      *(outcome.values.get(name) for name in program.units)] for outcome in results.outcomes])
+
+
+def csv_text(header: Sequence[str], rows: Iterable[Iterable[Any]]) -> str:
+    """Returns a table: numbers in their shortest form, None as an empty field."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(
+        [header, *([shortest(value) if isinstance(value, float) else value for value in row] for row in rows)])
     return text.getvalue()
 
 
-def shortest(value: float | None) -> str:
-    """Returns the shortest text that converts back to the same number, in the form of C++."""
-    if value is None:
-        return ""
-    mantissa, e, exponent = repr(float(value)).partition("e")
-    plain = mantissa.removesuffix(".0")
-    if e:
-        return f"{plain}e{exponent}"
-    digits = plain.lstrip("-").replace(".", "").lstrip("0")
-    if not digits:
-        return plain
-    # The shorter of the two forms, of equal ones the plain one.
-    power = math.floor(math.log10(abs(value)))
-    significant = digits.rstrip("0")
-    scientific = ("-" if value < 0 else "") + significant[0] + ("." + significant[1:] if significant[1:] else "") + f"e{power:+03d}"
-    return scientific if len(scientific) < len(plain) and float(scientific) == value else plain
+def shortest(value: float) -> str:
+    """Returns the shortest text that converts back to the same number, as C++ writes it: of equal ones without an exponent."""
+    return min(np.format_float_positional(value, trim="-"), np.format_float_scientific(value, trim="-", exp_digits=2), key=len)
 
 
 def plan_table(study: Study, plan: Sequence[PlannedRun], n_cores: int) -> str:
@@ -131,9 +112,7 @@ def plan_table(study: Study, plan: Sequence[PlannedRun], n_cores: int) -> str:
     lines = [f"{'run':<{width}}{'size':>10}{'evaluations':>12}{'core time':>12}"]
     lines += [f"{run.folder:<{width}}{_rounded(run.size):>10}{_rounded(run.evaluations):>12}{math.ceil(run.seconds):>10} s"
               for run in plan]
-    total = 0.0
-    for run in plan:
-        total += run.seconds
+    total = functools.reduce(operator.add, (run.seconds for run in plan), 0.0)  # in order, see statistics()
     lines.append(f"{len(plan)} runs, about {math.ceil(total / 60)} core minutes, {math.ceil(total / 60 / n_cores)} minutes on "
                  f"{n_cores} cores")
     if study.refine:

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Callable, Sequence
+from typing import Any
 
 _POLL_INTERVAL = 0.02  # [s]
 _PATIENCE = 60.0  # [s] until a child that does not end is killed
@@ -19,27 +20,15 @@ _LAUNCHER = ("OMPI_", "PMIX_", "PMI_")
 def run_processes(n_jobs: int, limit: int, start: Callable[[int], tuple[Sequence[str], str]],
                   ended: Callable[[int, int], None], waiting: Callable[[Sequence[int]], None],
                   stop: Callable[[], bool]) -> bool:
-    """Runs jobs in their order, at most `limit` at a time, and waits for all of them.
+    """Runs jobs in their order, at most `limit` at a time, and waits for all of them; returns whether all ended by themselves.
 
-    Children have no standard input and no variables of MPI launchers, so that each is a separate job of MPI. They ignore SIGINT:
-    this process handles it. They get SIGTERM if this process dies. A failed job does not stop the others.
+    Children have no standard input and no variables of MPI launchers, so that each is a separate job of MPI. They ignore
+    SIGINT: this process handles it. They get SIGTERM if this process dies. A failed job does not stop the others.
 
-    Parameters
-    ----------
-    start
-        Returns command and log file of a job, called just before it starts. The log gets standard output and error.
-    ended
-        Called when a job has ended by itself, with its exit status: 128 + the signal that killed it, or 127 if it could not start.
-    waiting
-        Called several times per second with the running jobs.
-    stop
-        Called equally often; returns True to end early. Then no more jobs start, and running jobs get SIGTERM, and SIGKILL a
-        minute later.
-
-    Returns
-    -------
-    bool
-        Whether all jobs ended by themselves.
+    `start` returns command and log file of a job, called just before it starts; the log gets standard output and error. `ended`
+    is called when a job has ended by itself, with its exit status: 128 + the signal that killed it, or 127 if it could not
+    start. `waiting` is called several times per second with the running jobs, and equally often `stop`, which returns True to
+    end early: then no more jobs start, and running jobs get SIGTERM, and SIGKILL a minute later.
     """
     running: dict[int, subprocess.Popen[bytes] | None] = {}
     following = 0
@@ -66,30 +55,25 @@ def run_processes(n_jobs: int, limit: int, start: Callable[[int], tuple[Sequence
         _end([child for child in running.values() if child is not None])
 
 
-def environment_of_children() -> dict[str, str]:
-    """Returns the variables of this process without those that would make a child a rank of another job."""
-    return {name: value for name, value in os.environ.items()
-            if not name.startswith(_LAUNCHER) and name not in ("FLUX_JOB_ID", "LATCON_PROGRESS", "PYTHONPATH")}
-
-
-def end_with_parent(number: int) -> Callable[[], None]:
-    """Returns what a child has to do before it starts, so that it gets a signal when this process dies."""
+def start_child(command: Sequence[str], last_signal: int, **streams: Any) -> subprocess.Popen[bytes]:
+    """Starts a child, which gets a signal when this process dies, without the variables that would make it a rank of another job."""
     parent, libc = os.getpid(), ctypes.CDLL(None)
 
     def prepare() -> None:
-        libc.prctl(_PR_SET_PDEATHSIG, number)
+        libc.prctl(_PR_SET_PDEATHSIG, last_signal)
         if os.getppid() != parent:
             os._exit(_NOT_STARTED)
         signal.signal(signal.SIGINT, signal.SIG_IGN)
 
-    return prepare
+    environment = {name: value for name, value in os.environ.items()
+                   if not name.startswith(_LAUNCHER) and name not in ("FLUX_JOB_ID", "LATCON_PROGRESS", "PYTHONPATH")}
+    return subprocess.Popen(command, env=environment, preexec_fn=prepare, **streams)
 
 
 def _start(command: Sequence[str], log: str) -> subprocess.Popen[bytes] | None:
     output = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW, 0o666)
     try:
-        return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=output, env=environment_of_children(),
-                                preexec_fn=end_with_parent(signal.SIGTERM))
+        return start_child(command, signal.SIGTERM, stdin=subprocess.DEVNULL, stdout=output, stderr=output)
     except FileNotFoundError:
         return None
     finally:

@@ -13,7 +13,7 @@ from typing import Any
 from ..errors import INTERNAL_ERROR, LatconError
 from ..quantities import RECORDED
 from ..schema import Schema
-from .pool import end_with_parent, environment_of_children
+from .pool import start_child
 
 _ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2, signal.SIGALRM, signal.SIGXCPU)
 
@@ -94,10 +94,7 @@ def read_input(path: str) -> tuple[bytes, str]:
 class Program:
     """The program: facts about it and about the entries of a case, and ``latcon resolve``, which answers questions about cases.
 
-    Parameters
-    ----------
-    options
-        Options of the command line.
+    `options` are those of the command line.
     """
 
     def __init__(self, options: Mapping[str, Any]) -> None:
@@ -106,9 +103,8 @@ class Program:
         self.executable = f"/proc/{os.getpid()}/fd/{os.open(options['program'], os.O_RDONLY)}"
         words = ["--yes"] * options["yes"] + (["--threads", str(options["threads"])] if options["threads"] else [])
         # A group of its own: Ctrl-C reaches this process, which decides.
-        self._resolver = subprocess.Popen([self.executable, "resolve", *words], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                          env=environment_of_children(), process_group=0,
-                                          preexec_fn=end_with_parent(signal.SIGKILL))
+        self._resolver = start_child([self.executable, "resolve", *words], signal.SIGKILL, stdin=subprocess.PIPE,
+                                     stdout=subprocess.PIPE, process_group=0)
         facts = self._answer()
         self.entries = Schema(facts)
         self.sorted_entries = sorted(self.entries)
@@ -117,12 +113,8 @@ class Program:
         self.facts: dict[str, Any] = facts["record"] | {"command_line": options["arguments"]}
 
     def ask(self, **question: Any) -> Any:
-        """Returns the answer to a question (``latcon resolve``).
-
-        Raises
-        ------
-        InputError
-            With the problems of a case, or if the machine has too little memory.
+        """Returns the answer to a question (``latcon resolve``); raises InputError with the problems of a case, or if the
+        machine has too little memory.
         """
         assert self._resolver.stdin
         self._resolver.stdin.write(json.dumps(question).encode("ascii") + b"\n")

@@ -2,11 +2,10 @@
 from __future__ import annotations
 
 import contextlib
-import csv
-import io
 import json
 import math
 import os
+import pathlib
 import resource
 import select
 import shutil
@@ -17,11 +16,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..errors import PACKAGES_MISSING, CLAIM_FAILED, DONE, INTERRUPTED
+from ..files import read_json, read_text
 from ..folder import FolderLock, add_to_list, archive, is_listed, write_atomically, write_file
 from ..program import page_command
 from .program import Ended, Program
-from .pool import end_with_parent, environment_of_children
-from .output import shortest
+from .pool import start_child
+from .output import csv_text
 
 
 class Printed:
@@ -53,10 +53,7 @@ def json_text(document: Any, indent: int = 2) -> str:
 class Record:
     """Locked output directory of a study; `run.json` has the exit code however the study ends.
 
-    Parameters
-    ----------
-    resume
-        Whether earlier files stay; otherwise they are moved to a subfolder.
+    With `resume` earlier files stay; otherwise they are moved to a subfolder.
     """
 
     def __init__(self, program: Program, printed: Printed, directory: str, options: Mapping[str, Any], resume: bool) -> None:
@@ -112,14 +109,9 @@ class Record:
         verdicts = {claim["verdict"] for claim in claims}
         verdict = next((word for word in ("fails", "holds") if word in verdicts), "reported")
         write_file(f"{self.directory}/results.json", json_text({"claims": claims, "verdict": verdict}))
-        table = io.StringIO()
-        writer = csv.writer(table, lineterminator="\n")
-        writer.writerow(["claim", "quantity", "unit", "lattice", "continuum", "theory", "error", "tolerance", "verdict", "reason",
-                         "gate", "kind"])
-        for claim in claims:
-            writer.writerow(["false" if value is False else shortest(value) if isinstance(value, float) else value
-                             for value in claim.values()])
-        write_file(f"{self.directory}/results.csv", table.getvalue())
+        write_file(f"{self.directory}/results.csv", csv_text(
+            ["claim", "quantity", "unit", "lattice", "continuum", "theory", "error", "tolerance", "verdict", "reason", "gate", "kind"],
+            [["false" if value is False else value for value in claim.values()] for claim in claims]))
         if exit_code == DONE and verdict == "fails":
             exit_code = CLAIM_FAILED
         self.add(verdict=verdict, failed_rows={f"{claim['claim']}: {claim['quantity']}": "claim" for claim in claims
@@ -130,12 +122,8 @@ class Record:
         return exit_code
 
     def verify(self, program: Program, case: str, on_continuum: bool) -> None:
-        """Checks the claims that cracks of a case wait for, in a folder of their own, and takes over what is found.
-
-        Raises
-        ------
-        Ended
-            If one does not hold.
+        """Checks the claims that cracks of a case wait for, in a folder of their own, and takes over what is found. Raises
+        Ended if one does not hold.
         """
         folder = f"{self.directory}/.latcon-gate"
         shutil.rmtree(folder, ignore_errors=True)  # of a killed study
@@ -145,8 +133,7 @@ class Record:
         words = [program.executable, "gate", f"{folder}/base.prm", "--side", "continuum" if on_continuum else "lattice",
                  "--output-dir", folder, *["--quiet"] * options["quiet"]]
         words += ["--threads", str(options["threads"])] if options["threads"] else []
-        with subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, env=environment_of_children(),
-                              process_group=0, preexec_fn=end_with_parent(signal.SIGKILL)) as child:
+        with start_child(words, signal.SIGKILL, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, process_group=0) as child:
             try:
                 assert child.stdout
                 printed = child.stdout.read()
@@ -158,12 +145,10 @@ class Record:
         self._printed.print(printed.decode("utf-8", "surrogateescape"))
         if child.returncode not in (DONE, CLAIM_FAILED):
             raise Ended(max(child.returncode, 1))
-        with open(f"{folder}/run.json", encoding="utf-8") as file:
-            found = json.load(file)
+        found = read_json(pathlib.Path(folder, "run.json"))
         self.add(**{key: found[key] for key in ("verification", "verification_of_program", "failed_rows", "verdict") if key in found})
         self._document["wall_time_s"] |= found["wall_time_s"]
-        with open(f"{folder}/log.txt", encoding="utf-8") as file:
-            message = file.read().partition("\nlatcon: ")[2]
+        message = read_text(pathlib.Path(folder, "log.txt")).partition("\nlatcon: ")[2]
         for name in os.listdir(folder):
             if name not in ("run.json", "log.txt", "base.prm") and not name.startswith("."):
                 add_to_list(self.directory, [name])
@@ -205,13 +190,9 @@ def draw_page(kind: str, directory: str, page: str, repeat: str) -> bool:
 
 def output_is_lost(printed: Printed) -> bool:
     """Whether standard output is closed or full; a reader that closed its end of a pipe loses nothing."""
-    return not printed.is_complete and not any(event & select.POLLERR for _, event in _polled())
-
-
-def _polled() -> list[tuple[int, int]]:
     poll = select.poll()
     poll.register(1, 0)
-    return poll.poll(0)
+    return not printed.is_complete and not any(event & select.POLLERR for _, event in poll.poll(0))
 
 
 class Progress:

@@ -10,12 +10,8 @@ from .program import InputError, Program, printable
 
 
 def parse_json(file: str, text: bytes) -> dict[str, Any]:
-    """Parses a JSON object without repeated keys.
-
-    Raises
-    ------
-    InputError
-        If it is not JSON, not an object, nested deeper than 64 levels, or if a key is repeated.
+    """Parses a JSON object without repeated keys; raises InputError if it is not JSON, not an object, nested deeper than 64
+    levels, or if a key is repeated.
     """
     if b"\0" in text:
         raise InputError(f"{file}:{1 + text[:text.index(0)].count(10)}: not a text file: it holds zero bytes")
@@ -76,11 +72,6 @@ class JsonPlace:
         """``FILE: PATH``."""
         return f"{self._file}: {self._path}" if self._path else self._file
 
-    @property
-    def is_number(self) -> bool:
-        """Whether the value is a number."""
-        return isinstance(self.value, (int, float)) and not isinstance(self.value, bool)
-
     def problem(self, text: str) -> None:
         """Adds a problem at this position."""
         self._problems.append(f"{self.place}: {text}")
@@ -104,20 +95,21 @@ class JsonPlace:
         """Returns whether this is an object with the key."""
         return isinstance(self.value, dict) and key in self.value
 
-    def at(self, key: str) -> JsonPlace:
-        """Returns a member, which must exist."""
-        return self._child(self.value[key], key)
+    def get(self, key: str) -> JsonPlace | None:
+        """Returns a member; None if it is missing."""
+        return self._child(self.value[key], key) if self.has(key) else None
+
+    def text_of(self, key: str, is_required: bool = False) -> str:
+        """Returns the text of a member; if it is not required, it may be missing or empty."""
+        found = self.required(key) if is_required else self.get(key)
+        return "" if found is None or found.value == "" and not is_required else found.text()
 
     def required(self, key: str) -> JsonPlace | None:
         """Returns a member; adds a problem and returns None if it is missing."""
-        if self.has(key):
-            return self.at(key)
+        if found := self.get(key):
+            return found
         self.problem(f"the key '{key}' is missing")
         return None
-
-    def optional_text(self, key: str) -> str:
-        """Returns the text of a member, which may be missing or empty."""
-        return "" if not self.has(key) or self.value[key] == "" else self.at(key).text()
 
     # Values. For another type they add a problem and return an empty value.
     def text(self) -> str:
@@ -126,7 +118,13 @@ class JsonPlace:
 
     def number(self) -> float:
         """Returns a number."""
-        return float(self.value) if self.is_number else self._wrong("a number", 0.0)
+        is_number = isinstance(self.value, (int, float)) and not isinstance(self.value, bool)
+        return float(self.value) if is_number else self._wrong("a number", 0.0)
+
+    def unsigned(self) -> int | None:
+        """Returns a whole number that is not negative; None, without a problem, for another value."""
+        is_unsigned = isinstance(self.value, int) and not isinstance(self.value, bool) and self.value >= 0
+        return self.value if is_unsigned else None
 
     def boolean(self) -> bool:
         """Returns true or false."""

@@ -5,7 +5,6 @@ import dataclasses
 import enum
 import os
 import re
-from typing import Any
 
 from ..schema import SEED_ENTRY
 from .program import InputError, Program
@@ -14,6 +13,9 @@ from .sweep import Sweep, combinations, parse_sweep
 
 Settings = dict[str, str]
 """Entries of a case with their values, in the order of their first occurrence."""
+
+Change = tuple[Settings, list[int]]
+"""Settings and seeds in an object of the file; empty if absent."""
 
 PATTERNS = ["straight", "oscillating", "branching", "arrested"]
 UNDECIDED = "undecided"
@@ -98,20 +100,10 @@ class Study:
 
 
 def read_study(program: Program, path: str, quick: bool, text: bytes) -> Study:
-    """Reads a study.
+    """Reads a study, the content of a file whose folder the name of its base case is relative to.
 
-    Parameters
-    ----------
-    path
-        Name of the file; the base case is relative to its folder.
-    text
-        Content of the file.
-
-    Raises
-    ------
-    InputError
-        With all problems and their positions: unknown or missing keys, values of another type or out of range, unknown runs,
-        quantities and entries.
+    Raises InputError with all problems and their positions: unknown or missing keys, values of another type or out of range,
+    unknown runs, quantities and entries.
     """
     return _Reader(program, path, quick).read(text)
 
@@ -130,39 +122,39 @@ class _Reader:
         study = self.study
         top = JsonPlace(parse_json(study.file, text), study.file, "", self.problems, self.program)
         top.is_object("title", "base", "side", "set", "seeds", "quick", "sweep", "refine", "runs", "claims", "pictures")
-        if title := top.required("title"):
-            study.title = title.text()
+        study.title = top.text_of("title", True)
         if base := top.required("base"):
             study.base = os.path.normpath(os.path.join(os.path.dirname(study.file), base.text() or "."))
         self.on_continuum = _is_on_continuum(top, False)
         self.whole = self.change(top)
-        self.small: tuple[Settings, list[int]] = ({}, [])
-        if top.has("quick"):
-            top.at("quick").is_object("set", "seeds", "sweep", "refine")
-            self.small = self.change(top.at("quick"))
+        self.small: Change = ({}, [])
+        quick = top.get("quick")
+        if quick:
+            quick.is_object("set", "seeds", "sweep", "refine")
+            self.small = self.change(quick)
         study.settings = self.whole[0] | (self.small[0] if self.quick else {})
-        self.sweeps(top)
+        self.sweeps(top.get("sweep"), quick.get("sweep") if quick else None)
         self.refinement(top, "")
-        if top.has("quick"):
-            self.refinement(top.at("quick"), " of the study")
-        runs = None if top.has("sweep") and not top.has("runs") else top.required("runs")
+        if quick:
+            self.refinement(quick, " of the study")
+        runs = top.get("runs") if top.has("sweep") else top.required("runs")
         if runs:
             for name, place in runs.members():
                 self.run(name, place)
             if not study.runs and not self.problems:
                 runs.problem("no run is left")
-        for place in top.at("claims").list() if top.has("claims") else ():
-            self.claim(place)
-        for place in top.at("pictures").list() if top.has("pictures") else ():
-            study.pictures.append(self.known_run(place))
+        if claims := top.get("claims"):
+            for place in claims.list():
+                self.claim(place)
+        if pictures := top.get("pictures"):
+            study.pictures = [self.known_run(place) for place in pictures.list()]
         if self.problems:
             raise InputError(*self.problems)
         return study
 
-    def change(self, place: JsonPlace) -> tuple[Settings, list[int]]:
-        """Settings and seeds in an object of the file; empty if absent."""
-        return (self.settings(place.at("set")) if place.has("set") else {},
-                _seeds(place.at("seeds")) if place.has("seeds") else [])
+    def change(self, place: JsonPlace) -> Change:
+        settings, seeds = place.get("set"), place.get("seeds")
+        return self.settings(settings) if settings else {}, _seeds(seeds) if seeds else []
 
     def settings(self, place: JsonPlace) -> Settings:
         found = {}
@@ -187,40 +179,31 @@ class _Reader:
         self.names.append(name)
         if not place.is_object("about", "side", "set", "seeds", "quick"):
             return
-        run = StudyRun(name, place.optional_text("about"))
-        run.on_continuum = _is_on_continuum(place, self.on_continuum)
-        own = self.change(place)
-        small: tuple[Settings, list[int]] = ({}, [])
-        left_out = False
-        if place.has("quick"):
-            quick = place.at("quick")
-            if isinstance(quick.value, bool):
-                left_out = not quick.value
-            elif quick.is_object("set", "seeds"):
-                small = self.change(quick)
-        candidates = [small, self.small, own, self.whole] if self.quick else [own, self.whole]
-        run.seeds = next((seeds for _, seeds in candidates if seeds), [1])
-        run.own = own[0] | (small[0] if self.quick else {})
-        run.all = self.study.settings | run.own
-        if self.quick and left_out:
+        about, on_continuum = place.text_of("about"), _is_on_continuum(place, self.on_continuum)
+        own, quick = self.change(place), place.get("quick")
+        small: Change = ({}, [])
+        if quick and not isinstance(quick.value, bool) and quick.is_object("set", "seeds"):
+            small = self.change(quick)
+        if self.quick and quick and quick.value is False:
             self.study.left_out.append(name)
-        else:
-            self.study.runs.append(run)
+            return
+        candidates = [small, self.small, own, self.whole] if self.quick else [own, self.whole]
+        settings = own[0] | (small[0] if self.quick else {})
+        self.study.runs.append(StudyRun(name, about, settings, self.study.settings | settings,
+                                        next((seeds for _, seeds in candidates if seeds), [1]), on_continuum=on_continuum))
 
-    def sweeps(self, top: JsonPlace) -> None:
+    def sweeps(self, whole: JsonPlace | None, quick: JsonPlace | None) -> None:
         """Adds a run per combination of values of this size, and the names of those of the full size."""
-        has_quick = top.has("quick") and top.at("quick").has("sweep")
-        if not top.has("sweep"):
-            if has_quick:
-                top.at("quick").at("sweep").problem("needs the key 'sweep' of the study")
+        if not whole:
+            if quick:
+                quick.problem("needs the key 'sweep' of the study")
             return
         seeds = self.whole[1] or [1]
         small_seeds = self.small[1] or seeds
-        full = self.sweep(top.at("sweep"), len(seeds), not self.quick or not has_quick)
-        small = self.sweep(top.at("quick").at("sweep"), len(small_seeds), self.quick) if has_quick else full
-        for name, own in (small if self.quick else full).items():
-            self.study.runs.append(StudyRun(name, "", own, self.study.settings | own, small_seeds if self.quick else seeds, True,
-                                            on_continuum=self.on_continuum))
+        full = self.sweep(whole, len(seeds), not self.quick or not quick)
+        small = self.sweep(quick, len(small_seeds), self.quick) if quick else full
+        self.study.runs += [StudyRun(name, "", own, self.study.settings | own, small_seeds if self.quick else seeds, True,
+                                     on_continuum=self.on_continuum) for name, own in (small if self.quick else full).items()]
         known = {run.name for run in self.study.runs}
         self.study.left_out = [name for name in full if name not in known]
         self.names = [run.name for run in self.study.runs] + self.study.left_out
@@ -239,51 +222,44 @@ class _Reader:
         return cases
 
     def refinement(self, of: JsonPlace, owner: str) -> None:
-        if not of.has("refine"):
+        if not (place := of.get("refine")):
             return
-        place = of.at("refine")
-        if not _is_unsigned(place.value) or place.value > 6:  # spacings below a hundredth of the grid's
+        level = place.unsigned()
+        if level is None or level > 6:  # spacings below a hundredth of the grid's
             place.problem("must be a whole number from 0 to 6")
-        elif place.value > 0 and not self.study.swept:
+        elif level > 0 and not self.study.swept:
             place.problem("needs the key 'sweep'" + owner)
-        elif place.value > 0 and not self.is_continuous:
+        elif level > 0 and not self.is_continuous:
             place.problem("needs sweeps of numbers that are not whole")
         elif not owner or self.quick:
-            self.study.refine = place.value
+            self.study.refine = level
 
     def known_run(self, place: JsonPlace) -> str:
         return place.word(self.names, "run")
 
     def claim(self, place: JsonPlace) -> None:
-        if not place.is_object("claim", "paper", "rows", "note"):
-            return
-        claim = StudyClaim()
-        if text := place.required("claim"):
-            claim.claim = text.text()
-        claim.paper, claim.note = place.optional_text("paper"), place.optional_text("note")
-        if rows := place.required("rows"):
-            claim.rows = [self.row(row) for row in rows.list()]
-        self.study.claims.append(claim)
+        if place.is_object("claim", "paper", "rows", "note"):
+            claim = StudyClaim(place.text_of("claim", True), place.text_of("paper"), place.text_of("note"))
+            if rows := place.required("rows"):
+                claim.rows = [self.row(row) for row in rows.list()]
+            self.study.claims.append(claim)
 
     def row(self, place: JsonPlace) -> StudyRow:
         row = StudyRow(place.place)
         if not place.is_object("run", "runs", "quantity", "is", "is near", "tolerance", "above", "below", "rises", "falls",
                                "bracket", "onset exponent", "against", "quick"):
             return row
-        if place.has("run") == place.has("runs"):
+        one, several = place.get("run"), place.get("runs")
+        if (one is None) == (several is None):
             place.problem('a row needs either "run" or "runs"')
-        elif place.has("run"):
-            row.runs = [self.known_run(place.at("run"))]
-        else:
-            for run in place.at("runs").list():
-                row.runs.append(self.known_run(run))
-                if row.runs[-1] and row.runs.count(row.runs[-1]) > 1:
-                    run.problem(f"'{row.runs[-1]}' is given twice")
+        for run in [one] if one and not several else several.list() if several and not one else []:
+            row.runs.append(self.known_run(run))
+            if row.runs[-1] and row.runs.count(row.runs[-1]) > 1:
+                run.problem(f"'{row.runs[-1]}' is given twice")
         if quantity := place.required("quantity"):
             row.quantity = quantity.word(["pattern", *self.program.units], "quantity")
             row.unit = self.program.units.get(row.quantity, "1")
-        if place.has("against"):
-            against = place.at("against")
+        if against := place.get("against"):
             row.against = against.text()
             known = ["zeta", *self.program.sorted_entries]
             if row.against not in known:
@@ -291,78 +267,72 @@ class _Reader:
             else:
                 row.against_unit = "1" if row.against == "zeta" else self.program.entries[row.against].unit or ""
         self.rule(place, row)
-        if place.has("quick") and not place.at("quick").boolean() and self.quick:
+        if (quick := place.get("quick")) and not quick.boolean() and self.quick:
             row.rule = Rule.REPORTED
         return row
 
     def rule(self, place: JsonPlace, row: StudyRow) -> None:
         for rule in sorted(Rule, key=lambda rule: rule.value):
-            if rule is Rule.REPORTED or not place.has(rule.value):
-                continue
-            if row.rule is not Rule.REPORTED:
-                place.problem(f'a row can have only one rule; the second one is "{rule.value}"')
-            row.rule = rule
-            self.rule_value(place.at(rule.value), row)
+            if rule is not Rule.REPORTED and (found := place.get(rule.value)):
+                if row.rule is not Rule.REPORTED:
+                    place.problem(f'a row can have only one rule; the second one is "{rule.value}"')
+                row.rule = rule
+                self.rule_value(found, row)
         of_patterns = row.rule in (Rule.IS, Rule.BRACKET)
         if row.rule is not Rule.REPORTED and row.quantity and of_patterns != (row.quantity == "pattern"):
             place.problem('this rule is only for the quantity "pattern"' if of_patterns
                           else "this rule is only for numbers, not for patterns")
-        is_near = row.rule in (Rule.IS_NEAR, Rule.ONSET_EXPONENT)
-        if place.has("tolerance") != is_near:
+        tolerance = place.get("tolerance")
+        if bool(tolerance) != (row.rule in (Rule.IS_NEAR, Rule.ONSET_EXPONENT)):
             place.problem('"is near" or "onset exponent" and "tolerance" must be given together')
-        elif is_near:
-            row.tolerance = place.at("tolerance").number()
-            if not row.tolerance > 0:
-                place.at("tolerance").problem("must be larger than 0")
+        elif tolerance:
+            row.tolerance = self.positive(tolerance)
         if row.rule.is_along and not row.against:
             place.problem('this rule needs "against"')
         if row.rule.is_along and len(row.runs) == 1:
             place.problem("this rule needs two runs or more")
+
+    def positive(self, place: JsonPlace) -> float:
+        if not (number := place.number()) > 0:
+            place.problem("must be larger than 0")
+        return number
 
     def rule_value(self, place: JsonPlace, row: StudyRow) -> None:
         if row.rule is Rule.IS:
             row.pattern = place.word(PATTERNS, "pattern")
         elif row.rule is Rule.BRACKET:
             if place.is_object("from", "to"):
-                if start := place.required("from"):
-                    row.start = start.word(PATTERNS, "pattern")
-                if to := place.required("to"):
-                    row.to = to.word(PATTERNS, "pattern")
+                row.start, row.to = (end.word(PATTERNS, "pattern") if (end := place.required(key)) else "" for key in ("from", "to"))
                 if row.start == row.to and row.start:
                     place.problem("the two patterns must differ")
         elif row.rule in (Rule.RISES, Rule.FALLS):
-            if not isinstance(place.value, bool) or not place.value:
+            if place.value is not True:
                 place.problem("must be true")
         elif row.rule is Rule.ONSET_EXPONENT:
-            row.bound = place.number()
-            if not row.bound > 0:
-                place.problem("must be larger than 0")
+            row.bound = self.positive(place)
         elif isinstance(place.value, dict):
-            if place.is_object("run") and place.has("run"):
-                row.bound_run = self.known_run(place.at("run"))
+            if place.is_object("run") and (run := place.get("run")):
+                row.bound_run = self.known_run(run)
             else:
                 place.problem('must be a number or {"run": NAME}')
         else:
+            n_problems = len(self.problems)
             row.bound = place.number()
-            if row.rule is Rule.IS_NEAR and place.is_number and row.bound == 0:
+            if row.rule is Rule.IS_NEAR and row.bound == 0 and len(self.problems) == n_problems:
                 place.problem("must not be 0, because the tolerance is relative")
-
-
-def _is_unsigned(value: Any) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
 
 
 def _seeds(place: JsonPlace) -> list[int]:
     found: list[int] = []
-    for seed in place.list():
-        if not _is_unsigned(seed.value):
-            seed.problem("must be a whole number >= 0")
-        elif seed.value in found:
-            seed.problem("this seed is given twice")
+    for place_of_seed in place.list():
+        if (seed := place_of_seed.unsigned()) is None:
+            place_of_seed.problem("must be a whole number >= 0")
+        elif seed in found:
+            place_of_seed.problem("this seed is given twice")
         else:
-            found.append(seed.value)
+            found.append(seed)
     return found
 
 
 def _is_on_continuum(place: JsonPlace, otherwise: bool) -> bool:
-    return place.at("side").word(["lattice", "continuum"], "side") == "continuum" if place.has("side") else otherwise
+    return side.word(["lattice", "continuum"], "side") == "continuum" if (side := place.get("side")) else otherwise

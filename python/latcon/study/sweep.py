@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NoReturn
 
-from ..schema import SEED_ENTRY, Entry
+from ..schema import SEED_ENTRY
 from .program import InputError, Program, printable
 
 MAX_RUNS = 100000
@@ -36,12 +36,8 @@ class Sweep:
 
 
 def parse_sweep(program: Program, text: str) -> Sweep:
-    """Parses ``Section/Name=START:STOP:COUNT``, both ends included, or ``Section/Name=VALUE,VALUE,...``.
-
-    Raises
-    ------
-    InputError
-        Names the wrong part.
+    """Parses ``Section/Name=START:STOP:COUNT``, both ends included, or ``Section/Name=VALUE,VALUE,...``; raises InputError that
+    names the wrong part.
     """
     def refuse(reason: str) -> NoReturn:
         raise InputError(f"sweep '{printable(text)}': {reason}")
@@ -66,7 +62,10 @@ def parse_sweep(program: Program, text: str) -> Sweep:
         found = [value.strip(_BLANKS) for value in values.split(",")]
     if len(found) < 2:
         refuse("expected two values or more; for one value use --set")
-    canonical = _canonical(program, found, entry)
+    canonical: list[float | str] = list(found)
+    if entry.type in ("number", "integer"):
+        canonical = [value if number["wrong"] else float(number["value"])
+                     for value, number in zip(found, program.ask(numbers=found, unit=entry.unit or "1"))]
     earlier: dict[float | str, str] = {}
     for number, (value, same) in enumerate(zip(found, canonical), 1):
         if not value:
@@ -78,40 +77,31 @@ def parse_sweep(program: Program, text: str) -> Sweep:
     return Sweep(name, found, entry.type == "number" and all(isinstance(value, float) for value in canonical))
 
 
-def _canonical(program: Program, values: Sequence[str], entry: Entry) -> list[float | str]:
-    """Returns numbers as SI values, and all other values as they are."""
-    if entry.type not in ("number", "integer"):
-        return list(values)
-    numbers = program.ask(numbers=list(values), unit=entry.unit or "1")
-    return [value if number["wrong"] else float(number["value"]) for value, number in zip(values, numbers)]
-
-
 def _grid(program: Program, refuse: Callable[[str], NoReturn], values: str, unit: str) -> list[str]:
     parts = [part.strip(_BLANKS) for part in values.split(":")]
-    shown = printable
     if len(parts) != 3:
-        refuse(f"expected START:STOP:COUNT, for example 1.5:1.9:5; '{shown(values)}' has {len(parts)} parts")
+        refuse(f"expected START:STOP:COUNT, for example 1.5:1.9:5; '{printable(values)}' has {len(parts)} parts")
     for part, name in zip(parts, ("START", "STOP", "COUNT")):
         if not part:
             refuse(f"{name} is empty")
     ends = []
     for part, name, number in zip(parts, ("START", "STOP"), program.ask(numbers=parts[:2], unit=unit)):
         if number["wrong"]:
-            refuse(f"{name} '{shown(part)}': {number['wrong']}")
+            refuse(f"{name} '{printable(part)}': {number['wrong']}")
         match = re.match(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", part)
         if match is None:
-            refuse(f"{name} '{shown(part)}' is not a number")
+            refuse(f"{name} '{printable(part)}' is not a number")
         ends.append((float(match[0]), part[match.end():].strip(_BLANKS)))
     (start, start_unit), (stop, stop_unit) = ends
     if start_unit != stop_unit:
-        refuse(f"START and STOP must have the same unit, or none; '{shown(parts[0])}' and '{shown(parts[1])}' differ")
+        refuse(f"START and STOP must have the same unit, or none; '{printable(parts[0])}' and '{printable(parts[1])}' differ")
     count = int(parts[2]) if re.fullmatch(r"[0-9]{1,18}", parts[2]) else 0
     if not 2 <= count <= MAX_RUNS:
-        refuse(f"COUNT '{shown(parts[2])}' must be a whole number from 2 to {MAX_RUNS}")
+        refuse(f"COUNT '{printable(parts[2])}' must be a whole number from 2 to {MAX_RUNS}")
     if start == stop:
         refuse("START and STOP must differ")
     if not math.isfinite(stop - start):
-        refuse(f"START '{shown(parts[0])}' and STOP '{shown(parts[1])}' are too far apart for floating-point numbers")
+        refuse(f"START '{printable(parts[0])}' and STOP '{printable(parts[1])}' are too far apart for floating-point numbers")
     # Twelve digits of the larger end are also where rounding leaves 1e-17 in place of 0.
     smallest = max(abs(start), abs(stop)) * 1e-12
     points = (start + i / (count - 1) * (stop - start) for i in range(count))
@@ -139,11 +129,7 @@ def combinations(sweeps: Sequence[Sweep], n_seeds: int) -> dict[str, dict[str, s
     """Returns all combinations of values by their names; values of the last sweep vary fastest.
 
     A name that is too long, or that an earlier combination has, is cut, and ends in 16 digits of the SHA-256 of the settings.
-
-    Raises
-    ------
-    InputError
-        For an entry that is swept twice, or more than 100,000 runs.
+    Raises InputError for an entry that is swept twice, or more than 100,000 runs.
     """
     entries = [sweep.entry for sweep in sweeps]
     for i, entry in enumerate(entries):

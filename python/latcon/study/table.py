@@ -8,11 +8,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..quantities import quantity_text
-from .onset import Interval, OnsetFit, fit_onset
-from .outcome import RunOutcome
+from .outcome import RunOutcome, SeedStatistics, group_by_run, statistics
 from .plan import PlannedRun
-from .seeds import SeedStatistics, group_by_run, statistics
-from .statistical_tests import SIGNIFICANCE, adjust_by_holm, isotonic_test, welch_p_value
+from .statistical_tests import SIGNIFICANCE, Interval, OnsetFit, adjust_by_holm, fit_onset, isotonic_test, welch_p_value
 from .study_file import Rule, Study, StudyClaim, StudyRow
 
 _NO_SCATTER = "the scatter of the seeds is unknown: at least two seeds with different values are needed"
@@ -40,18 +38,10 @@ def _p_text(p: float) -> str:
 class RowOutcome:
     """Judged row.
 
-    Attributes
-    ----------
-    bound : float or None
-        Of rules with a bound; None if the run that gives it was not measured.
-    expected, measured, note : list of str
-        Descriptions of the rule and of the result; missing seeds and runs.
-    runs : list of SeedStatistics
-        In the order of the row, or sorted by `against`.
-    number : float or None
-        Of the row as a whole: mean, share of seeds with the pattern, exponent, middle of the bracket.
-    misfit : float or None
-        The row holds if it is not larger than `allowed`; None unless the row was judged.
+    `bound` is that of a rule with one, None if the run that gives it was not measured. `measured` and `note` describe the
+    result, and missing seeds and runs. `runs` are in the order of the row, or sorted by `against`. `number` is that of the row
+    as a whole: mean, share of seeds with the pattern, exponent, middle of the bracket. The row holds if `misfit` is not larger
+    than `allowed`; it is None unless the row was judged.
     """
 
     row: StudyRow
@@ -143,13 +133,7 @@ class ClaimOutcome:
 
 
 def judge_study(study: Study, plan: Sequence[PlannedRun], outcomes: Sequence[RunOutcome]) -> list[ClaimOutcome]:
-    """Judges all rows of a study (docs/reference-studies.md).
-
-    Parameters
-    ----------
-    plan, outcomes
-        Runs and their outcomes, in the same order.
-    """
+    """Judges all rows of a study (docs/reference-studies.md), whose runs and their outcomes are in the same order."""
     groups = group_by_run(outcomes)
     planned = {run.run: run for run in plan}
     return [ClaimOutcome(claim, [judge(row, planned, groups, study.left_out) for row in claim.rows]) for claim in study.claims]
@@ -157,14 +141,8 @@ def judge_study(study: Study, plan: Sequence[PlannedRun], outcomes: Sequence[Run
 
 def judge(row: StudyRow, planned: Mapping[str, PlannedRun], outcomes: Mapping[str, Sequence[RunOutcome]],
           left_out: Sequence[str]) -> RowOutcome:
-    """Judges a row.
-
-    Parameters
-    ----------
-    planned, outcomes
-        Runs, for the values of `against`, and outcomes of their seeds, by name.
-    left_out
-        Runs that this size of the study omits.
+    """Judges a row. `planned` are runs, for the values of `against`, `outcomes` those of their seeds, by name; `left_out` the
+    runs that this size of the study omits.
     """
     outcome = RowOutcome(row)
     other = statistics(row.bound_run, row.quantity, outcomes.get(row.bound_run, ()))

@@ -1,4 +1,4 @@
-// Plots of the path and of the energies, by dygraphs; data and elements of live.py.
+// Plots of the path and of the energies, by dygraphs; data of crack_section.py, elements of macros.html.
 "use strict";
 
 /** Values of all curves at a point, for the line below a plot. */

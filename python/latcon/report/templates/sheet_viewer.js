@@ -1,4 +1,4 @@
-// The sheet of a run in motion, on a canvas: data of sheet_reader.js, elements of live.py. Lengths in m, times in s.
+// The sheet of a run in motion, on a canvas: data of sheet_reader.js, elements of macros.html. Lengths in m, times in s.
 "use strict";
 
 /** Numbers of a list of steps. */
