@@ -5,7 +5,6 @@ import io
 import json
 import re
 import shutil
-import sys
 from html.parser import HTMLParser
 from pathlib import Path
 from unittest import mock
@@ -19,7 +18,6 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 FOLDER = Path(__file__).resolve().parents[2] / "python" / "latcon" / "report"
-sys.path.insert(0, str(FOLDER.parents[1]))
 
 from latcon.report import pages
 from latcon.report.__main__ import main
