@@ -24,14 +24,3 @@ def test_every_entry_says_what_it_means_and_what_is_allowed(schema):
         # What a text may be is in its documentation.
         assert entry["allowed"] or entry["type"] == "text" or entry["unit"]
         assert entries_page.default_of(entry) or entry["type"] == "text"
-
-
-def test_cells_show_the_declaration():
-    entry = {"section": "Sheet", "name": "hole", "unit": "m", "required": False, "default": None,
-             "allowed": ">= 0, or auto", "documentation": "a|b * c"}
-    assert entries_page.row(entry) == ("hole", "m", ">= 0, or auto", "auto", "a|b * c")
-    entry.update(unit="1", default=1e-10, allowed="one of a, b")
-    assert entries_page.row(entry) == ("hole", "-", "a, b", "1e-10", "a|b * c")
-    for default, cell in ((False, "false"), (100000.0, "100000"), ("", ""), (12, "12")):
-        assert entries_page.default_of({"required": False, "default": default}) == cell
-    assert entries_page.default_of({"required": True}) == "required"

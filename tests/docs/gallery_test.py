@@ -2,12 +2,10 @@
 import json
 import pathlib
 import re
-import sys
 
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests" / "verification"), str(ROOT / "python")]
 import latcon as package
 from program import FULL, latcon
 

@@ -1,15 +1,10 @@
 """Tests of damaged and forged checkpoints: a short version of tests/faults/run."""
 import atexit
 import os
-import pathlib
 import random
-import sys
-
-import pytest
 
 import damage
 import hostile
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "verification"))
 from forked import Forked
 
 PROGRAM = Forked(os.environ["LATCON"])

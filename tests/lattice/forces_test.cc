@@ -1,12 +1,10 @@
 #include "lattice/forces.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "lattice/energy.h"
-#include "support/largest_error.h"
 #include "tests/lattice/sheets.h"
 
 namespace forces_test
@@ -37,33 +35,6 @@ struct NoisySheet
   Forces forces;
   State state;
 };
-
-// Largest force that single bonds exert: what round-off in the sums is relative to.
-double force_scale(const Material &material, const TriangularLattice &sheet)
-{
-  return cross_section(material.nearest, sheet) * 5e5;
-}
-
-TEST(Forces, FreeSheetFeelsNoResultant)
-{
-  NoisySheet noisy(sheets::rubber(), Edges::free);
-  noisy.forces.evaluate(noisy.state, noisy.state.vx, noisy.state.vy);
-  double fx = 0., fy = 0., moment = 0., largest = 0.;
-  for (std::size_t i = 0; i < noisy.state.x.size(); ++i)
-  {
-    const double x = noisy.forces.fx()[i], y = noisy.forces.fy()[i];
-    fx += x;
-    fy += y;
-    moment += noisy.state.x[i] * y - noisy.state.y[i] * x;
-    largest = support::largest_of({largest, std::hypot(x, y)});
-  }
-  // n sites, each force a sum of 12 terms: round-off grows at most with n.
-  const double round_off = 1e-16 * 12. * static_cast<double>(noisy.sheet.n_sites()) * largest;
-  EXPECT_GT(largest, 0.);
-  EXPECT_NEAR(fx, 0., round_off);
-  EXPECT_NEAR(fy, 0., round_off);
-  EXPECT_NEAR(moment, 0., round_off * noisy.sheet.length() * 2.8);
-}
 
 TEST(Forces, AreMinusTheEnergyGradient)
 {
@@ -104,48 +75,6 @@ TEST(Forces, AreMinusTheEnergyGradient)
   }
 }
 
-TEST(Forces, TurnWithTheSheet)
-{
-  NoisySheet noisy(sheets::rubber(), Edges::free);
-  noisy.forces.evaluate(noisy.state, noisy.state.vx, noisy.state.vy);
-  const Field fx = noisy.forces.fx(), fy = noisy.forces.fy();
-  const double c = std::cos(0.7), s = std::sin(0.7);
-  for (auto [u, v] : {std::pair{&noisy.state.x, &noisy.state.y}, std::pair{&noisy.state.vx, &noisy.state.vy}})
-    for (std::size_t i = 0; i < fx.size(); ++i)
-    {
-      const double before_u = (*u)[i], before_v = (*v)[i];
-      (*u)[i] = c * before_u - s * before_v;
-      (*v)[i] = s * before_u + c * before_v;
-    }
-  noisy.forces.evaluate(noisy.state, noisy.state.vx, noisy.state.vy);
-  // Positions carry round-off of the sheet's size, some 40 spacings, into stretches: 1e-14 of the bond forces.
-  const double tolerance = 1e-13 * force_scale(noisy.material, noisy.sheet) * 100.;
-  for (std::size_t i = 0; i < fx.size(); ++i)
-  {
-    EXPECT_NEAR(noisy.forces.fx()[i], c * fx[i] - s * fy[i], tolerance);
-    EXPECT_NEAR(noisy.forces.fy()[i], s * fx[i] + c * fy[i], tolerance);
-  }
-}
-
-TEST(Forces, DashpotsDoNotFeelRigidMotion)
-{
-  NoisySheet noisy(sheets::rubber(), Edges::free);
-  const Field rest(noisy.sheet.n_places(), 0.);
-  noisy.forces.evaluate(noisy.state, rest, rest);
-  const Field fx = noisy.forces.fx();
-  EXPECT_EQ(noisy.forces.viscous_power(), 0.);
-  Field vx(rest.size()), vy(rest.size());
-  for (std::size_t i = 0; i < vx.size(); ++i)
-  {
-    vx[i] = 3. - 200. * noisy.state.y[i];
-    vy[i] = -1. + 200. * noisy.state.x[i];
-  }
-  noisy.forces.evaluate(noisy.state, vx, vy);
-  const double tolerance = 1e-12 * force_scale(noisy.material, noisy.sheet);
-  for (std::size_t i = 0; i < fx.size(); ++i)
-    EXPECT_NEAR(noisy.forces.fx()[i], fx[i], tolerance);
-}
-
 // One bond along x drawn apart at a known speed: A0 (psi' + eta v / l), and the power is the viscous part times v.
 // theory.md, eqs. (L.3) and (L.4).
 TEST(Forces, AreTheBondLawAndDashpotOfOneBond)
@@ -168,20 +97,6 @@ TEST(Forces, AreTheBondLawAndDashpotOfOneBond)
   EXPECT_NEAR(forces.fx()[right], -expected, 1e-12 * expected);
   EXPECT_EQ(forces.fy()[left], 0.);
   EXPECT_NEAR(forces.viscous_power(), viscous * 5., 1e-12 * viscous * 5.);
-}
-
-TEST(Forces, ReportRowsWithOverstretchedBonds)
-{
-  NoisySheet noisy(sheets::rubber(), Edges::free);
-  noisy.forces.evaluate(noisy.state, noisy.state.vx, noisy.state.vy);
-  for (std::size_t row = 0; row < noisy.sheet.rows(); ++row)
-    EXPECT_FALSE(noisy.forces.row_has_events(row));
-  // The limits exchanged: toughened bonds alone are past theirs.
-  noisy.state.toughened_stretch = 1.5;
-  noisy.state.bonds.toughen(noisy.sheet.index(5, 7), 4);
-  noisy.forces.evaluate(noisy.state, noisy.state.vx, noisy.state.vy);
-  for (std::size_t row = 0; row < noisy.sheet.rows(); ++row)
-    EXPECT_EQ(noisy.forces.row_has_events(row), row == 5);
 }
 
 } // namespace forces_test

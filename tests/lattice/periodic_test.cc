@@ -3,7 +3,6 @@
 
 #include "lattice/energy.h"
 #include "lattice/relaxation.h"
-#include "lattice/site_fields.h"
 #include "support/largest_error.h"
 #include "tests/lattice/sheets.h"
 
@@ -31,37 +30,6 @@ void for_each_site(const TriangularLattice &sheet, const Visitor &visit)
       visit(sheet.index(row, column));
 }
 
-TEST(PeriodicLattice, EverySiteHasAllItsBondsWhereNoEdgeIsLeft)
-{
-  for (const Orientation orientation : orientations)
-  {
-    const TriangularLattice sheet = periodic_square(8., orientation, both);
-    const Material material = sheets::rubber();
-    const State state = homogeneous_state(sheet, material, sheets::stretched(1.2, 1.5), Edges::held);
-    std::size_t sites = 0;
-    for_each_site(sheet,
-                  [&](std::size_t place)
-                  {
-                    unsigned int bonds = 0;
-                    for_each_bond_of_site(state, sheet, place,
-                                          [&](const Bond &bond)
-                                          {
-                                            ++bonds;
-                                            EXPECT_TRUE(sheet.is_site(bond.near));
-                                          });
-                    EXPECT_EQ(bonds, 12u);
-                    EXPECT_EQ(state.held[place], 0);
-                    ++sites;
-                  });
-    EXPECT_EQ(sites, sheet.n_sites());
-    std::size_t bonds = 0;
-    for_each_bond(state, sheet, [&](const Bond &) { ++bonds; });
-    EXPECT_EQ(bonds, 6 * sheet.n_sites());
-    EXPECT_NEAR(static_cast<double>(sheet.n_sites()) * sheet.site_area(), sheet.length() * sheet.height(),
-                1e-12 * sheet.length() * sheet.height());
-  }
-}
-
 TEST(PeriodicLattice, HasEdgesOnlyWhereItIsNotPeriodic)
 {
   for (const Orientation orientation : orientations)
@@ -80,36 +48,6 @@ TEST(PeriodicLattice, HasEdgesOnlyWhereItIsNotPeriodic)
                       EXPECT_EQ(state.held[place] != 0, from_edge < 1.4 * sheets::spacing);
                     });
     }
-}
-
-// theory.md, eq. (L.6).
-TEST(PeriodicLattice, HomogeneousDeformationIsInEquilibriumAtEverySite)
-{
-  for (const Orientation orientation : orientations)
-  {
-    const TriangularLattice sheet = periodic_square(6., orientation, both);
-    const Material material = sheets::rubber();
-    Eigen::Matrix2d F;
-    F << 1.4, 0.3, -0.2, 1.7;
-    const State state = homogeneous_state(sheet, material, F, Edges::held);
-    Forces forces(sheet, material);
-    forces.evaluate(state, state.vx, state.vy);
-    const SiteFields fields = site_fields(state, sheet, material);
-    const TriangularLattice finite = sheets::square(8., orientation);
-    const SiteFields inside = site_fields(homogeneous_state(finite, material, F, Edges::free), finite, material);
-    const std::size_t middle = finite.index(finite.rows() / 2, finite.columns() / 2);
-    const double scale = 2.5e5 * sheets::spacing; // of a bond force [N/m]
-    for_each_site(sheet,
-                  [&](std::size_t place)
-                  {
-                    EXPECT_LT(std::hypot(forces.fx()[place], forces.fy()[place]), 1e-13 * scale * 12.);
-                    EXPECT_NEAR(fields.strain_energy_density[place], inside.strain_energy_density[middle],
-                                1e-12 * inside.strain_energy_density[middle]);
-                    EXPECT_LT((fields.first_piola_stress[place] - inside.first_piola_stress[middle]).norm(),
-                              1e-12 * inside.first_piola_stress[middle].norm());
-                    EXPECT_LT((fields.deformation_gradient[place] - F).norm(), 1e-12);
-                  });
-  }
 }
 
 // The smallest cell, two rows of two sites, is bonded to itself over and over. Laid out three times along and across

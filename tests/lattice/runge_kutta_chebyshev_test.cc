@@ -125,30 +125,18 @@ TEST(RungeKuttaChebyshev, IsStableUpToItsLimitAndNotBeyond)
         Simulation simulation(sheet, material, std::move(state), {factor * limit, n_stages});
         simulation.step();
         const double before = simulation.energies().kinetic;
-        for (int step = 0; step < 400; ++step)
+        double growth = 1.;
+        for (int step = 0; step < 400 && growth < 1e3; ++step)
+        {
           simulation.step();
-        return simulation.energies().kinetic / before;
+          growth = simulation.energies().kinetic / before;
+        }
+        return growth;
       };
       EXPECT_LT(kinetic(1.), 1.) << n_stages;
       EXPECT_FALSE(kinetic(1.3) < 1e3) << n_stages; // beyond, or no number any more
     }
   }
-}
-
-TEST(RungeKuttaChebyshev, ComesToTheEquilibriumOfVerlet)
-{
-  const TriangularLattice sheet = sheets::square(10);
-  const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
-  const Material material = sheets::rubber();
-  State state = homogeneous_state(sheet, material, F, Edges::held);
-  const State rest = state;
-  add_noise(state, sheet, 0.05 * sheets::spacing, 3);
-  Simulation simulation(sheet, material, std::move(state), {4e-6, 7});
-  const double before = distance(simulation.state(), rest);
-  // The slowest wave of the sheet decays with some 1e3 / s.
-  for (int step = 0; step < 10000; ++step)
-    simulation.step();
-  EXPECT_LT(distance(simulation.state(), rest), 1e-9 * before);
 }
 
 // Loads on free ends balance the stretched sheet in each stage, or it would not stay at rest.

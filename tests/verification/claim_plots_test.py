@@ -4,14 +4,10 @@ import io
 import json
 import math
 import re
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
 from made_up_claims import DECAY, FIRST_ROW, RUN_ERROR, write_claims
 

@@ -373,16 +373,6 @@ def test_fracture_needs_what_breaks_it(out, tmp_path):
     assert "Fracture/breaking stretch" in run.stderr
 
 
-def test_end_that_no_wave_reaches_cannot_absorb(out):
-    settings = ["Fracture/right end=absorbing", "Loading/strain x=-0.9", "Loading/strain y=0"]
-    for more in ([], ["--dry-run"]):
-        run = latcon("fracture", CASES / "quick.prm", "--output-dir", out, "--skip-verification",
-                     *(word for setting in settings for word in ("--set", setting)), *more)
-        assert run.returncode == 2, run.stderr
-        assert "Fracture/right end = absorbing: the loaded sheet buckles" in run.stderr
-        assert not out.exists()
-
-
 def test_claim_that_fails_is_3(out):
     run = latcon("fracture", CASES / "quick.prm", "--output-dir", out, *BARE, "--skip-verification", "--set",
                  "Reference/speed=1 m/s")

@@ -52,15 +52,6 @@ def test_standard_output_that_is_full(out):
     assert code_in_file(out) == OUTPUT_FAILED
 
 
-def test_run_that_its_solver_refuses_writes_nothing(out):
-    """The case is sound; the solver sees that its initial state does not fit the edge."""
-    run = latcon("continuum", CASES / "quick.prm", "--output-dir", out, "--set", "Continuum/solution=motion",
-                 "--set", "Time/end=0.01 ms", "--set", "Top edge/displacement x=1e-4*x")
-    assert run.returncode == BAD_INPUT, run.stderr
-    assert "the initial displacement of a boundary differs" in run.stderr
-    assert not out.exists()
-
-
 def test_instruction_set_that_there_is_not(out):
     for command in (TINY, ["verify", "energy", "--quick"]):
         run = latcon(*command, "--output-dir", out, env=dict(os.environ, LATCON_INSTRUCTION_SET="MMX"))

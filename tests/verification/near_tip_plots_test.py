@@ -1,7 +1,5 @@
 """Tests of pictures of synthetic fields around a tip: their contents for a known field, and rejected files."""
-import sys
 import types
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,8 +7,6 @@ from PIL import Image
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
 from latcon.errors import UnreadableFile
 from latcon.report.near_tip_plots import opening_stress_picture, read_near_tip, triangulation, velocity_picture

@@ -1,12 +1,8 @@
 """Tests of the rasterisation of a synthetic sheet: filled pixels, openings where bonds break, omitted parts."""
-import sys
 import types
-from pathlib import Path
 
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
 from latcon.frames import Frame
 from latcon.report.raster import Mesh, Raster

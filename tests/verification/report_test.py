@@ -5,8 +5,6 @@ import io
 import json
 import re
 import shutil
-import subprocess
-import sys
 from html.parser import HTMLParser
 from pathlib import Path
 from unittest import mock
@@ -20,7 +18,6 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 FOLDER = Path(__file__).resolve().parents[2] / "python" / "latcon" / "report"
-sys.path.insert(0, str(FOLDER.parents[1]))
 
 from latcon.report import pages
 from latcon.report.__main__ import main
@@ -308,16 +305,6 @@ def test_without_the_library_of_the_plots_pictures_take_their_place(runs):
         assert html.index(f'alt="runs: {name}') < stills
 
 
-def test_runs_as_a_script(runs):
-    write_verification(runs, [FAILS])
-    command = ["/usr/bin/python3", str(FOLDER / "__main__.py"), "report", str(runs)]
-    loud = subprocess.run(command, capture_output=True, text=True, check=False)
-    quiet = subprocess.run(command + ["--quiet"], capture_output=True, text=True, check=False)
-    assert (loud.returncode, quiet.returncode) == (3, 3)
-    assert loud.stdout.endswith(f"\n{runs}/report.html\n"), loud.stdout
-    assert (loud.stderr, quiet.stdout, quiet.stderr) == ("", "", "")
-
-
 def test_an_interrupted_run_is_shown_as_far_as_it_went(runs):
     write_fracture(runs / "cut", [HOLDS])
     for name in ("results.json", "crack.json", "lattice-0000.vtp"):
@@ -348,14 +335,6 @@ def test_a_skipped_verification_is_said(runs):
     (runs.parent / "both" / "fig" / "run.json").write_text(json.dumps({"exit_code": 0, "skip_verification": True}))
     drawn(runs.parent / "both", "--quiet", expect=0)
     assert 'class="banner holds"' not in read_page(runs.parent / "both")[0]
-
-
-def test_reused_verdicts_are_said(runs):
-    write_fracture(runs, [HOLDS, PUBLISHED])
-    verification = {"hash": "abc", "reused": True, "checked_at": "2026-01-02T03:04:05Z"}
-    (runs / "run.json").write_text(json.dumps({"exit_code": 0, "verification": verification}))
-    drawn(runs, "--quiet", expect=0)
-    assert "cached verdicts of 2026-01-02T03:04:05Z" in read_page(runs)[1].text
 
 
 def test_refuses_a_folder_without_a_run(runs):

@@ -4,18 +4,12 @@ import csv
 import io
 import json
 import re
-import sys
-from pathlib import Path
 from unittest import mock
 
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
 from PIL import Image
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "pictures"))
 
 import gallery
 from near_tip_plots_test import write_field

@@ -5,11 +5,9 @@ import json
 import os
 import pathlib
 import re
-import sys
 
 import pytest
 
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "docs"))
 import verification_page
 from documented import undocumented
 from program import CACHE, CASES, FULL, claims_where, latcon

@@ -6,6 +6,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -85,72 +86,67 @@ TEST(CrackMeasurement, TipThatJumpsBetweenBranchesByTurnsDoesNotOscillate)
   EXPECT_EQ(m.pattern, CrackPattern::undecided) << m.reason;
 }
 
-class OscillatingCrackWithBreaks : public ::testing::Test
+class CrackMeasurementDamage : public testing::Test
 {
 protected:
-  OscillatingCrackWithBreaks()
+  CrackMeasurementDamage()
   {
     crack.path = sinusoid(wavelength, amplitude);
     crack.hops = 0.5 * d;
     break_along(breaks, crack.path, seed_tip, 0.98 * length);
   }
 
-  void expect_oscillating() const
-  {
-    const CrackMeasurement m = measure(crack, 1, breaks);
-    EXPECT_EQ(m.pattern, CrackPattern::oscillating) << m.reason;
-    EXPECT_LT(m.branched_fraction, 0.1);
-  }
-
   SyntheticCrack crack;
   std::vector<BreakRecord> breaks;
 };
-using CrackMeasurementDamage = OscillatingCrackWithBreaks;
 
-TEST_F(CrackMeasurementDamage, OnThePathIsNoBranch)
+// Damage on the path and beside it that is no branch of it.
+TEST_F(CrackMeasurementDamage, BesideThePathIsNoBranch)
 {
-  expect_oscillating();
-}
-
-TEST_F(CrackMeasurementDamage, BandInTheWakeIsNoBranch)
-{
-  break_along(breaks, crack.path, seed_tip, 0.98 * length, 6. * d);
-  expect_oscillating();
-}
-
-TEST_F(CrackMeasurementDamage, RowBesideThePathIsNoBranch)
-{
-  // At a distance of 14 d over the whole length, with a width of 1 d on both sides: the gap is never more than 12 d.
-  break_along(
-    breaks, [&](double X) { return crack.path(X) + 14. * d; }, seed_tip, 0.98 * length);
-  expect_oscillating();
-}
-
-TEST_F(CrackMeasurementDamage, StragglingDamageIsNoBranch)
-{
-  // Damage with a gap that varies between 4 d and 16 d every 37 d: above 10 d for less than 20 d at a time.
-  const auto beside = [&](double X) { return crack.path(X) + (12. + 6. * std::sin(2. * pi * X / wavelength)) * d; };
-  break_along(breaks, beside, seed_tip, 0.98 * length);
-  expect_oscillating();
-}
-
-TEST_F(CrackMeasurementDamage, SpurAtEveryCrestIsNoBranch)
-{
-  // Secondary cracks of 14 d that branch off every second crest at 60 degrees and stop.
-  for (double X = 0.03; X < 0.13; X += wavelength)
-    break_along(
-      breaks, [&](double s) { return crack.path(X) + std::tan(pi / 3.) * (s - X); }, X, X + 14. * d);
-  expect_oscillating();
-}
-
-TEST_F(CrackMeasurementDamage, ScatteredDebrisIsNoBranch)
-{
-  // One broken bond per 2 d of length, at random up to 60 d from the path.
+  const auto &path = crack.path;
+  const std::vector<BreakRecord> on_path = breaks;
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> offset(-60. * d, 60. * d);
-  for (double X = seed_tip; X < 0.98 * length; X += 2. * d)
-    breaks.push_back({1e-3, X, crack.path(X) + offset(generator)});
-  expect_oscillating();
+  const std::pair<const char *, std::function<void()>> cases[] = {
+    {"none", [] {}},
+    {"a band in the wake", [&] { break_along(breaks, path, seed_tip, 0.98 * length, 6. * d); }},
+    // At a distance of 14 d over the whole length, with a width of 1 d on both sides: the gap is never more than 12 d.
+    {"a row",
+     [&]
+     {
+       break_along(
+         breaks, [&](double X) { return path(X) + 14. * d; }, seed_tip, 0.98 * length);
+     }},
+    // With a gap that varies between 4 d and 16 d every 37 d: above 10 d for less than 20 d at a time.
+    {"straggling damage",
+     [&]
+     {
+       break_along(
+         breaks, [&](double X) { return path(X) + (12. + 6. * std::sin(2. * pi * X / wavelength)) * d; }, seed_tip,
+         0.98 * length);
+     }},
+    // Secondary cracks of 14 d that branch off every second crest at 60 degrees and stop.
+    {"a spur at every crest",
+     [&]
+     {
+       for (double X = 0.03; X < 0.13; X += wavelength)
+         break_along(
+           breaks, [&](double s) { return path(X) + std::tan(pi / 3.) * (s - X); }, X, X + 14. * d);
+     }},
+    // One broken bond per 2 d of length, at random up to 60 d from the path.
+    {"debris", [&]
+     {
+       for (double X = seed_tip; X < 0.98 * length; X += 2. * d)
+         breaks.push_back({1e-3, X, path(X) + offset(generator)});
+     }}};
+  for (const auto &[name, damage] : cases)
+  {
+    breaks = on_path;
+    damage();
+    const CrackMeasurement m = measure(crack, 1, breaks);
+    EXPECT_EQ(m.pattern, CrackPattern::oscillating) << name << ": " << m.reason;
+    EXPECT_LT(m.branched_fraction, 0.1) << name;
+  }
 }
 
 // --- flanks
@@ -276,6 +272,7 @@ TEST(CrackMeasurement, SentenceNamesTheCriterionThatDecided)
   const auto expect = [](const CrackMeasurement &m, CrackPattern pattern, std::initializer_list<const char *> parts)
   {
     EXPECT_EQ(m.pattern, pattern) << m.reason;
+    EXPECT_EQ(m.wavelength.has_value(), pattern == CrackPattern::oscillating);
     for (const char *part : parts)
       EXPECT_NE(m.reason.find(part), std::string::npos) << m.reason;
   };
@@ -353,7 +350,7 @@ TEST(CrackMeasurement, SeveralEntriesInOneColumn)
       tip.push_back({entry.t, entry.X, Y, entry.x, entry.y});
   const CrackMeasurement m = measure_crack(tip, {}, options_for(tip));
   ASSERT_EQ(m.pattern, CrackPattern::oscillating) << m.reason;
-  EXPECT_NEAR(m.wavelength->value, wavelength, 4. * 0.05e-3); // as in SinusoidOnLatticeSites
+  EXPECT_NEAR(m.wavelength->value, wavelength, 4. * 0.05e-3); // four standard deviations, as for one entry in each
   EXPECT_NEAR(m.speed_lagrangian->value, speed, 3. * d / (0.7 * length) * speed);
 }
 

@@ -66,23 +66,6 @@ TEST(SlowestWave, IsTheSlowestOfAll)
     }
 }
 
-// Bonds in compression along x are stable only up to some stretch of the bonds across them.
-TEST(SlowestWave, KnowsSheetsThatBuckle)
-{
-  const Case input = subjects::paper_case();
-  const lattice::TriangularLattice sheet = input.lattice();
-  const auto is_stable = [&](const lattice::Material &material, double x, double y)
-  { return slowest_wave(sheet, material, stretched(x, y)).squared_speed > 0.; };
-  for (const lattice::Material &material : {input.material(), subjects::nearest_only(input)})
-  {
-    EXPECT_TRUE(is_stable(material, 1., 1.));
-    EXPECT_TRUE(is_stable(material, 0.99, 1.));
-    EXPECT_TRUE(is_stable(material, 4., 4.));
-    EXPECT_FALSE(is_stable(material, 0.7, 2.));
-    EXPECT_FALSE(is_stable(material, 0.5, 3.));
-  }
-}
-
 TEST(StabilityRow, HoldsOrSaysInWhichWavesTheSheetBuckles)
 {
   Case input = subjects::paper_case();

@@ -1,5 +1,6 @@
 // Faults planted on one side of a claim: the rows that must fail, and those that compare a side with its own theory and
-// must hold. A claim that cannot fail claims nothing.
+// must hold. A claim that cannot fail claims nothing. Without a fault none fails: HoldsForBothShellSetsAndOrientations
+// of each claim.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -141,34 +142,28 @@ std::vector<PlantedFault> all_faults()
     // Energy density, two tractions, stress; displacements are those of the edges all the same. The network's stress is
     // judged by its tractions alone.
     prestretch{"prestretch", {{", Cauchy-Born", 4}, {", network", 3}, "traction on the top edge, Cauchy-Born"}},
-    gradient_alpha{"intrinsic-length",
-                   {"alpha in all directions, gradient continuum against closed form"},
-                   own_alpha};
-  const std::vector<Rows> of_moduli{energy, long_waves, prestretch}, of_third_shell{{"energy", {", Cauchy-Born"}},
-                                                                                  {"prestretch", {", Cauchy-Born"}}},
-    of_gradient{{"wave-speeds", {""}, own_waves},
-                {"energy of waves", {""}, own_energy},
-                {"intrinsic-length", {""}, own_alpha}},
+    gradient_alpha{"intrinsic-length", {"alpha in all directions, gradient continuum against closed form"}, own_alpha};
+  // Constants of a bond enter all claims by its stiffness alone: one of them is planted in all.
+  const std::vector<Rows> of_moduli{energy},
+    of_third_shell{{"energy", {", Cauchy-Born"}}, {"prestretch", {", Cauchy-Born"}}},
+    of_gradient{
+      {"wave-speeds", {""}, own_waves}, {"energy of waves", {""}, own_energy}, {"intrinsic-length", {""}, own_alpha}},
     of_mooney_rivlin{{"energy", {"Mooney-Rivlin"}}};
-  const auto third = [](const char *name, const Plant &plant, const std::vector<Rows> &rows)
-  { return PlantedFault{name, plant, rows, {}, true}; };
+  const auto third = [](const char *name, const Plant &plant, const std::vector<Rows> &rows) {
+    return PlantedFault{name, plant, rows, {}, true};
+  };
   return {
-    {"lattice: a, nearest", [](Subject &s) { bond(s.material.nearest).a *= wrong; }, of_moduli},
+    {"lattice: a, nearest", [](Subject &s) { bond(s.material.nearest).a *= wrong; }, {energy, long_waves, prestretch}},
     {"lattice: b, nearest", [](Subject &s) { bond(s.material.nearest).b *= wrong; }, of_moduli},
     {"lattice: s, nearest", [](Subject &s) { s.material.nearest.area_factor *= wrong; }, of_moduli},
     {"lattice: a, next-nearest", [](Subject &s) { bond(s.material.next_nearest.value()).a *= wrong; }, of_moduli},
     {"lattice: b, next-nearest", [](Subject &s) { bond(s.material.next_nearest.value()).b *= wrong; }, of_moduli},
     {"lattice: s, next-nearest",
      [](Subject &s) { s.material.next_nearest->area_factor *= wrong; },
-     {energy,
-      {"energy of waves", {""}, own_energy},
-      long_waves,
-      gradient_alpha,
-      prestretch,
-      {"hole", {"stress amplitude", "reactions"}}}},
+     {{"energy of waves", {""}, own_energy}, gradient_alpha, {"hole", {"stress amplitude", "reactions"}}}},
     {"lattice: density",
      [](Subject &s) { s.material.density *= wrong; },
-     {{"energy", {"c_S at F = I, Cauchy-Born", "c_L at F = I, Cauchy-Born"}}, long_waves}},
+     {{"energy", {"c_S at F = I, Cauchy-Born", "c_L at F = I, Cauchy-Born"}}}},
     {"lattice's runs: density",
      [](Subject &) {},
      {{"wave-speeds", {"long-wave speed, S, lattice run against a, b, s and rho alone"}}},
@@ -195,10 +190,7 @@ std::vector<PlantedFault> all_faults()
       {"hole", {"energy"}}}},
     {"continuum: d^2 in place of the Voronoi cell of a site",
      [](Subject &s) { s.cauchy_born = scaled<continuum::CauchyBorn>(s.cauchy_born, std::sqrt(0.75)); },
-     {{"energy", {"energy density, Cauchy-Born", "first Piola stress, Cauchy-Born"}},
-      {"energy of waves", {""}, own_energy},
-      {"wave-speeds", {""}, own_waves},
-      {"hole", {"stress amplitude", "energy", "reactions"}}}},
+     {{"energy", {"energy density, Cauchy-Born", "first Piola stress, Cauchy-Born"}}}},
     {"continuum: weights, network",
      [](Subject &s) { s.network = scaled<continuum::IsotropicNetwork>(s.cauchy_born, wrong); },
      {{"energy", {"network"}, {}, true},
@@ -224,8 +216,7 @@ std::vector<PlantedFault> all_faults()
      {{"energy of waves", {"excess of the gradient continuum's energy over l_d^2 k^2"}},
       {"wave-speeds", {"gradient continuum against Bloch"}},
       {"intrinsic-length", {"intrinsic length l_d"}}}},
-    {"continuum: l_d of nearest neighbours alone",
-     [](Subject &s) { s.lengths.lattice = s.spacing / std::sqrt(12.); },
+    {"continuum: l_d of nearest neighbours alone", [](Subject &s) { s.lengths.lattice = s.spacing / std::sqrt(12.); },
      of_gradient},
     {"continuum: isotropic length",
      [](Subject &s) { s.lengths.isotropic_inertia *= wrong; },
@@ -240,8 +231,8 @@ std::vector<PlantedFault> all_faults()
       "lattice: s, third-nearest", [](Subject &s) { s.material.third_nearest->area_factor *= wrong; }, of_third_shell),
     third(
       "lattice: no third-nearest bonds", [](Subject &s) { s.material.third_nearest.reset(); }, of_third_shell),
-    third("continuum: a direction of third-nearest bonds missing", continuum_bonds([](auto &bonds) { bonds.pop_back(); }),
-          of_third_shell),
+    third("continuum: a direction of third-nearest bonds missing",
+          continuum_bonds([](auto &bonds) { bonds.pop_back(); }), of_third_shell),
     third("continuum: sqrt3 d in place of 2 d in the weights of third-nearest bonds",
           continuum_bonds(
             [](auto &bonds)
@@ -335,15 +326,6 @@ TEST(Surroundings, AreThoseOfTheirClosedForms)
   EXPECT_TRUE(right.all_hold()) << right.verdict_text(3);
   for (const Result &row : right.rows())
     std::cout << row.quantity << ": " << row.error.value_or(-1.) << "\n";
-}
-
-// Without a fault none of them fails; that the sheet with a hole does not is seen by Claims.HoldInTheirQuickVersions.
-TEST(FaultMatrix, HoldsWithoutFault)
-{
-  for (const char *claim : {"energy", "energy of waves", "wave-speeds", "intrinsic-length", "prestretch"})
-    EXPECT_EQ(faults::failing(check(claim, right_subject(false), {})), 0u) << claim;
-  for (const char *claim : {"energy", "intrinsic-length", "prestretch"})
-    EXPECT_EQ(faults::failing(check(claim, right_subject(true), {})), 0u) << claim;
 }
 
 } // namespace fault_matrix_test

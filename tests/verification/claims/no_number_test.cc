@@ -303,10 +303,8 @@ std::vector<Plant> every_claim_and_side()
   for (const ClaimPart &claim : {energy, intrinsic_length, prestretch, hole})
     plants.push_back({claim, "theory, shear modulus", shear_modulus});
   for (const ClaimPart &claim : {energy, wave_speeds})
-  {
     plants.push_back({claim, "theory, shear speed", shear_speed});
-    plants.push_back({claim, "theory, longitudinal speed", longitudinal_speed});
-  }
+  plants.push_back({energy, "theory, longitudinal speed", longitudinal_speed});
   for (const ClaimPart &claim : {energy, wave_speeds, intrinsic_length, prestretch, hole, notch})
     plants.push_back({claim, "network", overflow_network, "network"});
   for (const ClaimPart &claim : {hole, notch})
@@ -392,8 +390,7 @@ TEST_P(NoNumberInCutSheets, FailsTheClaim)
 class SoundWrappers : public testing::TestWithParam<ClaimPart>
 {
 };
-INSTANTIATE_TEST_SUITE_P(Claims, SoundWrappers,
-                         testing::Values(energy, wave_energy, wave_speeds, damped_waves, intrinsic_length, prestretch));
+INSTANTIATE_TEST_SUITE_P(Claims, SoundWrappers, testing::Values(energy, wave_speeds, intrinsic_length, prestretch));
 
 TEST_P(SoundWrappers, HoldTheClaim)
 {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -187,90 +188,62 @@ TEST_F(Archive, RefusesWhatDoesNotFit)
   EXPECT_THROW(archive("all", three), Hdf5Error);
 }
 
-// Fixture for handmade files with the names of archived objects.
+// Handmade files with the names of archived objects.
 class HostileArchive : public testing::Test
 {
 protected:
   template <class T>
   void put(const std::string &name, const std::vector<T> &values)
   {
-    image_.write(name, element_type<T>(), values.data(), values.size());
+    image_->write(name, element_type<T>(), values.data(), values.size());
   }
+  // Expects that the file with what was put is refused; the next file begins.
   template <class T>
-  void expect_refused(T object, bool as_records = false)
+  void expect_refused(const char *what, T object)
   {
+    SCOPED_TRACE(what);
     const std::string path = folder_ / "file.h5";
-    std::ofstream(path, std::ios::binary) << image_.take_bytes();
+    std::ofstream(path, std::ios::binary) << image_->take_bytes();
+    image_.emplace();
     const Hdf5File file(path);
     CheckpointReader archive(file);
     if constexpr (std::is_same_v<T, std::vector<lattice::BrokenBond>>)
-      EXPECT_THROW(as_records ? archive.records("a", object) : void(), Hdf5Error);
+      EXPECT_THROW(archive.records("a", object), Hdf5Error);
     else
       EXPECT_THROW(archive("a", object), Hdf5Error);
   }
 
-  Hdf5Image image_;
+  std::optional<Hdf5Image> image_{std::in_place};
   TemporaryFolder folder_;
 };
 
-TEST_F(HostileArchive, NumberThatIsNotFiniteIsRefused)
+TEST_F(HostileArchive, IsRefused)
 {
+  constexpr std::uint64_t endless = std::numeric_limits<std::uint64_t>::max(), many = std::uint64_t{1} << 60U;
   put<double>("a", {1., std::numeric_limits<double>::quiet_NaN()});
-  expect_refused(std::vector<double>());
-}
-
-TEST_F(HostileArchive, TruthValueIsFalseOrTrue)
-{
+  expect_refused("a number that is not finite", std::vector<double>());
   put<std::uint8_t>("a", {2});
-  expect_refused(false);
-}
-
-TEST_F(HostileArchive, OptionalNumberIsOneAtMost)
-{
+  expect_refused("a truth value that is neither", false);
   put<std::uint64_t>("a", {1, 2});
-  expect_refused(std::optional<std::size_t>());
-}
-
-TEST_F(HostileArchive, PartOfAPointIsRefused)
-{
+  expect_refused("two optional numbers", std::optional<std::size_t>());
   put<double>("a", {1., 2., 3.});
-  expect_refused(std::vector<Eigen::Vector2d>());
-}
-
-TEST_F(HostileArchive, ListsAreNotLongerThanTheirValues)
-{
-  put<double>("a/values", {1., 2.});
-  put<std::uint64_t>("a/sizes", {1, std::numeric_limits<std::uint64_t>::max()});
-  expect_refused(std::vector<std::vector<double>>());
-}
-
-TEST_F(HostileArchive, ListsAreNotShorterThanTheirValues)
-{
-  put<double>("a/values", {1., 2.});
-  put<std::uint64_t>("a/sizes", {1});
-  expect_refused(std::vector<std::vector<double>>());
-}
-
-TEST_F(HostileArchive, NumberOfObjectsIsNotTakenFromTheFile)
-{
-  put<std::uint64_t>("a/n", {std::uint64_t{1} << 60U});
-  expect_refused(std::deque<Inner>(3));
-}
-
-TEST_F(HostileArchive, RecordsAreAsManyAsTheirColumnsAreLong)
-{
-  put<std::uint64_t>("a/n", {std::uint64_t{1} << 60U});
+  expect_refused("a part of a point", std::vector<Eigen::Vector2d>());
+  for (const std::vector<std::uint64_t> &sizes : {std::vector<std::uint64_t>{1, endless}, {1}})
+  {
+    put<double>("a/values", {1., 2.});
+    put<std::uint64_t>("a/sizes", sizes);
+    expect_refused("lists longer or shorter than their values", std::vector<std::vector<double>>());
+  }
+  put<std::uint64_t>("a/n", {many});
+  expect_refused("a number of objects from the file", std::deque<Inner>(3));
+  put<std::uint64_t>("a/n", {many});
   for (const char *column : {"time", "midpoint_0", "midpoint_1", "stretch", "energy"})
     put<double>(std::string("a/") + column, {1.});
   for (const char *column : {"near", "far", "kind"})
     put<std::uint64_t>(std::string("a/") + column, {1});
-  expect_refused(std::vector<lattice::BrokenBond>(), true);
-}
-
-TEST_F(HostileArchive, TextEndsWhereItSays)
-{
-  image_.write_text("a", std::string("one\0two", 7));
-  expect_refused(std::string());
+  expect_refused("more records than their columns are long", std::vector<lattice::BrokenBond>());
+  image_->write_text("a", std::string("one\0two", 7));
+  expect_refused("a text that ends early", std::string());
 }
 
 TEST_F(Archive, RefusesAFileThatIsNotHdf5)
