@@ -9,7 +9,7 @@ namespace latcon::continuum
 {
 /// Gradient part of the viscosity of a network of dashpots, each of which resists the rate of the gradient of its own
 /// stretch. It multiplies the viscous forces of long lattice waves by 1 + l_d^2 k^2 with the micro-inertia length l_d,
-/// as LatticeGradient does the elastic ones (theory-continuum.md, eqs. (C.85) to (C.88)):
+/// as LatticeGradient does the elastic ones (theory-continuum.md, eqs. (C.60) to (C.63)):
 ///   R_g = (1/2) sum over dashpots of c_k eta_k [ l_d^2 (d/dt dl_k/dT)^2 + (l_d^2 - l_k^2/12) (d/dt dl_k/dN)^2 ]
 /// with the stretch l_k = |F N|, whose gradient is n . (G N), and T normal to N. Objective, never negative.
 ///
@@ -27,7 +27,7 @@ public:
   void cell_density(const FieldDerivatives &u, const FieldDerivatives &v, Order order, double rate_by_displacement,
                     PointIntegrand &density) const;
 
-  /// Computes the density of the interior penalty on a face with normal N, eq. (C.88), as face_density() does that of a
+  /// Computes the density of the interior penalty on a face with normal N, eq. (C.63), as face_density() does that of a
   /// gradient law: `prescribed` is the rate of the normal gradient [1/s], `penalty` that of the viscosity [Pa s m].
   void face_density(const std::array<FieldDerivatives, 2> &u, const std::array<FieldDerivatives, 2> &v,
                     unsigned int n_sides, const dealii::Tensor<1, 2> &N, const dealii::Tensor<1, 2> &prescribed,

@@ -67,7 +67,7 @@ void add_G_G(PointIntegrand &d, const unsigned int s, const Tensor<6, 2> &T, con
                                         T[i][first_index[c]][second_index[c]][l][first_index[e]][second_index[e]];
 }
 // Factor of the interior penalty, with derivatives by the ratio of the stiffness to the supported one: 1 up to ratio 1,
-// at least 0.82 ratio beyond, eq. (C.84). Twice continuously differentiable, as Newton's method needs.
+// at least 0.82 ratio beyond, eq. (C.59). Twice continuously differentiable, as Newton's method needs.
 struct PenaltyFactor
 {
   double value, first, second;

@@ -126,7 +126,7 @@ public:
   double penalty(double extent) const { return penalty(extent, normal_stiffness_); }
   /// Returns the penalty of another law with that `stiffness` across the face [Pa m^2 or Pa s m^2].
   double penalty(double extent, double stiffness) const;
-  /// Returns the stiffness [Pa m^2] of the gradient law above which penalties grow with it, eq. (C.84).
+  /// Returns the stiffness [Pa m^2] of the gradient law above which penalties grow with it, eq. (C.59).
   double supported_stiffness() const;
   const dealii::IndexSet &owned() const { return owned_; }
   const dealii::IndexSet &relevant() const { return relevant_; }

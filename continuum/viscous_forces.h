@@ -8,7 +8,7 @@
 namespace latcon::continuum
 {
 /// Nodal forces of a viscous law, C_a = integral of P_v(F, Fdot) : Grad phi_a dX (theory-continuum.md, eq. (C.40)),
-/// with those of its gradient part, eq. (C.88). The nodal vectors u [m] and v [m/s] have ghost entries, and the rate of
+/// with those of its gradient part, eq. (C.63). The nodal vectors u [m] and v [m/s] have ghost entries, and the rate of
 /// the load factor `load_rate` [1/s] is that of prescribed normal gradients. All functions are collective, and throw
 /// NonPhysicalState on every rank.
 class ViscousForces

@@ -150,7 +150,7 @@ TEST(DynamicSolver, WavesFollowTheDispersionOfTheLattice)
     }
 }
 
-// theory-continuum.md, eqs. (C.48) and (C.87).
+// theory-continuum.md, eqs. (C.48) and (C.62).
 TEST(DynamicSolver, DampsAStandingWaveAsKelvinTheorySays)
 {
   // q'' + 2 g q' + w^2 q = 0 with g = eta k^2 / (2 rho (1 + l_d^2 k^2)), eta the viscous modulus of the polarisation,

@@ -32,7 +32,7 @@ BoundaryConditions clamped_bump(const double stretch_x, const double stretch_y, 
 // Energy, residual and tangent of the discrete functional by Taylor's theorem at a state whose normal gradients jump
 // everywhere, on a mesh with hanging nodes and a clamped edge; the tangent is symmetric. With a small penalty, which
 // grows with the stiffness of the state, and with one that does not. theory-continuum.md, eqs. (C.28) to (C.30),
-// (C.84).
+// (C.59).
 TEST(GradientEquilibrium, ResidualAndTangentAreDerivativesOfOneFunctional)
 {
   using Vector = continuum::Sheet::Vector;

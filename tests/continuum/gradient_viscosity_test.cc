@@ -63,7 +63,7 @@ double stretch(const FieldDerivatives &u, const FieldDerivatives &v, const Tenso
   return f.norm();
 }
 
-// theory-continuum.md, eq. (C.86).
+// theory-continuum.md, eq. (C.61).
 TEST(GradientViscosity, DissipatesTheRatesOfTheGradientsOfStretches)
 {
   const GradientViscosity law(dashpots(), micro_length);
@@ -98,7 +98,7 @@ TEST(GradientViscosity, DissipatesTheRatesOfTheGradientsOfStretches)
 }
 
 // Dissipation of a wave v = p cos(K.X) on a homogeneous sheet, times 1 + l_d^2 k^2, as a sum over bonds: to fourth
-// order that of the local and the gradient viscosity. theory-continuum.md, eqs. (C.85) and (C.87).
+// order that of the local and the gradient viscosity. theory-continuum.md, eqs. (C.60) and (C.62).
 TEST(GradientViscosity, HasTheBondsDampingOfLongWavesToFourthOrder)
 {
   const FibreViscosity viscosity(dashpots(), micro_length);
@@ -196,7 +196,7 @@ void expect_derivatives(const Compute &compute, const unsigned int n_sides, cons
       }
 }
 
-// theory-continuum.md, eq. (C.86).
+// theory-continuum.md, eq. (C.61).
 TEST(GradientViscosity, HasTheDerivativesOfItsDensityInACell)
 {
   const GradientViscosity law(dashpots(), micro_length);
@@ -207,7 +207,7 @@ TEST(GradientViscosity, HasTheDerivativesOfItsDensityInACell)
                        1, 20., generator);
 }
 
-// theory-continuum.md, eq. (C.88).
+// theory-continuum.md, eq. (C.63).
 TEST(GradientViscosity, HasTheDerivativesOfItsDensityOnAFace)
 {
   const GradientViscosity law(dashpots(), micro_length);

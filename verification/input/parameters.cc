@@ -23,6 +23,10 @@ namespace
 // Problems beyond these are counted, not shown: a wrong file would fill the screen and the memory.
 constexpr std::size_t most_problems = 50;
 
+// Sections that cases no longer have, and what replaced them.
+const std::map<std::string, std::string> replaced_sections{
+  {"Damage", "Nonlocal and Fracture (docs/continuum-crack.md)"}};
+
 // Width of a comment on an entry in a resolved case, which has lines of at most 78 columns.
 constexpr std::size_t comment_width = 74;
 
@@ -265,12 +269,16 @@ std::string Parameters::known_entries(const std::string &section) const
 
 std::string Parameters::nearest_section(const std::string &section) const
 {
+  if (const auto found = replaced_sections.find(section); found != replaced_sections.end())
+    return "; replaced by " + found->second;
   const std::string nearest = nearest_word(section, sections());
   return nearest.empty() ? "" : "; nearest: " + nearest;
 }
 
 std::string Parameters::nearest_key(const std::string &section, const std::string &name) const
 {
+  if (replaced_sections.count(section) > 0)
+    return nearest_section(section);
   const Entry *nearest = nullptr;
   std::size_t least = std::numeric_limits<std::size_t>::max();
   for (const Entry &entry : entries_)
