@@ -44,120 +44,42 @@ std::unique_ptr<DynamicSolver> moved(const Mesh &mesh, const Problem &problem, c
   return solver;
 }
 
-// theory-continuum.md, eqs. (C.40), (C.43) and (C.44).
-TEST(DynamicSolver, IsOfSecondOrderInTime)
+// theory-continuum.md, eqs. (C.40), (C.43), (C.44) and (C.46).
+TEST(DynamicSolver, IsOfSecondOrderInTimeWithItsLedger)
 {
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(2, 2));
   const Problem problem;
   const auto reference = moved(mesh, problem, NewmarkParameters::average_acceleration(), 640);
   EXPECT_GT(reference->displacement().linfty_norm(), 0.1 * length); // large
-  const auto error = [&](const NewmarkParameters &rule, const unsigned int n_steps)
+  const auto error = [&](const DynamicSolver &solver)
   {
-    const auto solver = moved(mesh, problem, rule, n_steps);
-    Vector difference = solver->sheet().make_owned();
-    Vector exact = solver->sheet().make_owned();
-    difference = solver->displacement();
+    Vector difference = solver.sheet().make_owned();
+    Vector exact = solver.sheet().make_owned();
+    difference = solver.displacement();
     exact = reference->displacement();
     difference -= exact;
     return difference.l2_norm() / exact.l2_norm();
   };
-  for (const NewmarkParameters &rule :
-       {NewmarkParameters::average_acceleration(), NewmarkParameters::generalised_alpha(0.6)})
-  {
-    const double coarse = error(rule, 40);
-    const double fine = error(rule, 80);
-    // The error of the reference is at most (80/640)^2 of the fine error, which changes the order by 0.02.
-    EXPECT_NEAR(std::log2(coarse / fine), 2., 0.15) << coarse << " " << fine;
-    RecordProperty("order with gamma " + std::to_string(rule.gamma), std::to_string(std::log2(coarse / fine)));
-  }
-}
-
-// theory-continuum.md, eq. (C.46).
-TEST(DynamicSolver, LedgerClosesToSecondOrder)
-{
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(2, 2));
-  const Problem problem;
   for (const bool is_viscous : {true, false})
     for (const NewmarkParameters &rule :
          {NewmarkParameters::average_acceleration(), NewmarkParameters::generalised_alpha(0.6)})
     {
-      const auto coarse = moved(mesh, problem, rule, 40, is_viscous)->ledger();
-      const auto fine = moved(mesh, problem, rule, 80, is_viscous)->ledger();
-      EXPECT_NEAR(std::log2(std::abs(coarse.imbalance / fine.imbalance)), 2., 0.3)
-        << coarse.imbalance << " " << fine.imbalance << " of " << fine.work;
-      EXPECT_LT(std::abs(fine.imbalance), 0.01 * fine.work);
-      RecordProperty("imbalance over work, gamma " + std::to_string(rule.gamma) + (is_viscous ? ", viscous" : ""),
-                     std::to_string(1e6 * fine.imbalance / fine.work) + "e-6");
-      EXPECT_GT(fine.micro_kinetic, 0.01 * fine.kinetic);
-      EXPECT_LT(fine.micro_kinetic, fine.kinetic);
+      const auto coarse = moved(mesh, problem, rule, 40, is_viscous), fine = moved(mesh, problem, rule, 80, is_viscous);
       if (is_viscous)
       {
-        EXPECT_GT(fine.dissipated, 0.05 * fine.work);
+        // The error of the reference is at most (80/640)^2 of the fine error, which changes the order by 0.02.
+        EXPECT_NEAR(std::log2(error(*coarse) / error(*fine)), 2., 0.15) << error(*coarse) << " " << error(*fine);
       }
-      else
-      {
-        EXPECT_EQ(fine.dissipated, 0.);
-      }
+      const continuum::EnergyLedger &ledger = fine->ledger();
+      EXPECT_NEAR(std::log2(std::abs(coarse->ledger().imbalance / ledger.imbalance)), 2., 0.3)
+        << coarse->ledger().imbalance << " " << ledger.imbalance << " of " << ledger.work;
+      EXPECT_LT(std::abs(ledger.imbalance), 0.01 * ledger.work);
+      EXPECT_GT(ledger.micro_kinetic, 0.01 * ledger.kinetic);
+      EXPECT_LT(ledger.micro_kinetic, ledger.kinetic);
+      EXPECT_EQ(ledger.dissipated > 0.05 * ledger.work, is_viscous);
+      EXPECT_EQ(ledger.dissipated == 0., !is_viscous);
     }
-}
-
-TEST(DynamicSolver, KeepsTheEnergyOfALongVibration)
-{
-  // Four bilinear cells with all edges held: one node oscillates at about 1200/s with 0.2 of a cell in an anharmonic
-  // potential. With more nodes, energy moves to shorter waves and the error, a fraction (w dt)^2 of it, grows
-  // meanwhile.
-  const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(2, 2));
-  struct Errors // relative to the energy
-  {
-    double largest_at_first = 0.; // over 0.1 s
-    double largest = 0.;
-    double mean_at_first = 0.; // over 0.1 s
-    double mean_at_last = 0.;
-  };
-  const auto errors = [&](const double dt, const unsigned int n_first, const unsigned int n_steps)
-  {
-    DynamicSettings settings{dt};
-    settings.degree = 1;
-    settings.relative_tolerance = 1e-9;
-    DynamicSolver solver(mesh, law, on_all_edges(constant(0., 0.)), {density, 0.}, settings);
-    solver.start(nullptr, constant(15., 4.5)); // of the free node; the edges are fixed
-    const double energy = solver.ledger().kinetic;
-    Errors e;
-    double smallest = energy;
-    for (unsigned int n = 1; n <= n_steps; ++n)
-    {
-      solver.step();
-      const double error = solver.ledger().imbalance / energy;
-      e.largest = support::largest_of({e.largest, std::abs(error)});
-      if (n <= n_first)
-        e.mean_at_first += error / n_first;
-      if (n == n_first)
-        e.largest_at_first = e.largest;
-      if (n > n_steps - n_first)
-        e.mean_at_last += error / n_first;
-      smallest = std::min(smallest, solver.ledger().kinetic);
-    }
-    EXPECT_LT(smallest, 0.01 * energy); // it does oscillate
-    EXPECT_EQ(solver.ledger().dissipated, 0.);
-    EXPECT_EQ(solver.ledger().work, 0.);
-    return e;
-  };
-  const Errors coarse = errors(2e-4, 500, 500);
-  const Errors fine = errors(1e-4, 1000, 3000);
-  // The next term of the error is (w dt)^4 with w dt = 0.25 for the coarse step, so the ratio is 4 to within a few per
-  // cent.
-  EXPECT_NEAR(coarse.largest_at_first / fine.largest_at_first, 4., 0.2) << fine.largest_at_first;
-  // The means of a stationary error differ by the phases at the ends of 0.1 s, about 20 periods: at most 1/50 of its
-  // size. A drift of a thousandth of it in each of the 60 periods would be three times that.
-  EXPECT_LT(fine.largest, 1.02 * fine.largest_at_first);
-  EXPECT_LT(std::abs(fine.mean_at_last - fine.mean_at_first), 0.02 * fine.largest_at_first);
-  RecordProperty("largest error", std::to_string(1e6 * fine.largest) + "e-6");
-  RecordProperty("ratio", std::to_string(coarse.largest_at_first / fine.largest_at_first));
-  RecordProperty("drift", std::to_string(1e6 * (fine.mean_at_last - fine.mean_at_first)) + "e-6");
 }
 
 TEST(DynamicSolver, MovesHeldBoundariesWithTheLoadFactor)
@@ -226,7 +148,7 @@ TEST(DynamicSolver, StandsStillAfterARamp)
        {NewmarkParameters::average_acceleration(), NewmarkParameters::generalised_alpha(0.9)})
   {
     std::vector<double> imbalance;
-    for (const double dt : {1e-4, 5e-5, 2.5e-5})
+    for (const double dt : {1e-4, 2.5e-5})
     {
       Mesh mesh(MPI_COMM_SELF);
       continuum::make_rectangle(mesh, rectangle(8, 6));
@@ -258,7 +180,7 @@ TEST(DynamicSolver, StandsStillAfterARamp)
       imbalance.push_back(std::abs(solver.ledger().imbalance) / solver.ledger().work);
     }
     // Of second order, as without a kink: a factor of 16 over two halvings of the step.
-    EXPECT_LT(imbalance[2], 0.1 * imbalance[0]);
+    EXPECT_LT(imbalance[1], 0.1 * imbalance[0]);
   }
 }
 

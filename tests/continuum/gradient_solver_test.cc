@@ -116,31 +116,6 @@ TEST(GradientEquilibrium, ResidualAndTangentAreDerivativesOfOneFunctional)
     }
 }
 
-// Quadratic convergence: the largest exponent of the residual between iterations. The first steps are not yet in the
-// quadratic range, and the last one ends in round-off. Tests both gradient laws, whose face terms enter the tangent
-// with their second variation.
-TEST(GradientEquilibrium, NewtonIsQuadratic)
-{
-  const continuum::CauchyBorn law = rubber_network();
-  const continuum::LatticeGradient lattice = rubber_gradient(2. * internal_length);
-  const continuum::IsotropicGradient isotropic(5e5, internal_length);
-  for (const continuum::GradientLaw *gradient :
-       {static_cast<const continuum::GradientLaw *>(&lattice), static_cast<const continuum::GradientLaw *>(&isotropic)})
-  {
-    Mesh mesh(MPI_COMM_SELF);
-    continuum::make_rectangle(mesh, rectangle(12, 8));
-    StaticSolver solver(mesh, Constitution(law, *gradient), clamped_bump(1.5, 1.7, 0.025));
-    const continuum::SolverReport report = solver.solve();
-    const auto &iterations = report.iterations;
-    double exponent = 0.;
-    for (std::size_t k = 2; k < iterations.size(); ++k)
-      exponent = std::max(exponent, std::log(iterations[k].residual / iterations[k - 1].residual) /
-                                      std::log(iterations[k - 1].residual / iterations[k - 2].residual));
-    EXPECT_GT(exponent, 1.7) << report.text();
-    EXPECT_LE(report.iterations.size(), 8u) << report.text();
-  }
-}
-
 // A notched sheet pulled to four times its height in one step: the step fails, and the solution equals that of small
 // steps.
 TEST(GradientEquilibrium, RecoversFromALoadStepThatFails)
@@ -169,8 +144,8 @@ TEST(GradientEquilibrium, RecoversFromALoadStepThatFails)
   EXPECT_NEAR(energy, energy_slowly, 1e-9 * energy);
 }
 
-// Iterations of conjugate gradients within Newton's method, at finite strain, over two refinements and on adaptive
-// meshes. Measured: 14, 17, 19 with degree 2, and 8, 9, 9 with degree 3.
+// Iterations of conjugate gradients within Newton's method, at finite strain, over a refinement and on adaptive
+// meshes. Measured: 14, 17 and, on twice as fine a mesh, 19 with degree 2, and 8, 9, 9 with degree 3.
 TEST(GradientEquilibrium, LinearIterationsDependLittleOnTheMesh)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -191,7 +166,7 @@ TEST(GradientEquilibrium, LinearIterationsDependLittleOnTheMesh)
         result = std::max(result, iteration.linear_iterations);
       return result;
     };
-    for (const unsigned int n : {12u, 24u, 48u})
+    for (const unsigned int n : {12u, 24u})
     {
       Mesh mesh(MPI_COMM_SELF);
       continuum::make_rectangle(mesh, rectangle(n, n / 3 * 2));
@@ -207,10 +182,8 @@ TEST(GradientEquilibrium, LinearIterationsDependLittleOnTheMesh)
         }
       }
     }
-    RecordProperty("iterations, degree " + std::to_string(degree),
-                   std::to_string(most[0]) + " " + std::to_string(most[1]) + " " + std::to_string(most[2]));
-    EXPECT_LE(most[2], 1.5 * most[0]) << most[0] << " " << most[1] << " " << most[2];
-    EXPECT_LE(most[2], degree == 2 ? 20u : 10u);
+    EXPECT_LE(most[1], 1.25 * most[0]) << most[0] << " " << most[1];
+    EXPECT_LE(most[1], degree == 2 ? 18u : 10u);
   }
 }
 

@@ -222,40 +222,6 @@ TEST(GradientViscosity, HasTheDerivativesOfItsDensityOnAFace)
     }
 }
 
-TEST(GradientViscosity, IsObjectiveAndIgnoresRotation)
-{
-  const GradientViscosity law(dashpots(), micro_length);
-  std::mt19937 generator(35);
-  const auto power = [&](const FieldDerivatives &u, const FieldDerivatives &v)
-  {
-    PointIntegrand density;
-    clear(density, Order::value);
-    law.cell_density(u, v, Order::value, 0., density);
-    return density.value;
-  };
-  for (int sample = 0; sample < 10; ++sample)
-  {
-    const FieldDerivatives u = random_derivatives(generator, 0.2);
-    const FieldDerivatives v = random_derivatives(generator, 3.);
-    const double spin = 5. * entry(generator);
-    const Tensor<2, 2> R = rotation(3. * entry(generator));
-    // x' = R x, v' = R (v + spin e_z x x).
-    FieldDerivatives turned_u, turned_v;
-    for (unsigned int c = 0; c < n_derivatives; ++c)
-    {
-      const Tensor<1, 2> x({u[0][c] + (c == 0 ? 1. : 0.), u[1][c] + (c == 1 ? 1. : 0.)});
-      const Tensor<1, 2> turned_x = R * x;
-      const Tensor<1, 2> turned = R * Tensor<1, 2>({v[0][c] - spin * x[1], v[1][c] + spin * x[0]});
-      for (unsigned int i = 0; i < 2; ++i)
-      {
-        turned_u[i][c] = turned_x[i] - (c == i ? 1. : 0.);
-        turned_v[i][c] = turned[i];
-      }
-    }
-    EXPECT_NEAR(power(turned_u, turned_v), power(u, v), 1e-12 * power(u, v));
-  }
-}
-
 TEST(GradientViscosity, RefusesLengthsThatWouldNotDissipate)
 {
   const double longest = std::sqrt(3.) * spacing;

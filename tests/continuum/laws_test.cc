@@ -1,4 +1,4 @@
-// Properties of every law: stress and tangent are derivatives, objectivity, the symmetries of the triangular network,
+// Properties of every law: objectivity, the symmetries of the triangular network,
 // refusals.
 #include "continuum/errors.h"
 #include "continuum/isotropic_network.h"
@@ -52,41 +52,7 @@ class EveryMaterial : public testing::TestWithParam<Named<Material>>
 protected:
   const Material &law = *GetParam().law;
   std::mt19937 generator{11};
-
-  // Returns the least-squares slope of log(remainder) over log(h), h = 2^-4 ... 2^-10.
-  static double observed_order(const std::function<double(double)> &remainder)
-  {
-    double slope = 0., squares = 0.;
-    for (int k = 4; k <= 10; ++k)
-    {
-      slope += (7 - k) * std::log2(remainder(std::ldexp(1., -k)));
-      squares += (7 - k) * (7 - k);
-    }
-    return slope / squares;
-  }
 };
-
-// theory-continuum.md, eq. (C.1), by Taylor's theorem: second-order remainders have the size of the stiffness, so an
-// error of any derivative reduces the order to 1. An order of 3 where the second derivative happens to vanish is no
-// error.
-TEST_P(EveryMaterial, HasStressAndTangentThatAreDerivatives)
-{
-  std::uniform_real_distribution<double> entry(-0.3, 0.3);
-  for (int sample = 0; sample < 20; ++sample)
-  {
-    const Tensor<2, 2> F = random_deformation(generator, 0.8, 3.);
-    const Tensor<2, 2> G = matrix(entry(generator), entry(generator), entry(generator), entry(generator));
-    const double W = law.energy(F);
-    const Tensor<2, 2> P = law.first_piola_stress(F), dP = dealii::double_contract<2, 0, 3, 1>(law.tangent(F), G);
-    EXPECT_GE(
-      observed_order([&](const double h) { return std::abs(law.energy(F + h * G) - W - h * scalar_product(P, G)); }),
-      1.9)
-      << F;
-    EXPECT_GE(observed_order([&](const double h) { return (law.first_piola_stress(F + h * G) - P - h * dP).norm(); }),
-              1.9)
-      << F;
-  }
-}
 
 TEST_P(EveryMaterial, IsObjectiveWithSymmetricStressAndTangent)
 {

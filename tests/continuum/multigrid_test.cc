@@ -118,8 +118,10 @@ TEST(Multigrid, NeedsAboutAsManyIterationsOnEveryMeshForTheFourthOrderForm)
           << "degree " << degree << ", " << halvings << " halvings, refined " << times << " times, internal length "
           << relative_length;
       };
-      for (const unsigned int halvings : {2u, 3u, 4u})
+      for (const unsigned int halvings : {2u, 3u})
         expect_few(halvings, 0);
+      if (degree == 2 && relative_length > 0.05) // which needs the most
+        expect_few(4, 0);
       for (const unsigned int times : {2u, 4u})
         expect_few(2, times);
       RecordProperty("degree " + std::to_string(degree) + ", length " + std::to_string(relative_length), counts);

@@ -71,22 +71,6 @@ TEST(NetworkGradient, FormsAreDerivativesOfTheEnergy)
                      [&](const auto &v) { return lattice_energy(in_all_directions, l_d, v); });
 }
 
-// Isotropic up to the n-th power of (l1 - l2)/(l1 + l2), which is 1/2 for l1/l2 = 3.
-TEST(NetworkGradient, IsIsotropic)
-{
-  const auto bonds = rubber_bonds(spacing);
-  const NetworkGradient law(bonds, LatticeGradient::smallest_length(bonds));
-  std::mt19937 generator(8);
-  for (int sample = 0; sample < 30; ++sample)
-  {
-    const Tensor<2, 2> F = random_deformation(generator, 1.1, 3.3);
-    const Gradient G = random_gradient(generator, spacing);
-    const double W = law.energy(F, G);
-    const Tensor<2, 2> R = rotation(0.1 + 0.12 * sample);
-    EXPECT_NEAR(law.energy(F * transpose(R), turned(G, R)), W, 1e-6 * W);
-  }
-}
-
 // theory-continuum.md, eq. (C.58). With G_iJK = p_i delta_JK, G is completely along the bonds for every direction.
 TEST(NetworkGradient, HasTheMeanSquaredLengthOfLikeBonds)
 {

@@ -190,5 +190,4 @@ TEST(StaticSolver, StopsAtTheRoundOffOfTheResidual)
   }
 }
 
-// theory-continuum.md, eq. (C.18).
 } // namespace static_newton_test
