@@ -73,8 +73,8 @@ if [ ${#configure[@]} -gt 0 ]; then
   cmake "${configure[@]}" --preset "$preset" >"$root/configure.log" 2>&1 || { cat "$root/configure.log" >&2; exit 1; }
   rm -f "$root/configure.log"
 fi
-# As many compilers at a time as there are cores and 2 GB of memory for each.
-jobs=$(($(sed -n 's/^MemAvailable: *\([0-9]*\) kB/\1/p' /proc/meminfo) / 2000000))
+# As many compilers at a time as there are cores and 2.5 GB of memory for each.
+jobs=$(($(sed -n 's/^MemAvailable: *\([0-9]*\) kB/\1/p' /proc/meminfo) / 2500000))
 [ "$jobs" -le "$(nproc)" ] || jobs=$(nproc)
 # Steps are shown to who looks on, and of a first build; a build in a script says only what went wrong.
 [ ${#configure[@]} -gt 0 ] || [ -t 2 ] || quiet=--quiet

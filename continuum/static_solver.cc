@@ -193,7 +193,7 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
   const auto energy_noise = [&](const Evaluation &state)
   {
     const double n_points =
-      static_cast<double>(sheet_.mesh().n_global_active_cells()) * Utilities::pow(sheet_.degree() + 1, 2);
+      static_cast<double>(sheet_.mesh().n_global_active_cells()) * dealii::Utilities::pow(sheet_.degree() + 1, 2);
     return 4. * std::numeric_limits<double>::epsilon() * std::sqrt(n_points) * std::abs(state.energy);
   };
   const NewtonSolver<Evaluation> newton(

@@ -10,7 +10,6 @@ namespace latcon::support
 namespace
 {
 using Symmetric = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
-using Generalized = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>;
 using QR = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
 } // namespace
 
@@ -27,13 +26,8 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::Ref<const Eigen::MatrixXd> &m
 
 SymmetricModes symmetric_modes(const Eigen::Ref<const Eigen::MatrixXd> &K, const Eigen::Ref<const Eigen::MatrixXd> &M)
 {
-  const Generalized solver(K, M);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, M);
   return {solver.eigenvalues(), solver.eigenvectors()};
-}
-
-double largest_eigenvalue(const Eigen::Ref<const Eigen::MatrixXd> &K, const Eigen::Ref<const Eigen::MatrixXd> &M)
-{
-  return Generalized(K, M, Eigen::EigenvaluesOnly).eigenvalues().tail<1>()(0);
 }
 
 ComplexModes complex_modes(const Eigen::Ref<const Eigen::MatrixXd> &matrix)

@@ -33,9 +33,6 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::Ref<const Eigen::MatrixXd> &m
 /// Solutions of K v = value M v with symmetric K and positive definite M; v^T M v = 1.
 SymmetricModes symmetric_modes(const Eigen::Ref<const Eigen::MatrixXd> &K, const Eigen::Ref<const Eigen::MatrixXd> &M);
 
-/// Largest value of K v = value M v with symmetric K and positive definite M.
-double largest_eigenvalue(const Eigen::Ref<const Eigen::MatrixXd> &K, const Eigen::Ref<const Eigen::MatrixXd> &M);
-
 /// Eigenvalues and eigenvectors of length 1 of any square matrix with finite entries.
 ComplexModes complex_modes(const Eigen::Ref<const Eigen::MatrixXd> &matrix);
 
