@@ -40,6 +40,13 @@ nbsphinx_requirejs_path = ""  # of a network
 
 html_theme = "furo"
 html_title = f"latcon {release}"
+# Debian's furo has no colours for dark pages.
+html_theme_options = {"dark_css_variables": {f"color-{name}": colour for name, colour in {
+    "foreground-primary": "#d8d8d8", "foreground-secondary": "#a3a7ac", "foreground-muted": "#8b9097", "foreground-border": "#6a6a6a",
+    "background-primary": "#141414", "background-secondary": "#1b1d1f", "background-hover": "#24282b",
+    "background-hover--transparent": "#24282b00", "background-border": "#34373a", "background-item": "#444444",
+    "brand-primary": "#5aa7f5", "brand-content": "#5aa7f5", "problematic": "#f08080", "highlighted-background": "#0b3a6b",
+    "highlight-on-target": "#3a3a10"}.items()}}
 html_static_path = ["static"]
 html_css_files = ["style.css"]
 html_copy_source = False
