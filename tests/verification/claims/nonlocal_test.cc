@@ -104,6 +104,20 @@ const Fault planted[] = {
    [](NonlocalOptions &o)
    { o.planted_bonds = [](std::vector<lattice::HalfBond> &bonds) { bonds.erase(bonds.begin() + 3); }; },
    {moduli, "(2, 2)", sampled, "energy of a straight cut"}},
+  {"tip ahead by the radius of a ring", [](NonlocalOptions &o) { o.planted_tip = 0.625e-3; }, {"tip of that cut"}},
+  {"tip behind by the radius of a ring", [](NonlocalOptions &o) { o.planted_tip = -0.625e-3; }, {"tip of that cut"}},
+  {"modulus of a branch 1 % off",
+   [](NonlocalOptions &o)
+   {
+     o.planted_branches = [](lattice::Material material)
+     {
+       auto branches = std::get<lattice::MaxwellMemory>(material.nearest.memory).branches();
+       branches.front().modulus *= 1.01;
+       material.nearest.memory = lattice::MaxwellMemory(branches);
+       return material;
+     };
+   },
+   {"while Maxwell branches relax"}},
 };
 
 class NonlocalFault : public testing::TestWithParam<Fault>

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "verification/bridge/subject.h"
+#include "verification/claims/spectrum.h"
 #include "verification/output/results.h"
 
 namespace latcon::claims
@@ -27,6 +28,8 @@ struct NonlocalOptions
   /// Changes of rings and of half-bonds by which tests plant faults; none by default.
   std::function<void(std::vector<lattice::Ring> &)> planted_rings = [](auto &) {};
   std::function<void(std::vector<lattice::HalfBond> &)> planted_bonds = [](auto &) {};
+  double planted_tip = 0.; ///< added to the tip of the cut [m], as of a rule that finds another one
+  PlantedBranches planted_branches = {};
 };
 
 /// Square and triangular grids of a lattice with spacing `d` [m] for m = 1.5, 2 and 3, bonds in all directions.

@@ -46,7 +46,7 @@ Eigen::Matrix2d StencilSheet::wave_stiffness(const Eigen::Matrix2d &F, const Eig
   return stiffness;
 }
 
-double StencilSheet::cut_energy(double stretch) const
+StencilSheet::Cut StencilSheet::cut(double stretch) const
 {
   const Eigen::Matrix2d F = stretch * Eigen::Matrix2d::Identity();
   lattice::Simulation cut(sheet_, material_, lattice::homogeneous_state(sheet_, material_, F, lattice::Edges::held),
@@ -61,7 +61,23 @@ double StencilSheet::cut_energy(double stretch) const
   const double length = std::floor(0.5 * sheet_.length() / period) * period;
   const double from = 0.25 * sheet_.length() + 0.013 * h;
   cut.cut_bonds(lattice::bonds_across(sheet_, from, from + length, 0.217 * h));
-  return cut.energies().broken / length;
+  return {cut.energies().broken / length, sheet_.reference(cut.tip().value()).x() - (from + length), period};
+}
+
+Eigen::Matrix2d StencilSheet::relaxed_stress(const lattice::Material &material, const Eigen::Matrix2d &F, double step,
+                                             std::size_t n_steps) const
+{
+  lattice::State unloaded =
+    lattice::homogeneous_state(sheet_, material, Eigen::Matrix2d::Identity(), lattice::Edges::held);
+  lattice::relax_memory(unloaded, sheet_, material);
+  lattice::State state = lattice::homogeneous_state(sheet_, material, F, lattice::Edges::held);
+  state.history = std::move(unloaded.history);
+  lattice::Simulation held(sheet_, material, std::move(state), lattice::TimeStepping(step));
+  for (std::size_t i = 0; i < n_steps; ++i)
+    held.step();
+  return bridge::edge_stress(sheet_, material,
+                             [&](std::size_t place)
+                             { return held.forces().on_site(held.state(), held.state().vx, held.state().vy, place); });
 }
 
 } // namespace latcon::claims

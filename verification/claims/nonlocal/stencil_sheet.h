@@ -26,8 +26,21 @@ public:
   /// a strain of 1e-5. @param K referential wave vector [1/m]
   Eigen::Matrix2d wave_stiffness(const Eigen::Matrix2d &F, const Eigen::Vector2d &K) const;
 
-  /// Energy per area [J/m^2] that a cut along x takes from the sheet if all bonds have this stretch.
-  double cut_energy(double stretch) const;
+  /// A cut along x between two rows, through bonds that all have one stretch.
+  struct Cut
+  {
+    double energy; ///< taken from the sheet, per area [J/m^2]
+    double tip;    ///< X of the tip that fracture finds, from the end of the cut [m]
+    double period; ///< of the points of the grid along x [m]
+  };
+  Cut cut(double stretch) const;
+
+  /// First Piola stress [Pa] of the held sheet after this many time steps, in which nothing moves and Maxwell branches
+  /// relax. They are unloaded before the deformation to F, which is sudden. @param step [s], a stable one
+  Eigen::Matrix2d relaxed_stress(const lattice::Material &material, const Eigen::Matrix2d &F, double step,
+                                 std::size_t n_steps) const;
+
+  const lattice::TriangularLattice &sheet() const { return sheet_; }
 
 private:
   lattice::Material material_;
