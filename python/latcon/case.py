@@ -50,7 +50,7 @@ class Case:
             path = shipped[name]
         self._file = path.absolute()
         self._overrides: dict[str, str] = {}
-        self._known: ResolvedCase | None = None  # of a run, for machines without the program
+        # With the state of the file; with None that of a run, for machines without the program.
         self._cached: tuple[object, ResolvedCase] | None = None
 
     @property
@@ -67,7 +67,7 @@ class Case:
     def from_dict(cls, values: Mapping[str, Settable]) -> Case:
         """Returns the case with these values, as :meth:`set` takes them, and the defaults of all other entries."""
         case = cls.__new__(cls)
-        case._file, case._overrides, case._known, case._cached = pathlib.Path(os.devnull), {}, None, None
+        case._file, case._overrides, case._cached = pathlib.Path(os.devnull), {}, None
         return case.set(values)
 
     @classmethod
@@ -82,7 +82,7 @@ class Case:
             Texts of all entries in SI units by key, from `run.json`; content of the file.
         """
         case = cls(file)
-        case._known = ResolvedCase({key: _recorded(value) for key, value in entries.items()}, text)
+        case._cached = None, ResolvedCase({key: _recorded(value) for key, value in entries.items()}, text)
         return case
 
     def set(self, key: str | Mapping[str, Settable], *value: Settable) -> Case:
@@ -115,7 +115,7 @@ class Case:
                 raise self._unknown(name)
         changed = copy.copy(self)
         changed._overrides = self._overrides | {name: entry_text(name, item) for name, item in changes.items()}
-        changed._known = changed._cached = None
+        changed._cached = None
         return changed
 
     def __getitem__(self, key: str) -> EntryValue:
@@ -172,8 +172,8 @@ class Case:
         return f"Case({str(self._file)!r})" + "".join(f".set({key!r}, {value!r})" for key, value in self._overrides.items())
 
     def _resolve(self) -> ResolvedCase:
-        if self._known is not None:
-            return self._known
+        if self._cached and self._cached[0] is None:
+            return self._cached[1]
         try:
             status = self._file.stat()
         except OSError as error:

@@ -22,7 +22,7 @@ _PATIENCE_WITH_ORPHANS = 10.0
 _held: dict[str, FolderLock] = {}  # by absolute path
 
 
-class FolderLock:
+class FolderLock(contextlib.AbstractContextManager["FolderLock"]):
     """Exclusive lock on an existing folder, that of the program; see support/folder_lock.h.
 
     Waits for another process to end with `patience` [s]; raises InputError if it still holds the lock then.
@@ -58,9 +58,6 @@ class FolderLock:
                 if re.search(r"\.[0-9a-f]{16}\.part$", name) and not os.path.islink(os.path.join(place, name)):
                     with contextlib.suppress(OSError):  # of a killed process
                         os.remove(os.path.join(place, name))
-
-    def __enter__(self) -> None:
-        pass
 
     def __exit__(self, *_: object) -> None:
         self.release()

@@ -5,7 +5,7 @@ import dataclasses
 import os
 import pathlib
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
@@ -113,9 +113,6 @@ class Frames(Sequence[Frame]):
             return [read_frame(path, time) for time, path in self._series[index]]
         time, path = self._series[index]
         return read_frame(path, time)
-
-    def __iter__(self) -> Iterator[Frame]:
-        return (read_frame(path, time) for time, path in self._series)
 
     def __len__(self) -> int:
         return len(self._series)

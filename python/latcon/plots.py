@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
     from .results import Run
 
-_AXES = {"x": 0, "y": 1}
-
 
 def _axes(ax: matplotlib.axes.Axes | None) -> matplotlib.axes.Axes:
     if ax is not None:
@@ -66,9 +64,9 @@ def bond_values(frame: Frame, color: str) -> Floats:
         known = ", ".join(sorted({*frame.bond_fields, *frame.fields}))
         raise ValueError(f"no field {name!r}; known: {known}")
     values = frame.bond_fields[name] if on_bonds else frame.fields[name]
-    if len(component) != values.ndim - 1 or not set(component) <= set(_AXES):
+    if len(component) != values.ndim - 1 or not set(component) <= set("xy"):
         example = f"{name} {'xy'[:values.ndim - 1]}".strip()
         raise ValueError(f"{color!r}: the field has {values.ndim - 1} indices; give for instance {example!r}")
-    index: tuple[Any, ...] = (slice(None), *(_AXES[letter] for letter in component))
+    index: tuple[Any, ...] = (slice(None), *map("xy".index, component))
     numbers: Floats = values[index].astype(float)
     return numbers if on_bonds else np.asarray(numbers[frame.bonds].mean(axis=1))

@@ -77,11 +77,13 @@ def shown_unit(unit: str) -> tuple[float, str]:
     return SHOWN.get(unit, (1.0, "" if unit == "1" else unit))
 
 
-def number_text(value: float, uncertainty: float | None, sign: str = "±", scale: float = 1.0) -> str:
-    """Formats a number to the digits that its uncertainty justifies, "20.06 ± 0.23"; four digits if there is none.
+def number_text(value: float | None, uncertainty: float | None, sign: str = "±", scale: float = 1.0) -> str:
+    """Formats a number to the digits that its uncertainty justifies, "20.06 ± 0.23"; four digits if there is none; a dash for None.
 
     `uncertainty` is one standard deviation, `sign` stands between both, `scale` is a factor for both.
     """
+    if value is None:
+        return "–"
     value, uncertainty = scale * value, None if uncertainty is None else scale * uncertainty
     if uncertainty is None or not 1e-12 * abs(value) < uncertainty < math.inf:  # of equal values it is round-off
         return f"{value:.4g}"

@@ -84,7 +84,10 @@ class Schema(Mapping[str, Entry]):
                               f"{document.get('format_version')}, not {_FORMAT_VERSION}); install both from the same version")
         self.version: str = document["version"]
         self.cases = {name: pathlib.Path(path) for name, path in document["cases"].items()}
-        self._entries = {entry.key: entry for entry in map(_entry, document["entries"])}
+        self._entries = {f"{item['section']}/{item['name']}": Entry(
+            item["section"], item["name"], item["type"], item["unit"], item["required"], item.get("default"),
+            item.get("range", {}), item.get("auto", False), tuple(item.get("words", ())), item["allowed"],
+            item["documentation"]) for item in document["entries"]}
 
     def __getitem__(self, key: str) -> Entry:
         return self._entries[key]
@@ -94,12 +97,6 @@ class Schema(Mapping[str, Entry]):
 
     def __len__(self) -> int:
         return len(self._entries)
-
-
-def _entry(item: Mapping[str, Any]) -> Entry:
-    return Entry(item["section"], item["name"], item["type"], item["unit"], item["required"], item.get("default"),
-                 item.get("range", {}), item.get("auto", False), tuple(item.get("words", ())), item["allowed"],
-                 item["documentation"])
 
 
 def schema() -> Schema:

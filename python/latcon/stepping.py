@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .case import Case
 from .commands import CaseLike, as_case
 from .errors import LatconError
 from .folder import write_atomically
