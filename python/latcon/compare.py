@@ -50,8 +50,7 @@ def compare_cracks(program: Program, printed: Printed, options: Mapping[str, Any
     entries = [{"key": key, "unit": (program.entries[key].unit or "") if key in program.entries else "", "first": value,
                 "second": cracks[1].entries.get(key, "")}
                for key, value in sorted(cracks[0].entries.items()) if cracks[1].entries.get(key) != value]
-    if not options["quiet"]:
-        printed.print(_text(cracks, quantities, entries, paths))
+    printed.say(_text(cracks, quantities, entries, paths))
     if options["dry_run"]:
         return DONE
     record = Record(program, printed, directory, options, False)
@@ -68,8 +67,7 @@ def compare_cracks(program: Program, printed: Printed, options: Mapping[str, Any
         ["quantity", "unit", *_PARTS], [[row["name"], row["unit"], *(row[part] for part in _PARTS)] for row in quantities]))
     code = record.end([], DONE)
     is_drawn = not options["no_report"] and draw_page("compare", directory, "compare.html", "repeat the command")
-    if not options["quiet"]:
-        printed.print(f"\n{directory}/compare.json, compare.csv{', compare.html' if is_drawn else ''}\n")
+    printed.say(f"\n{directory}/compare.json, compare.csv{', compare.html' if is_drawn else ''}")
     return code
 
 
@@ -160,11 +158,11 @@ def _text(cracks: Sequence[_Crack], quantities: Sequence[Mapping[str, Any]], ent
     else:
         text += "The cases have the same entries.\n"
     if not paths:
-        return text + "\nThe paths have no stretch of X in common.\n"
+        return text + "\nThe paths have no stretch of X in common."
     begin, end, at = (quantity_text(paths[name], None, "m") for name in ("X_begin", "X_end", "largest_distance_X"))
     rms, largest = (f"{quantity_text(paths[name], None, 'm')} ({paths[name] / cracks[0].spacing:.3g} d)"
                     for name in ("rms_distance", "largest_distance"))
-    return text + f"\nDistance between the paths, X from {begin} to {end}: rms {rms}, largest {largest} at X = {at}\n"
+    return text + f"\nDistance between the paths, X from {begin} to {end}: rms {rms}, largest {largest} at X = {at}"
 
 
 def _table(rows: Sequence[Sequence[str]]) -> str:

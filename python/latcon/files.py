@@ -39,6 +39,23 @@ def read_json(path: pathlib.Path) -> dict[str, Any]:
     return value
 
 
+def content(path: str) -> str:
+    """Returns the text of a file; empty if it cannot be read."""
+    try:
+        return pathlib.Path(path).read_bytes().decode("utf-8", "replace")
+    except OSError:
+        return ""
+
+
+def object_in(path: str) -> dict[str, Any]:
+    """Returns the object in a JSON file; empty if there is none."""
+    try:
+        document = json.loads(content(path))
+    except ValueError:
+        return {}
+    return document if isinstance(document, dict) else {}
+
+
 def read_rows(path: pathlib.Path) -> list[dict[str, Any]]:
     """Returns the rows of a `results.json`: claim, quantity, unit and verdict; numbers, None where they do not apply."""
     rows = read_json(path).get("claims")

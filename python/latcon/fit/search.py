@@ -16,12 +16,13 @@ import numpy as np
 from ..case import Case
 from ..commands import CaseLike, run_words
 from ..errors import BadInput, ClaimFailed, Interrupted, LatconError, OutputFailed, error_of, optional_package
+from ..files import content
 from ..folder import absolute, prepare_run
 from ..frames import Floats
 from ..program import Progress, find_program, progress_indicator
 from ..results import open_run
 from ..schema import SEED_ENTRY
-from ..study.outcome import content, last_words, unfit_rows
+from ..study.outcome import last_words, unfit_rows
 from ..study.pool import run_processes
 from .misfit import LocalModel, Table, fit_local_model, tabulate
 from .problem import Entries, Observation, Parameter, Problem, resolve_problem

@@ -1,7 +1,6 @@
 """``latcon batch``: a study as a job array of Slurm."""
 from __future__ import annotations
 
-import math
 import os
 import re
 import shlex
@@ -13,7 +12,7 @@ from ..errors import DONE
 from ..case import set_options
 from ..folder import FolderLock, write_file
 from .output import plan_table
-from .plan import RequestedStudy, plan_runs, read_requested_study, require_folder_of, require_no_refinement, verification_of
+from .plan import plan_runs, read_requested_study, require_folder_of, require_no_refinement, verification_of
 from .program import InputError, Program, printable
 from .record import Printed
 
@@ -26,7 +25,7 @@ _DIRECTIVES = """\
 #SBATCH --time={time}
 #SBATCH --output={log}
 #SBATCH --open-mode=append
-"""
+{partition}"""
 
 _ARRAY = """\
 #SBATCH --array=1-{n_tasks}
@@ -68,8 +67,7 @@ def write_batch(program: Program, printed: Printed, options: Mapping[str, Any]) 
     plan = plan_runs(program, requested.study, requested.overrides, verification_of(options))
     n_tasks = min(len(plan), options["tasks"] or _MAX_DEFAULT_TASKS)
     if options["dry_run"]:
-        if not options["quiet"]:
-            printed.print(plan_table(requested.study, plan, n_tasks * options["cpus_per_task"]))
+        printed.say(plan_table(requested.study, plan, n_tasks * options["cpus_per_task"]))
         return DONE
     directory = options["output_dir"]
     folder = os.path.join(os.path.abspath(directory), "batch")
@@ -81,39 +79,30 @@ def write_batch(program: Program, printed: Printed, options: Mapping[str, Any]) 
     if requested.kept:
         with FolderLock(directory):
             requested.write_sweep()
-    command = _study_command(options, requested)
+    # The same choices, from any folder.
+    study = requested.file if requested.kept else options["study"]
+    words = [options["program"], "study", os.path.abspath(study) if os.path.exists(study) else study]
+    words += [*set_options(requested.overrides), *(f"--{name.replace('_', '-')}" for name in ("quick", "skip_verification", "yes") if options[name])]
+    command = shlex.join([*words, "--output-dir", os.path.abspath(directory)])
     runs, collect = os.path.join(folder, "runs.sh"), os.path.join(folder, "collect.sh")
     write_file(runs, _directives(options, "latcon-runs", f"{folder}/runs-%a.log") + _ARRAY.format(
         n_tasks=n_tasks, cpus_per_task=options["cpus_per_task"], command=command))
     write_file(collect, _directives(options, "latcon-collect", f"{folder}/collect.log") + f"\nexec {command} --collect\n")
-
-    def say(text: str) -> None:
-        if not options["quiet"]:
-            printed.print(text + "\n")
-
     counts = f"{len(plan)} runs in {n_tasks} tasks"
     if not options["submit"]:
-        say(f"{counts}. To submit them:\n  runs=$(sbatch --parsable {shlex.quote(runs)})\n"
-            f"  sbatch --dependency=afterany:$runs {shlex.quote(collect)}")
+        printed.say(f"{counts}. To submit them:\n  runs=$(sbatch --parsable {shlex.quote(runs)})\n"
+                    f"  sbatch --dependency=afterany:$runs {shlex.quote(collect)}")
         return DONE
     log = os.path.join(folder, "sbatch.log")
     array = _submit([runs], log)
-    say(f"{counts}: job {array}")
-    say(f"then the verdict: job {_submit([f'--dependency=afterany:{array}', collect], log)}")
+    printed.say(f"{counts}: job {array}")
+    printed.say(f"then the verdict: job {_submit([f'--dependency=afterany:{array}', collect], log)}")
     return DONE
-
-
-def _study_command(options: Mapping[str, Any], requested: RequestedStudy) -> str:
-    """Returns `latcon study` with the choices of the user, from any folder."""
-    study = requested.file if requested.kept else options["study"]
-    words = [options["program"], "study", os.path.abspath(study) if os.path.exists(study) else study]
-    words += [*set_options(requested.overrides), *(f"--{name.replace('_', '-')}" for name in ("quick", "skip_verification", "yes") if options[name])]
-    return shlex.join([*words, "--output-dir", os.path.abspath(options["output_dir"])])
 
 
 def _directives(options: Mapping[str, Any], name: str, log: str) -> str:
     partition = f"#SBATCH --partition={options['partition']}\n" if options["partition"] else ""
-    return _DIRECTIVES.format(name=name, time=options["time"], log=log) + partition
+    return _DIRECTIVES.format(name=name, time=options["time"], log=log, partition=partition)
 
 
 def _submit(arguments: Sequence[str], log: str) -> str:
@@ -139,4 +128,4 @@ def _seconds_of(limit: str) -> float:
     if not dash and len(parts) < 3:
         parts.insert(0, 0.0)
     hours, minutes, seconds = (parts + [0.0, 0.0])[:3]
-    return ((24 * float(days) if dash else 0.0) + hours) * 3600 + minutes * 60 + seconds if math.isfinite(hours) else math.inf
+    return (24 * float(days or 0) + hours) * 3600 + minutes * 60 + seconds

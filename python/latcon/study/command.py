@@ -32,7 +32,7 @@ _PATIENCE_WITH_SHARDS = 60.0
 
 def run(command: str, options: Mapping[str, Any]) -> int:
     """Runs a command and returns its exit code; run.json, log and messages agree with it."""
-    printed = Printed()
+    printed = Printed(options["quiet"])
     study = program = None
     try:
         signals = Signals()
@@ -68,7 +68,7 @@ def _failure(error: BaseException) -> tuple[int, str]:
     if isinstance(error, Ended):
         return error.exit_code, error.message
     if isinstance(error, Interrupted):
-        return INTERRUPTED, f"interrupted by {signal.Signals(error.number).name}"
+        return INTERRUPTED, f"interrupted by {signal.Signals(error.args[0]).name}"
     if isinstance(error, InputError):
         return BAD_INPUT, str(error)
     if isinstance(error, OSError):
@@ -83,7 +83,6 @@ class _StudyCommand:
         self.record: Record | None = None
         self.directory: str = options["output_dir"]
         self.n_cores: int = options["threads"] or program.cores
-        self.is_verbose = not options["quiet"]
         self.resume: bool = options["resume"]
 
     def run(self) -> int:
@@ -99,12 +98,12 @@ class _StudyCommand:
         self.results = results = StudyResults(requested.study, [], options["quick"], self.verification)
         self.add_runs(plan_runs(program, requested.study, requested.overrides, self.verification))
         plan = results.plan
-        if options["dry_run"] and self.is_verbose:
-            self.printed.print(plan_table(requested.study, plan, self.n_cores))
+        if options["dry_run"]:
+            self.printed.say(plan_table(requested.study, plan, self.n_cores))
         needs = sorted((one.memory for one in plan), reverse=True)[:self.n_cores]
         memory = program.ask(memory=needs)
         if options["dry_run"]:
-            self.say(memory["text"].rstrip())
+            self.printed.say(memory["text"].rstrip())
             return DONE
 
         require_folder_of(requested.study, self.directory)
@@ -145,10 +144,6 @@ class _StudyCommand:
         results.outcomes += [RunOutcome(one.run, one.seed) for one in plan]
         return list(range(begin, len(results.plan)))
 
-    def say(self, text: str) -> None:
-        if self.is_verbose:
-            self.printed.print(text + "\n")
-
     def case(self, planned: PlannedRun) -> str:
         """File with the resolved case of a run."""
         return f"{self.directory}/cases/{planned.folder}.prm"
@@ -172,9 +167,9 @@ class _StudyCommand:
                 outcomes[i] = read_outcome(program, plan[i], folder)
             else:
                 jobs.append(i)
-        self.say(f"{len(jobs)} runs, {len(selected) - len(jobs)} are finished already")
+        self.printed.say(f"{len(jobs)} runs, {len(selected) - len(jobs)} are finished already")
         total = sum(plan[i].seconds for i in jobs)
-        done, n_ended, progress = 0.0, 0, Progress(self.is_verbose)
+        done, n_ended, progress = 0.0, 0, Progress(not self.options["quiet"])
 
         def start(job: int) -> tuple[list[str], str]:
             planned = plan[jobs[job]]
@@ -201,7 +196,7 @@ class _StudyCommand:
             n_ended += 1
             done += planned.seconds
             result = outcome.pattern if outcome.state is RunState.MEASURED else f"{outcome.state.value}: {outcome.problem}"
-            self.say(f"[{n_ended}/{len(jobs)}] {planned.folder}: {result}, {round(outcome.wall_time)} s")
+            self.printed.say(f"[{n_ended}/{len(jobs)}] {planned.folder}: {result}, {round(outcome.wall_time)} s")
 
         def waiting(running: Sequence[int]) -> None:
             if progress.is_due():
@@ -224,7 +219,7 @@ class _StudyCommand:
             study.runs, study.claims = added, []
             plan = plan_runs(self.program, study, self.requested.overrides, self.verification)
             study.runs, study.claims = everything + added, claims
-            self.say(f"refinement {level}: {len(added)} cases between neighbours that differ")
+            self.printed.say(f"refinement {level}: {len(added)} cases between neighbours that differ")
             if not self.run_children(self.add_runs(plan)):
                 return False
         return True
@@ -242,13 +237,12 @@ class _StudyCommand:
         write_file(self.directory + "/study.json", study_json(program, results))
         write_file(self.directory + "/study.csv", study_csv(program, results))
         rows = [row.result(claim.claim.claim) for claim in results.claims for row in claim.rows]
-        if self.is_verbose:
-            self.printed.print(result_table(program, results))
+        self.printed.say(result_table(program, results))
         code = record.end([row for row in rows if row is not None], self.exit_code() if complete else INTERRUPTED)
         # A page of an earlier run may remain.
         if complete and not self.options["no_report"] and draw_page(
                 "study", self.directory, "study.html", "repeat the command with --resume, or with --collect after shards,"):
-            self.say(f"{self.directory}/study.html")
+            self.printed.say(f"{self.directory}/study.html")
         return code
 
     def share_plan(self, text: str) -> None:

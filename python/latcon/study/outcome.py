@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import CLAIM_FAILED, DONE, UnreadableFile
-from ..files import read_columns
+from ..files import content, object_in, read_columns
 from ..quantities import quantity_text
 from .plan import PlannedRun
 from .program import Program, printable
@@ -56,9 +56,9 @@ def read_outcome(program: Program, run: PlannedRun, folder: str, exit_code: int 
     outcome = RunOutcome(run.run, run.seed)
     if run.zeta is not None:
         outcome.values["zeta"] = run.zeta
-    info, crack = _object_in(f"{folder}/run.json"), _object_in(f"{folder}/crack.json")
-    outcome.exit_code = _number(info, "exit_code", -1) if exit_code is None else exit_code
-    outcome.wall_time = _number(info, "wall_time_total_s", 0.0)
+    info, crack = object_in(f"{folder}/run.json"), object_in(f"{folder}/crack.json")
+    outcome.exit_code = number_of(info, "exit_code", -1) if exit_code is None else exit_code
+    outcome.wall_time = number_of(info, "wall_time_total_s", 0.0)
     pattern = crack.get("pattern")
     if outcome.exit_code not in (DONE, CLAIM_FAILED) or not isinstance(pattern, str) or not pattern:
         outcome.state = RunState.REFUSED if outcome.exit_code == CLAIM_FAILED else RunState.FAILED
@@ -79,8 +79,8 @@ def read_outcome(program: Program, run: PlannedRun, folder: str, exit_code: int 
 
 def measured_values(program: Program, folder: str, spacing: float) -> dict[str, float]:
     """Returns the quantities of a measured crack by name."""
-    found = _object_in(f"{folder}/near_tip.json") | _object_in(f"{folder}/crack.json")
-    numbers = {name: _number(found, name, None) for name in program.units}
+    found = object_in(f"{folder}/near_tip.json") | object_in(f"{folder}/crack.json")
+    numbers = {name: number_of(found, name, None) for name in program.units}
     values = {name: float(value) for name, value in numbers.items() if value is not None}
     for name in ("wavelength", "amplitude", "crest_amplitude"):
         for suffix in ("", "_uncertainty"):
@@ -94,7 +94,7 @@ def is_begun(program: Program, run: PlannedRun, folder: str, case: str, skip_ver
 
     It must have the same choice of verification, if it has recorded one. `case` is the file with the resolved case.
     """
-    info, crack = _object_in(f"{folder}/run.json"), _object_in(f"{folder}/crack.json")
+    info, crack = object_in(f"{folder}/run.json"), object_in(f"{folder}/crack.json")
     # Cracks of the lattice do not name their side. A run that has not ended has no crack.json.
     if crack and crack.get("side", "lattice") != run.side or info.get("program_hash") != program.facts["program_hash"]:
         return False
@@ -110,23 +110,8 @@ def is_finished(program: Program, run: PlannedRun, folder: str, case: str, skip_
             and read_outcome(program, run, folder).state in (RunState.MEASURED, RunState.REJECTED))
 
 
-def content(path: str) -> str:
-    """Returns the text of a file; empty if it cannot be read."""
-    try:
-        return pathlib.Path(path).read_bytes().decode("utf-8", "replace")
-    except OSError:
-        return ""
-
-
-def _object_in(path: str) -> dict[str, Any]:
-    try:
-        document = json.loads(content(path))
-    except ValueError:
-        return {}
-    return document if isinstance(document, dict) else {}
-
-
-def _number(document: dict[str, Any], key: str, otherwise: Any) -> Any:
+def number_of(document: dict[str, Any], key: str, otherwise: Any) -> Any:
+    """Returns a number of a JSON object, or another value if there is none."""
     value = document.get(key)
     return value if isinstance(value, (int, float)) and not isinstance(value, bool) else otherwise
 

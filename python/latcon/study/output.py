@@ -118,7 +118,7 @@ def plan_table(study: Study, plan: Sequence[PlannedRun], n_cores: int) -> str:
     if study.refine:
         lines.append(f"refined {study.refine} time{'s' if study.refine > 1 else ''} where neighbours differ, at a cost that depends "
                      "on the patterns")
-    return "\n".join(lines) + "\n"
+    return "\n".join(lines)
 
 
 def _rounded(value: float) -> int:
@@ -126,10 +126,20 @@ def _rounded(value: float) -> int:
 
 
 def result_table(program: Program, results: StudyResults) -> str:
-    """Returns the table of verdicts, at most 120 columns wide; without claims a line per run."""
+    """Returns the table of verdicts, at most 120 columns wide; without claims a line per run, of at
+    most 60: patterns, speed, wavelength and amplitude over the seeds.
+    """
     lines: list[str] = []
-    if not results.claims:
-        lines += _run_lines(program, results)
+    groups, runs = group_by_run(results.outcomes), results.study.runs
+    for run in () if results.claims else runs[:60]:
+        outcomes = groups.get(run.name, [])
+        lines.append(f"{run.name}: {statistics(run.name, 'pattern', outcomes).text('')}")
+        for quantity, label in (("speed_lagrangian", ""), ("wavelength", "wavelength "), ("amplitude", "amplitude ")):
+            seeds = statistics(run.name, quantity, outcomes)
+            if seeds.n:
+                lines[-1] += f", {label}{seeds.text(program.units[quantity])}"
+    if not results.claims and len(runs) > 60:
+        lines.append(f"... {len(runs)} cases in all: study.csv")
     for claim in results.claims:
         lines += _wrapped(f"{claim.claim.claim}: {claim.verdict.value}", "", "")
         for row in claim.rows:
@@ -140,24 +150,7 @@ def result_table(program: Program, results: StudyResults) -> str:
         if outcome.state is not RunState.MEASURED:
             problem = f": {outcome.problem}" if outcome.problem else ""
             lines += _wrapped(f"{outcome.run}, seed {outcome.seed}: {outcome.state.value}{problem}", "", "  ")
-    return "".join(line + "\n" for line in lines)
-
-
-def _run_lines(program: Program, results: StudyResults) -> list[str]:
-    """Returns a line per run, of at most 60: patterns, speed, wavelength and amplitude over the seeds."""
-    groups = group_by_run(results.outcomes)
-    lines = []
-    for run in results.study.runs[:60]:
-        outcomes = groups.get(run.name, [])
-        line = f"{run.name}: {statistics(run.name, 'pattern', outcomes).text('')}"
-        for quantity, label in (("speed_lagrangian", ""), ("wavelength", "wavelength "), ("amplitude", "amplitude ")):
-            seeds = statistics(run.name, quantity, outcomes)
-            if seeds.n:
-                line += f", {label}{seeds.text(program.units[quantity])}"
-        lines.append(line)
-    if len(results.study.runs) > 60:
-        lines.append(f"... {len(results.study.runs)} cases in all: study.csv")
-    return lines
+    return "\n".join(lines)
 
 
 def _wrapped(text: str, first: str, indent: str) -> list[str]:

@@ -13,6 +13,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..files import object_in
 from ..folder import write_atomically
 from ..schema import SEED_ENTRY
 from .program import InputError, Program, printable, read_input
@@ -88,13 +89,10 @@ def parse_settings(texts: Sequence[str]) -> Settings:
     return settings
 
 
-def _assignments(settings: Settings) -> list[str]:
-    return [f"{key}={value}" for key, value in settings.items()]
-
-
 def base_text(program: Program, study: Study, overrides: Settings) -> str:
     """Returns the text of the base case, for claims that are checked on it alone."""
-    return program.ask(changes=_assignments(study.settings | overrides), seeds=[], checks_laws=True, wants_text=True)
+    changes = [f"{key}={value}" for key, value in (study.settings | overrides).items()]
+    return program.ask(changes=changes, seeds=[], checks_laws=True, wants_text=True)
 
 
 def plan_runs(program: Program, study: Study, overrides: Settings, verification: Verification) -> list[PlannedRun]:
@@ -112,13 +110,13 @@ def plan_runs(program: Program, study: Study, overrides: Settings, verification:
     runs: list[PlannedRun] = []
     problems: list[str] = []
     for run in study.runs:
-        changes = _assignments(run.all | overrides | frames)
+        changes = [f"{key}={value}" for key, value in (run.all | overrides | frames).items()]
         try:
             reply = program.ask(changes=changes, seeds=run.seeds, on_continuum=run.on_continuum, keys=sorted(keys - {"zeta"}),
                                 checks_laws=verification is Verification.EVERY_RUN, wants_text=False)
         except InputError as error:
             # A problem of the base case occurs in every run: report it once.
-            problems += [f"{study.file}: runs/{run.name}: {problem}" for problem in error.problems
+            problems += [f"{study.file}: runs/{run.name}: {problem}" for problem in error.args
                          if not any(known.endswith(": " + problem) for known in problems)]
         if not problems:
             digests = reply.pop("sha256")
@@ -134,11 +132,6 @@ def plan_runs(program: Program, study: Study, overrides: Settings, verification:
     if verification is Verification.BASE_CASE:
         base_text(program, study, overrides)
     return runs
-
-
-def longest_first(runs: Sequence[PlannedRun]) -> list[int]:
-    """Returns the indices of the runs in the order of decreasing time."""
-    return sorted(range(len(runs)), key=lambda i: -runs[i].seconds)
 
 
 SWEEP_FILE, PLAN_FILE = "sweep.json", "plan.json"
@@ -231,11 +224,7 @@ def require_no_refinement(study: Study) -> None:
 def require_folder_of(study: Study, directory: str) -> None:
     """Refuses an output directory with the results of another study."""
     for file, key in (("study.json", "title"), ("run.json", "study"), (PLAN_FILE, "study")):
-        try:
-            document = json.loads(read_input(os.path.join(directory, file))[0])
-        except ValueError:
-            continue
-        title = document.get(key) if isinstance(document, dict) else None
+        title = object_in(os.path.join(directory, file)).get(key)
         if isinstance(title, str) and title != study.title:
             raise InputError(f"{directory} has the results of another study, '{printable(title)}'; choose another folder "
                              "(--output-dir)")
@@ -255,7 +244,7 @@ def parse_shard(text: str) -> tuple[int, int]:
 
 def runs_of_shard(plan: Sequence[PlannedRun], index: int, count: int) -> list[int]:
     """Returns the indices of the runs of a shard, the most expensive first. Shards have about the same cost."""
-    return longest_first(plan)[index - 1::count]
+    return sorted(range(len(plan)), key=lambda i: -plan[i].seconds)[index - 1::count]
 
 
 def plan_text(title: str, plan: Sequence[PlannedRun], skip_verification: bool, n_shards: int) -> str:

@@ -1,6 +1,7 @@
 """Pool of child processes."""
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import signal
@@ -37,7 +38,11 @@ def run_processes(n_jobs: int, limit: int, start: Callable[[int], tuple[Sequence
             if stop():
                 return False
             while following < n_jobs and len(running) < limit:
-                running[following] = _start(*start(following))
+                command, log = start(following)
+                running[following] = None  # unless it starts
+                with (open(log, "wb", opener=lambda path, flags: os.open(path, flags | os.O_NOFOLLOW, 0o666)) as output,
+                      contextlib.suppress(FileNotFoundError)):
+                    running[following] = start_child(command, signal.SIGTERM, stdin=subprocess.DEVNULL, stdout=output, stderr=output)
                 following += 1
             waiting(list(running))
             time.sleep(_POLL_INTERVAL)
@@ -52,7 +57,16 @@ def run_processes(n_jobs: int, limit: int, start: Callable[[int], tuple[Sequence
                 ended(job, status if status >= 0 else 128 - status)
         return True
     finally:
-        _end([child for child in running.values() if child is not None])
+        children = [child for child in running.values() if child is not None]
+        for child in children:
+            child.terminate()
+        last = time.monotonic() + _PATIENCE
+        for child in children:
+            try:
+                child.wait(max(0.0, last - time.monotonic()))
+            except subprocess.TimeoutExpired:
+                child.kill()
+                child.wait()
 
 
 def start_child(command: Sequence[str], last_signal: int, **streams: Any) -> subprocess.Popen[bytes]:
@@ -68,25 +82,3 @@ def start_child(command: Sequence[str], last_signal: int, **streams: Any) -> sub
     environment = {name: value for name, value in os.environ.items()
                    if not name.startswith(_LAUNCHER) and name not in ("FLUX_JOB_ID", "LATCON_PROGRESS", "PYTHONPATH")}
     return subprocess.Popen(command, env=environment, preexec_fn=prepare, **streams)
-
-
-def _start(command: Sequence[str], log: str) -> subprocess.Popen[bytes] | None:
-    output = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW, 0o666)
-    try:
-        return start_child(command, signal.SIGTERM, stdin=subprocess.DEVNULL, stdout=output, stderr=output)
-    except FileNotFoundError:
-        return None
-    finally:
-        os.close(output)
-
-
-def _end(children: Sequence[subprocess.Popen[bytes]]) -> None:
-    for child in children:
-        child.terminate()
-    last = time.monotonic() + _PATIENCE
-    for child in children:
-        try:
-            child.wait(max(0.0, last - time.monotonic()))
-        except subprocess.TimeoutExpired:
-            child.kill()
-            child.wait()

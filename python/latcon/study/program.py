@@ -1,6 +1,7 @@
 """The program, which resolves the cases of a study; exit codes, messages and signals as its own."""
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
 import re
@@ -21,26 +22,20 @@ _ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1,
 class InputError(LatconError):
     """Invalid input, with all problems that were found."""
 
-    def __init__(self, *problems: str) -> None:
-        super().__init__("\n".join(problems))
-        self.problems = problems
+    def __str__(self) -> str:
+        return "\n".join(self.args)
 
 
+@dataclasses.dataclass(eq=False)
 class Ended(Exception):
     """End with an exit code; what is wrong has been printed, and `message` is for the log."""
 
-    def __init__(self, exit_code: int, message: str = "") -> None:
-        super().__init__(message)
-        self.exit_code = exit_code
-        self.message = message
+    exit_code: int
+    message: str = ""
 
 
 class Interrupted(BaseException):
-    """A signal that ends the program."""
-
-    def __init__(self, number: int) -> None:
-        super().__init__(number)
-        self.number = number
+    """A signal that ends the program; its number is the argument."""
 
 
 class Signals:
@@ -82,10 +77,8 @@ def read_input(path: str) -> tuple[bytes, str]:
     if os.path.isdir(path):
         return b"", "it is a folder"
     try:
-        with open(path, "rb", buffering=0) as file:
-            content = b""
-            while len(content) <= largest and (part := file.read(largest + 1 - len(content))):
-                content += part
+        with open(path, "rb") as file:
+            content = file.read(largest + 1)
     except OSError as error:
         return b"", error.strerror or str(error)
     return content, "it is larger than 16 MiB" if len(content) > largest else ""

@@ -27,9 +27,15 @@ from .output import csv_text
 class Printed:
     """What this process prints to standard output, of which a log keeps a copy."""
 
-    def __init__(self) -> None:
+    def __init__(self, is_quiet: bool) -> None:
+        self.is_quiet = is_quiet
         self.text = ""
         self.is_complete = True
+
+    def say(self, text: str) -> None:
+        """Prints lines unless --quiet is given."""
+        if not self.is_quiet:
+            self.print(text + "\n")
 
     def print(self, text: str) -> None:
         """Prints a text."""
@@ -44,9 +50,9 @@ class Printed:
             self.is_complete = False
 
 
-def json_text(document: Any, indent: int = 2) -> str:
+def json_text(document: Any) -> str:
     """Returns a document as the program writes it, with a final line break."""
-    text = json.dumps(document, indent=indent, ensure_ascii=False) + "\n"
+    text = json.dumps(document, indent=2, ensure_ascii=False) + "\n"
     return text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")  # paths need not be UTF-8
 
 
@@ -60,8 +66,8 @@ class Record:
         self.directory, self._printed, self._options = directory, printed, options
         os.makedirs(directory, exist_ok=True)
         self._lock = FolderLock(directory)
-        if not resume and (aside := archive(directory)) and not options["quiet"]:
-            printed.print(f"The files of an earlier run in {directory} are now in {aside}\n")
+        if not resume and (aside := archive(directory)):
+            printed.say(f"The files of an earlier run in {directory} are now in {aside}")
         add_to_list(directory, [])
         log = f"{directory}/log.txt"
         # A log.txt that latcon did not write belongs to the user, who may have redirected the output of this program to it.
@@ -100,18 +106,14 @@ class Record:
 
     def end(self, rows: Sequence[Mapping[str, Any]], exit_code: int) -> int:
         """Writes the rows, and the record with the exit code, which is returned: CLAIM_FAILED instead of DONE if a row fails."""
-        claims = []
-        for row in rows:
-            claim = {"claim": row["claim"], "quantity": row["quantity"], "unit": row["unit"], "lattice": row["lattice"],
-                     "continuum": None, "theory": row["theory"], "error": row["error"], "tolerance": row["tolerance"],
-                     "verdict": _verdict(row), "reason": row["reason"], "gate": False, "kind": "claim"}
-            claims.append({key: float(value) if isinstance(value, int) and key != "gate" else value for key, value in claim.items()})
+        columns = ("claim", "quantity", "unit", "lattice", "continuum", "theory", "error", "tolerance", "verdict", "reason", "gate", "kind")
+        claims = [{key: whole[key] for key in columns}
+                  for row in rows for whole in [{**row, "continuum": None, "verdict": _verdict(row), "gate": False, "kind": "claim"}]]
         verdicts = {claim["verdict"] for claim in claims}
         verdict = next((word for word in ("fails", "holds") if word in verdicts), "reported")
         write_file(f"{self.directory}/results.json", json_text({"claims": claims, "verdict": verdict}))
         write_file(f"{self.directory}/results.csv", csv_text(
-            ["claim", "quantity", "unit", "lattice", "continuum", "theory", "error", "tolerance", "verdict", "reason", "gate", "kind"],
-            [["false" if value is False else value for value in claim.values()] for claim in claims]))
+            columns, [["false" if value is False else value for value in claim.values()] for claim in claims]))
         if exit_code == DONE and verdict == "fails":
             exit_code = CLAIM_FAILED
         self.add(verdict=verdict, failed_rows={f"{claim['claim']}: {claim['quantity']}": "claim" for claim in claims

@@ -91,13 +91,9 @@ class JsonPlace:
                              + ", ".join(known))
         return True
 
-    def has(self, key: str) -> bool:
-        """Returns whether this is an object with the key."""
-        return isinstance(self.value, dict) and key in self.value
-
     def get(self, key: str) -> JsonPlace | None:
         """Returns a member; None if it is missing."""
-        return self._child(self.value[key], key) if self.has(key) else None
+        return self._child(self.value[key], key) if isinstance(self.value, dict) and key in self.value else None
 
     def text_of(self, key: str, is_required: bool = False) -> str:
         """Returns the text of a member; if it is not required, it may be missing or empty."""

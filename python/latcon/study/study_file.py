@@ -137,7 +137,7 @@ class _Reader:
         self.refinement(top, "")
         if quick:
             self.refinement(quick, " of the study")
-        runs = top.get("runs") if top.has("sweep") else top.required("runs")
+        runs = top.get("runs") if top.get("sweep") else top.required("runs")
         if runs:
             for name, place in runs.members():
                 self.run(name, place)
@@ -154,7 +154,16 @@ class _Reader:
 
     def change(self, place: JsonPlace) -> Change:
         settings, seeds = place.get("set"), place.get("seeds")
-        return self.settings(settings) if settings else {}, _seeds(seeds) if seeds else []
+        found: list[int] = []
+        entries = self.settings(settings) if settings else {}
+        for item in seeds.list() if seeds else ():
+            if (seed := item.unsigned()) is None:
+                item.problem("must be a whole number >= 0")
+            elif seed in found:
+                item.problem("this seed is given twice")
+            else:
+                found.append(seed)
+        return entries, found
 
     def settings(self, place: JsonPlace) -> Settings:
         found = {}
@@ -320,18 +329,6 @@ class _Reader:
             row.bound = place.number()
             if row.rule is Rule.IS_NEAR and row.bound == 0 and len(self.problems) == n_problems:
                 place.problem("must not be 0, because the tolerance is relative")
-
-
-def _seeds(place: JsonPlace) -> list[int]:
-    found: list[int] = []
-    for place_of_seed in place.list():
-        if (seed := place_of_seed.unsigned()) is None:
-            place_of_seed.problem("must be a whole number >= 0")
-        elif seed in found:
-            place_of_seed.problem("this seed is given twice")
-        else:
-            found.append(seed)
-    return found
 
 
 def _is_on_continuum(place: JsonPlace, otherwise: bool) -> bool:

@@ -161,7 +161,8 @@ def judge(row: StudyRow, planned: Mapping[str, PlannedRun], outcomes: Mapping[st
     outcome.runs.sort(key=lambda run: -math.inf if run.abscissa is None else run.abscissa)
 
     # Cracks without the quantity are an answer along `against`; runs that were omitted or lost are none.
-    if without or any(run.is_lost for run in outcome.runs) or row.rule is Rule.REPORTED:
+    if without or any(run.is_lost for run in outcome.runs) or row.rule is Rule.REPORTED or (
+            outcome.is_test and outcome.has_bound and outcome.bound is None):
         if len(outcome.runs) == 1:
             outcome.number = outcome.runs[0].mean
     elif row.rule is Rule.BRACKET:
@@ -170,12 +171,8 @@ def judge(row: StudyRow, planned: Mapping[str, PlannedRun], outcomes: Mapping[st
         _judge_onset(outcome)
     elif row.rule.is_along:
         _judge_trend(outcome)
-    elif not outcome.is_test:
-        _judge_each(outcome)
-    elif outcome.bound is not None:
-        _judge_beside(outcome, other)
-    elif len(outcome.runs) == 1:
-        outcome.number = outcome.runs[0].mean
+    else:
+        _judge_each(outcome, other)
 
     if row.rule is Rule.REPORTED:
         outcome.verdict = Verdict.REPORTED
@@ -190,43 +187,34 @@ def judge(row: StudyRow, planned: Mapping[str, PlannedRun], outcomes: Mapping[st
     return outcome
 
 
-def _largest(pairs: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    """Returns the pair of error and number with the largest error; one that is not a number is larger than all."""
-    return max(pairs, key=lambda pair: math.inf if math.isnan(pair[0]) else pair[0])
-
-
-def _judge_beside(outcome: RowOutcome, other: SeedStatistics) -> None:
-    """Compares each run with another run: all must be significantly on the side that the rule requires."""
+def _judge_each(outcome: RowOutcome, other: SeedStatistics) -> None:
+    """Judges rules for individual runs: all must satisfy the rule, beside another run significantly; the largest misfit counts, and
+    one that is not a number is larger than all."""
+    rule, bound = outcome.row.rule, outcome.bound
+    if outcome.has_bound and bound is None:
+        return
     pairs = []
     for run in outcome.runs:
         if not run.is_measured:
             return
-        smaller, larger = (other, run) if outcome.row.rule is Rule.ABOVE else (run, other)
-        p = welch_p_value(smaller.sample(), larger.sample())
-        if p is None:
-            outcome.note.append(f"{run.run} compared with {other.run}: {_NO_SCATTER}")
-            return
-        pairs.append((p, run.mean))
-    outcome.misfit, outcome.number = _largest(pairs)
-    outcome.measured.append(_p_text(outcome.misfit))
-
-
-def _judge_each(outcome: RowOutcome) -> None:
-    """Judges rules for individual runs: all must satisfy the rule; the largest misfit counts."""
-    rule, bound = outcome.row.rule, outcome.bound
-    if outcome.has_bound and bound is None or not all(run.is_measured for run in outcome.runs):
-        return
-    pairs = []
-    for run in outcome.runs:
         number: float = run.patterns.get(outcome.row.pattern, 0) / run.n if rule is Rule.IS else run.mean
         if rule is Rule.IS:
             misfit = 1.0 - number
+        elif outcome.is_test:
+            smaller, larger = (other, run) if rule is Rule.ABOVE else (run, other)
+            p = welch_p_value(smaller.sample(), larger.sample())
+            if p is None:
+                outcome.note.append(f"{run.run} compared with {other.run}: {_NO_SCATTER}")
+                return
+            misfit = p
         elif rule is Rule.IS_NEAR:
             misfit = abs(number / bound - 1) if bound else math.nan
         else:
             misfit = bound - number if rule is Rule.ABOVE else number - bound
         pairs.append((misfit, number))
-    outcome.misfit, outcome.number = _largest(pairs)
+    outcome.misfit, outcome.number = max(pairs, key=lambda pair: math.inf if math.isnan(pair[0]) else pair[0])
+    if outcome.is_test:
+        outcome.measured.append(_p_text(outcome.misfit))
 
 
 def _points(outcome: RowOutcome) -> list[SeedStatistics]:
