@@ -2,13 +2,12 @@
 from __future__ import annotations
 
 import os
-import pathlib
 import threading
 
 from .case import Case
 from .errors import Interrupted
 from .folder import absolute
-from .program import Process, Progress, progress_indicator, run
+from .program import Process, Progress, run
 from .results import Run, open_run
 
 CaseLike = Case | str | os.PathLike[str]
@@ -114,7 +113,7 @@ class Job:
     def __init__(self, process: Process) -> None:
         self.directory = process.directory
         self._process = process
-        self._reader = threading.Thread(target=process.follow, args=(progress_indicator(False),), daemon=True)
+        self._reader = threading.Thread(target=process.follow, args=(lambda **update: None,), daemon=True)
         self._reader.start()
 
     @property

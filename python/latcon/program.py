@@ -1,6 +1,7 @@
 """Finds the program ``latcon`` and runs it as a child process."""
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import json
 import os
@@ -12,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from .errors import OUTPUT_FAILED, PACKAGES_MISSING, ProgramNotFound, error_of
 
@@ -64,28 +65,22 @@ def find_program() -> pathlib.Path:
 
 def ask(*arguments: str) -> str:
     """Returns the standard output of a short command of the program; raises ProgramError if it ends with an error."""
-    return _output([find_program(), *arguments])
+    return output_of([find_program(), *arguments])
 
 
-def draw_report(directory: pathlib.Path) -> None:
-    """Draws `report.html` of an output directory, in a process of its own; raises ProgramError if that fails, with exit code 5
-    also if a package is missing.
-    """
-    _output(page_command("report", directory))
-
-
-def page_command(kind: str, directory: str | os.PathLike[str]) -> list[str | os.PathLike[str]]:
-    """Returns the command that draws a page, see `report/__main__.py`, without modules of the user."""
-    return [sys.executable, "-sP", pathlib.Path(__file__).parent / "report" / "__main__.py", kind, directory, "--quiet"]
-
-
-def _output(command: Sequence[str | os.PathLike[str]]) -> str:
+def output_of(command: Sequence[str | os.PathLike[str]]) -> str:
+    """Returns the standard output of a short process; raises ProgramError if it fails, with exit code 5 if a package is missing."""
     ended = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", errors="replace", stdin=subprocess.DEVNULL,
                            check=False)
     if ended.returncode != 0:
         code = OUTPUT_FAILED if ended.returncode == PACKAGES_MISSING else ended.returncode
         raise error_of(code, _message(ended.stderr.strip(), ended.stdout))
     return ended.stdout
+
+
+def page_command(kind: str, directory: str | os.PathLike[str]) -> list[str | os.PathLike[str]]:
+    """Returns the command that draws a page, see `report/__main__.py`, without modules of the user."""
+    return [sys.executable, "-sP", pathlib.Path(__file__).parent / "report" / "__main__.py", kind, directory, "--quiet"]
 
 
 def run(arguments: Sequence[str], directory: pathlib.Path, progress: Progress) -> None:
@@ -97,17 +92,16 @@ def run(arguments: Sequence[str], directory: pathlib.Path, progress: Progress) -
     `directory` is the output directory, for messages. With `progress` True an indicator is shown on standard error, a function
     is called with each progress line.
     """
-    indicator = progress_indicator(progress)
-    job = Process(arguments, directory)
-    _running.append(job)
-    try:
-        job.follow(indicator)
-    finally:
-        _running.remove(job)
-        if job.is_running:  # an exception of the progress function
-            job.interrupt()
-            job.child.wait()
-        indicator.close()
+    with progress_indicator(progress) as show:
+        job = Process(arguments, directory)
+        _running.append(job)
+        try:
+            job.follow(show)
+        finally:
+            _running.remove(job)
+            if job.is_running:  # an exception of the progress function
+                job.interrupt()
+                job.child.wait()
     job.end()
 
 
@@ -144,7 +138,7 @@ class Process:
         """Sends SIGINT, on which the program writes a checkpoint and all results, and ends."""
         self.child.send_signal(signal.SIGINT)
 
-    def follow(self, indicator: _Shower) -> None:
+    def follow(self, show: Callable[..., None]) -> None:
         """Shows the progress of the program until it has ended."""
         interrupted = False
         while True:
@@ -154,7 +148,7 @@ class Process:
                     return
                 update = json.loads(line)
                 self.progress = update["text"]
-                indicator.line(**update)
+                show(**update)
             except KeyboardInterrupt:
                 if interrupted:
                     self.child.kill()
@@ -181,64 +175,43 @@ def _message(errors: str, output: str) -> str:
     return re.sub(r"^latcon: ", "", text, flags=re.MULTILINE)
 
 
-class _Shower:
-    """Progress indicator that calls a function with each line, or shows nothing."""
+@contextlib.contextmanager
+def progress_indicator(progress: Progress) -> Iterator[Callable[..., None]]:
+    """Yields a function that shows a progress line, given as `text` and, where it is known, `seconds_left`.
 
-    def __init__(self, function: Callable[[str], None] | None = None) -> None:
-        self._function = function
+    It calls a function of the user, or does nothing; otherwise it moves a bar of tqdm, if that is installed, in percent of the
+    estimated wall time, or writes lines: in place in a terminal or notebook, elsewhere one per minute.
+    """
+    begin = last = time.monotonic()
+    width, in_place = 0, sys.stderr.isatty() or "ipykernel" in sys.modules
 
-    def line(self, text: str, seconds_left: float | None = None) -> None:
-        """Shows a progress line."""
-        if self._function:
-            self._function(text)
+    def call(text: str, seconds_left: float | None = None) -> None:
+        if callable(progress):
+            progress(text)
 
-    def close(self) -> None:
-        """Ends the indicator."""
-
-
-class _Stream(_Shower):
-    """Shows the lines of the program: in place in a terminal or notebook, otherwise one per minute."""
-
-    def __init__(self) -> None:
-        self._in_place = sys.stderr.isatty() or "ipykernel" in sys.modules
-        self._width = 0
-        self._last = time.monotonic()
-
-    def line(self, text: str, seconds_left: float | None = None) -> None:
-        if self._in_place:
-            print("\r" + text.ljust(self._width), end="", file=sys.stderr, flush=True)
-            self._width = max(self._width, len(text))
-        elif time.monotonic() - self._last >= _LOG_INTERVAL:
+    def write(text: str, seconds_left: float | None = None) -> None:
+        nonlocal last, width
+        if in_place:
+            print("\r" + text.ljust(width), end="", file=sys.stderr, flush=True)
+            width = max(width, len(text))
+        elif time.monotonic() - last >= _LOG_INTERVAL:
             print(text, file=sys.stderr, flush=True)
-            self._last = time.monotonic()
+            last = time.monotonic()
 
-    def close(self) -> None:
-        if self._in_place and self._width:
-            print("\r" + " " * self._width + "\r", end="", file=sys.stderr, flush=True)
-
-
-class _Bar(_Shower):
-    """Progress bar of tqdm, in percent of the estimated wall time."""
-
-    def __init__(self) -> None:
+    if callable(progress) or not progress:
+        yield call
+    elif importlib.util.find_spec("tqdm"):
         from tqdm.auto import tqdm
-        self._bar = tqdm(total=100, bar_format="{l_bar}{bar}| {postfix}", leave=False)
-        self._begin = time.monotonic()
-
-    def line(self, text: str, seconds_left: float | None = None) -> None:
-        if seconds_left is not None:
-            elapsed = time.monotonic() - self._begin
-            self._bar.n = round(100 * elapsed / max(elapsed + seconds_left, 1e-9))
-        self._bar.set_postfix_str(text)
-
-    def close(self) -> None:
-        self._bar.close()
-
-
-def progress_indicator(progress: Progress) -> _Shower:
-    """Indicator of progress lines: a bar of tqdm if it is installed, a function's, or none."""
-    if callable(progress):
-        return _Shower(progress)
-    if not progress:
-        return _Shower()
-    return _Bar() if importlib.util.find_spec("tqdm") else _Stream()
+        with tqdm(total=100, bar_format="{l_bar}{bar}| {postfix}", leave=False) as bar:
+            def move(text: str, seconds_left: float | None = None) -> None:
+                if seconds_left is not None:
+                    elapsed = time.monotonic() - begin
+                    bar.n = round(100 * elapsed / max(elapsed + seconds_left, 1e-9))
+                bar.set_postfix_str(text)
+            yield move
+    else:
+        try:
+            yield write
+        finally:
+            if width:
+                print("\r" + " " * width + "\r", end="", file=sys.stderr, flush=True)

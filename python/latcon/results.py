@@ -11,7 +11,7 @@ from .errors import ProgramNotFound, UnreadableFile
 from .files import read_json, read_rows, read_table, read_text
 from .folder import absolute
 from .frames import Frames, read_near_tip
-from .program import draw_report, find_program
+from .program import find_program, output_of, page_command
 from .quantities import Quantities
 
 if TYPE_CHECKING:
@@ -186,7 +186,7 @@ class Run:
         ProgramError
             If the report cannot be made.
         """
-        draw_report(self.directory)
+        output_of(page_command("report", self.directory))
         return self.directory / "report.html"
 
 

@@ -188,20 +188,18 @@ def sweep(case: CaseLike, values: Mapping[str, Iterable[Settable]], directory: D
         return open_study(place).to_xarray()
     n_tasks = tasks or min(seeds * math.prod(map(len, texts.values())), _MAX_TASKS)
     run([*words, "--dry-run", *common_words(place, 1)], place, False)  # reports wrong input once
-    indicator = progress_indicator(progress)
     futures = [executor.submit(_run_study, [*words, "--shard", f"{i}/{n_tasks}"], place, 1, False, False)
                for i in range(1, n_tasks + 1)]
-    try:
-        for done, future in enumerate(futures):
-            indicator.line(f"{done} of {n_tasks} tasks")
-            future.result()
-    except BaseException:
-        for future in futures:
-            future.cancel()
-        interrupt_runs(place)
-        raise
-    finally:
-        indicator.close()
+    with progress_indicator(progress) as show:
+        try:
+            for done, future in enumerate(futures):
+                show(f"{done} of {n_tasks} tasks")
+                future.result()
+        except BaseException:
+            for future in futures:
+                future.cancel()
+            interrupt_runs(place)
+            raise
     _run_study([*words, "--collect"], place, 1, report, False)
     return open_study(place).to_xarray()
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..frames import Floats
-from .problem import Observation, Problem
+from .problem import Problem
 from .record import Evaluation
 
 # Least contribution of an observation that a run does not determine: ten standard deviations.
@@ -22,17 +22,15 @@ UNDETERMINED = 100.0
 class Table:
     """Evaluated points as arrays; row per point, column per observation.
 
-    `numbers` of the points ascend; `coordinates` are 0 at the lower bound, 1 at the upper. `means` are those over the seeds
-    that determine the quantity, of a word the fraction of seeds that have it, NaN if none does; `determined` is the fraction of
-    seeds that determine it, `scatter` the standard deviation from seed to seed, 0 if unknown. `targets` and `sigmas` are the
-    observed values and their uncertainties, `totals` the uncertainty of observation and mean over all seeds together. `is_word`
-    tells words and truth values. `misfits` are infinite for points whose runs were not all done.
+    `coordinates` are 0 at the lower bound, 1 at the upper. `means` are those over the seeds that determine the quantity, of a
+    word the fraction of seeds that have it, NaN if none does; `scatter` is the standard deviation from seed to seed, 0 if
+    unknown. `targets` and `sigmas` are the observed values and their uncertainties, `totals` the uncertainty of observation and
+    mean over all seeds together. `is_word` tells words and truth values. `misfits` are infinite for points whose runs were not
+    all done.
     """
 
-    numbers: npt.NDArray[np.int_]
     coordinates: Floats
     means: Floats
-    determined: Floats
     scatter: Floats
     targets: Floats
     sigmas: Floats
@@ -61,8 +59,10 @@ def tabulate(problem: Problem, evaluations: Sequence[Evaluation]) -> Table:
         for seed, outcome in enumerate(evaluation.outcomes):
             for column, observation in enumerate(observations):
                 if outcome.ended == "done":
-                    measured = outcome.measured[observation.quantity]
-                    samples[row, column, seed], own[row, column, seed] = _number(observation, measured)
+                    value, own[row, column, seed] = outcome.measured[observation.quantity]
+                    if observation.is_word and not isinstance(value, float):
+                        value = value == observation.value
+                    samples[row, column, seed] = value
     is_known = np.isfinite(samples)
     known = is_known.sum(axis=2)
     means = np.where(known > 0, np.where(is_known, samples, 0).sum(axis=2) / np.maximum(known, 1), np.nan)
@@ -76,16 +76,8 @@ def tabulate(problem: Problem, evaluations: Sequence[Evaluation]) -> Table:
     misfits = (fraction * terms + (1 - fraction) * undetermined).sum(axis=1)
     misfits[[evaluation.ended != "done" for evaluation in evaluations]] = math.inf
     coordinates = np.array([problem.coordinates(evaluation.values) for evaluation in evaluations])
-    return Table(np.array([evaluation.number for evaluation in evaluations], int),
-                 coordinates.reshape(len(evaluations), len(problem.axes)), means, fraction, scatter, targets, sigmas,
+    return Table(coordinates.reshape(len(evaluations), len(problem.axes)), means, scatter, targets, sigmas,
                  np.sqrt(sigmas**2 + scatter**2 / count), np.array([observation.is_word for observation in observations]), misfits)
-
-
-def _number(observation: Observation, measured: tuple[float | str | bool, float]) -> tuple[float, float]:
-    value, uncertainty = measured
-    if observation.is_word:
-        return (float("nan") if isinstance(value, float) else float(value == observation.value)), math.nan
-    return float(value), uncertainty
 
 
 def _scatter(samples: Floats, own: Floats) -> float:
@@ -165,7 +157,9 @@ def _fit_near(table: Table, center: Floats, metric: Floats) -> LocalModel | None
     scale = np.maximum(np.abs(table.coordinates[rows] - center).max(axis=0), 1e-9)
 
     def basis(points: Floats) -> Floats:
-        return _monomials((points - center) / scale, degree)
+        linear = list(((points - center) / scale).T)
+        products = itertools.combinations_with_replacement(linear, 2) if degree == 2 else ()
+        return np.stack([np.ones(len(points)), *linear, *(first * second for first, second in products)], axis=1)
     matrix = basis(table.coordinates[rows]) * weights[:, None]
     inverse = np.linalg.pinv(matrix, rcond=1e-10)
     coefficients = inverse @ (table.means[rows][:, columns] * weights[:, None])
@@ -206,10 +200,3 @@ def _is_in_regime(table: Table) -> npt.NDArray[np.bool_]:
     best = table.best
     assert best is not None
     return np.asarray((deviations <= np.maximum(2 * table.sigmas[table.is_word], deviations[best])).all(axis=1))
-
-
-def _monomials(points: Floats, degree: int) -> Floats:
-    columns = [np.ones(len(points)), *points.T]
-    if degree == 2:
-        columns += [first * second for first, second in itertools.combinations_with_replacement(points.T, 2)]
-    return np.stack(columns, axis=1)

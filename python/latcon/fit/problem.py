@@ -93,13 +93,10 @@ class Observation:
             found, uncertainty = found.value, found.uncertainty
         if isinstance(found, np.generic):
             found = found.item()
-        if isinstance(found, (str, bool)):
-            if not self.is_word:
-                raise ValueError(f"{self.quantity} is {found!r} in {run.directory}, but the observed value is {self.value!r}")
-            return found, math.nan
-        if self.is_word or not isinstance(found, (int, float)):
+        is_word = isinstance(found, (str, bool))
+        if is_word != self.is_word or not isinstance(found, (str, int, float)):
             raise ValueError(f"{self.quantity} is {found!r} in {run.directory}, but the observed value is {self.value!r}")
-        return float(found), uncertainty
+        return (found, math.nan) if is_word else (float(found), uncertainty)
 
 
 def _lookup(run: Run, quantity: str) -> Any:
@@ -199,7 +196,15 @@ def resolve_problem(case: CaseLike, parameters: Sequence[Parameter], observation
     if seeds is not None and SEED_ENTRY in [parameter.key for parameter in parameters]:
         raise ValueError(f"{SEED_ENTRY} cannot be a parameter: the means are over seeds")
     for observation in observations:
-        _check(observation, command)
+        name = observation.quantity
+        file, _, path = name.partition(".")
+        if observation.measure is None and (file not in ("crack", "near_tip") or not path or command != "fracture"):
+            raise ValueError(f"observation {name!r}: must be crack.NAME or near_tip.NAME of a crack, or have the function "
+                             "`measure`")
+        if not math.isfinite(observation.uncertainty) or observation.uncertainty < 0:
+            raise ValueError(f"observation {name!r}: the uncertainty {observation.uncertainty} must be positive")
+        if not observation.is_word and not (math.isfinite(float(observation.value)) and observation.uncertainty > 0):
+            raise ValueError(f"observation {name!r}: needs a finite value and a positive uncertainty")
     own_seed = base[SEED_ENTRY]
     chosen = [own_seed] if seeds is None else list(seeds)
     if not chosen or len(set(chosen)) < len(chosen) or not all(isinstance(seed, int) for seed in chosen):
@@ -215,19 +220,6 @@ def resolve_problem(case: CaseLike, parameters: Sequence[Parameter], observation
     return problem
 
 
-def _check(observation: Observation, command: str) -> None:
-    name = observation.quantity
-    if observation.measure is None:
-        file, _, path = name.partition(".")
-        if file not in ("crack", "near_tip") or not path or command != "fracture":
-            raise ValueError(f"observation {name!r}: must be crack.NAME or near_tip.NAME of a crack, or have the function "
-                             "`measure`")
-    if not math.isfinite(observation.uncertainty) or observation.uncertainty < 0:
-        raise ValueError(f"observation {name!r}: the uncertainty {observation.uncertainty} must be positive")
-    if not observation.is_word and not (math.isfinite(float(observation.value)) and observation.uncertainty > 0):
-        raise ValueError(f"observation {name!r}: needs a finite value and a positive uncertainty")
-
-
 def _axis(base: Case, parameter: Parameter) -> Axis:
     unit, integer = parameter.unit, False
     if unit is None:
@@ -240,15 +232,14 @@ def _axis(base: Case, parameter: Parameter) -> Axis:
         raise ValueError(f"parameter {parameter.key}: is an entry of the case, which has its unit; leave out `unit`")
     elif isinstance(parameter.lower, str) or isinstance(parameter.upper, str):
         raise ValueError(f"parameter {parameter.key}: is no entry of the case; its bounds must be numbers in {unit}")
-    lower, upper = (_bound(base, parameter.key, bound) for bound in (parameter.lower, parameter.upper))
+    bounds = []
+    for bound in (parameter.lower, parameter.upper):
+        value = base.set(parameter.key, bound)[parameter.key] if isinstance(bound, str) else bound
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+            raise ValueError(f"parameter {parameter.key}: the bound {bound!r} is no finite number")
+        bounds.append(float(value))
+    lower, upper = bounds
     if not lower < upper or (parameter.logarithmic and lower <= 0):
         raise ValueError(f"parameter {parameter.key}: the bounds {lower} and {upper} must increase"
                          + (" and be positive" if parameter.logarithmic else ""))
     return Axis(parameter.key, unit, lower, upper, parameter.logarithmic, integer)
-
-
-def _bound(base: Case, key: str, bound: Settable) -> float:
-    value = base.set(key, bound)[key] if isinstance(bound, str) else bound
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise ValueError(f"parameter {key}: the bound {bound!r} is no finite number")
-    return float(value)

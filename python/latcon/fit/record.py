@@ -7,11 +7,10 @@ import math
 import os
 import pathlib
 from collections.abc import Mapping
-from typing import Any
 
 from ..errors import LatconError, UnreadableFile
 from ..files import read_json, read_text
-from ..folder import FolderLock, write_atomically
+from ..folder import write_atomically
 from .problem import Measurement, Problem
 
 FORMAT_VERSION = 1
@@ -52,39 +51,25 @@ class Evaluation:
 
 
 class Record:
-    """Directory of a fit: the problem, and the evaluated points so far.
+    """Directory of a fit, which is locked: the problem, and the evaluated points so far.
 
     Files: `case.prm`, the resolved base case; `fit.json`, the problem; `evaluations.jsonl`, a line of JSON per evaluated point,
-    appended when its runs have ended. Raises LatconError if the directory holds another fit, or one that another process works
-    on, UnreadableFile if a file is damaged. An incomplete last line, which a killed process leaves, is removed.
+    appended when its runs have ended. Raises LatconError if the directory holds another fit, UnreadableFile if a file is damaged.
+    An incomplete last line, which a killed process leaves, is removed.
     """
 
     def __init__(self, directory: pathlib.Path, problem: Problem) -> None:
         self.directory = directory
         self.problem = problem
-        directory.mkdir(parents=True, exist_ok=True)
-        self._lock = FolderLock(os.fspath(directory))
-        try:
-            self._open_problem()
-            self.evaluations = _read_evaluations(directory)
-        except BaseException:
-            self._lock.release()
-            raise
-
-    def __enter__(self) -> Record:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._lock.release()
-
-    @property
-    def case(self) -> pathlib.Path:
-        """File of the resolved base case."""
-        return self.directory / "case.prm"
+        self.case = directory / "case.prm"  # the resolved base case
+        self._open_problem()
+        self.evaluations = _read_evaluations(directory)
 
     def add(self, evaluation: Evaluation) -> None:
         """Appends an evaluated point."""
-        line = json.dumps(_plain(dataclasses.asdict(evaluation)), separators=(",", ":"), allow_nan=False) + "\n"
+        # Numbers that are not finite become null.
+        plain = json.loads(json.dumps(dataclasses.asdict(evaluation)), parse_constant=lambda word: None)
+        line = json.dumps(plain, separators=(",", ":")) + "\n"
         with open(self.directory / "evaluations.jsonl", "ab", buffering=0) as file:
             end = file.seek(0, os.SEEK_END)
             try:
@@ -124,27 +109,13 @@ def _read_evaluations(directory: pathlib.Path) -> dict[int, Evaluation]:
     found = {}
     for number, line in enumerate(complete.splitlines(), start=1):
         try:
-            evaluation = _evaluation(json.loads(line))
+            item = json.loads(line)
+            outcomes = [Outcome(run["seed"], run["ended"], run["message"],
+                                {name: (math.nan if value is None else value, math.nan if uncertainty is None else uncertainty)
+                                 for name, (value, uncertainty) in run["measured"].items()}) for run in item["outcomes"]]
+            evaluation = Evaluation(int(item["number"]), item["stage"], {key: float(value) for key, value in item["values"].items()},
+                                    tuple(outcomes))
         except (ValueError, TypeError, KeyError, AttributeError) as error:
             raise UnreadableFile(path, f"line {number} is no evaluated point: {error}") from error
         found[evaluation.number] = evaluation
     return dict(sorted(found.items()))
-
-
-def _evaluation(line: Mapping[str, Any]) -> Evaluation:
-    outcomes = tuple(Outcome(item["seed"], item["ended"], item["message"],
-                             {name: (math.nan if value is None else value, math.nan if uncertainty is None else uncertainty)
-                              for name, (value, uncertainty) in item["measured"].items()})
-                     for item in line["outcomes"])
-    return Evaluation(int(line["number"]), line["stage"], {key: float(value) for key, value in line["values"].items()}, outcomes)
-
-
-def _plain(value: Any) -> Any:
-    """Value for JSON: not-a-number and infinity become null."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, Mapping):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    return value

@@ -60,15 +60,12 @@ class Fit:
         parameters, the means of the observed quantities over seeds, ``misfit`` (infinite unless done). The index is the number.
         """
         table = self._table
-        columns: dict[str, object] = {"stage": [evaluation.stage for evaluation in self._evaluations],
-                                      "ended": [evaluation.ended for evaluation in self._evaluations],
-                                      "message": [evaluation.message for evaluation in self._evaluations]}
-        for axis in self.problem.axes:
-            columns[axis.key] = [evaluation.values[axis.key] for evaluation in self._evaluations]
-        for column, observation in enumerate(self.problem.observations):
-            columns[observation.quantity] = table.means[:, column]
-        columns["misfit"] = table.misfits
-        return pd.DataFrame(columns, index=pd.Index(table.numbers, name="number"))
+        columns: dict[str, object] = {name: [getattr(evaluation, name) for evaluation in self._evaluations]
+                                      for name in ("stage", "ended", "message")}
+        columns |= {axis.key: [evaluation.values[axis.key] for evaluation in self._evaluations] for axis in self.problem.axes}
+        columns |= {one.quantity: means for one, means in zip(self.problem.observations, table.means.T)}
+        index = pd.Index([evaluation.number for evaluation in self._evaluations], int, name="number")
+        return pd.DataFrame(columns | {"misfit": table.misfits}, index)
 
     @property
     def misfit(self) -> float:
@@ -143,7 +140,9 @@ class Fit:
         vectors[:, order[free]] = _pivoted_basis(vectors[:, order[free]])
         uncertainty = 1 / np.sqrt(np.maximum(np.where(free, 0, values[order]), 1e-12))
         total = 1 / np.sqrt(1 / uncertainty**2 + 1 / PRIOR**2)
-        table = pd.DataFrame(_with_positive_largest(vectors[:, order].T), columns=names)
+        rows = vectors[:, order].T
+        largest = np.take_along_axis(rows, np.abs(rows).argmax(axis=1)[:, None], axis=1)
+        table = pd.DataFrame(rows * np.sign(largest), columns=names)
         table.insert(0, "determined", total < _DETERMINED * PRIOR)
         table.insert(0, "uncertainty", uncertainty)
         return table
@@ -201,11 +200,6 @@ class Fit:
 
 def _count(number: int, thing: str) -> str:
     return f"{number} {thing}{'s' * (number != 1)}"
-
-
-def _with_positive_largest(vectors: Floats) -> Floats:
-    largest = np.take_along_axis(vectors, np.abs(vectors).argmax(axis=1)[:, None], axis=1)
-    return np.asarray(vectors * np.sign(largest))
 
 
 def _pivoted_basis(vectors: Floats) -> Floats:

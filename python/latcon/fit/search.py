@@ -17,7 +17,7 @@ from ..case import Case
 from ..commands import CaseLike, run_words
 from ..errors import BadInput, ClaimFailed, Interrupted, LatconError, OutputFailed, error_of, optional_package
 from ..files import content
-from ..folder import absolute, prepare_run
+from ..folder import FolderLock, absolute, prepare_run
 from ..frames import Floats
 from ..program import Progress, find_program, progress_indicator
 from ..results import open_run
@@ -49,16 +49,12 @@ def propose(table: Table, parameters: int, first: int, count: int, evaluations: 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a number of points that is no power of two
         points = [("sobol", point) for point in qmc.Sobol(parameters, seed=seed).random(sobol)[first:first + count]]
-    if left := min(count, tpe - first) - len(points):
-        if left > 0:
-            points += [("tpe", point) for point in _tpe(table, parameters, first, left, seed)]
-    left = count - len(points)
-    if left > 0:
+    if (left := min(count, tpe - first) - len(points)) > 0:
+        points += [("tpe", point) for point in _tpe(table, parameters, first, left, seed)]
+    if left := count - len(points):
         model = fit_local_model(table)
-        if model is None:
-            points += [("tpe", point) for point in _tpe(table, parameters, first, left, seed)]
-        else:
-            points += [("local", point) for point in _around(model, first, left, (first - tpe) / max(1, count), seed)]
+        points += [("tpe", point) for point in _tpe(table, parameters, first, left, seed)] if model is None else [
+            ("local", point) for point in _around(model, first, left, (first - tpe) / count, seed)]
     return points
 
 
@@ -214,46 +210,30 @@ def fit_case(case: CaseLike, parameters: Sequence[Parameter], observations: Sequ
         if number < 1:
             raise ValueError(f"{name} = {number}: must be positive")
     problem = resolve_problem(case, parameters, observations, command, seeds, skip_verification, entries)
-    with Record(absolute(directory), problem) as record:
-        _Search(record, evaluations, batch, workers or len(os.sched_getaffinity(0)), keep_runs, search_seed).run(progress)
-        return Fit(record.directory, problem, tuple(record.evaluations.values()))
-
-
-class _Search:
-    """Loop over the batches of a fit."""
-
-    def __init__(self, record: Record, evaluations: int, batch: int, workers: int, keep_runs: bool, seed: int) -> None:
-        self._record, self._evaluations, self._batch = record, evaluations, batch
-        self._workers, self._keep_runs, self._seed = workers, keep_runs, seed
-
-    def run(self, progress: Progress) -> None:
-        problem, evaluated = self._record.problem, self._record.evaluations
-        indicator = progress_indicator(progress)
-        begin, held = time.monotonic(), len(evaluated)
+    place = absolute(directory)
+    place.mkdir(parents=True, exist_ok=True)
+    with FolderLock(os.fspath(place)), progress_indicator(progress) as show_line:
+        record, begin = Record(place, problem), time.monotonic()
+        evaluated = record.evaluations
+        held = len(evaluated)
 
         def show() -> None:
             done = len(evaluated)
-            rate = (time.monotonic() - begin) / max(1, done - held)
+            left = max(0, evaluations - done) * (time.monotonic() - begin) / max(1, done - held)
             misfits = tabulate(problem, list(evaluated.values())).misfits
-            left = max(0, self._evaluations - done) * rate
-            indicator.line(f"{done} of {self._evaluations} points, least misfit {misfits.min():.4g}, {left:.0f} s left", left)
-        try:
-            for first in range(0, self._evaluations, self._batch):
-                numbers = range(first, min(first + self._batch, self._evaluations))
-                if not all(number in evaluated for number in numbers):
-                    earlier = tabulate(problem, [evaluation for number, evaluation in evaluated.items() if number < first])
-                    chosen = propose(earlier, len(problem.axes), first, len(numbers), self._evaluations, self._seed)
-                    points = [(number, stage, problem.values(at)) for number, (stage, at) in zip(numbers, chosen)
-                              if number not in evaluated]
-                    evaluate(self._record, points, self._workers, self._keep_runs, show)
-                if first == 0:
-                    self._check_first_batch()
-        finally:
-            indicator.close()
+            show_line(f"{done} of {evaluations} points, least misfit {misfits.min():.4g}, {left:.0f} s left", left)
 
-    def _check_first_batch(self) -> None:
-        found = list(self._record.evaluations.values())[:self._batch]
-        if not any(outcome.ended == "done" for evaluation in found for outcome in evaluation.outcomes):
-            outcome = found[0].outcomes[0]
-            raise LatconError(f"{self._record.directory}: no run of the first {len(found)} points is done; the first was "
-                              f"{outcome.ended}: {outcome.message}")
+        for first in range(0, evaluations, batch):
+            numbers = range(first, min(first + batch, evaluations))
+            if not all(number in evaluated for number in numbers):
+                earlier = tabulate(problem, [evaluation for number, evaluation in evaluated.items() if number < first])
+                chosen = propose(earlier, len(problem.axes), first, len(numbers), evaluations, search_seed)
+                points = [(number, stage, problem.values(at)) for number, (stage, at) in zip(numbers, chosen)
+                          if number not in evaluated]
+                evaluate(record, points, workers or len(os.sched_getaffinity(0)), keep_runs, show)
+            found = list(evaluated.values())[:batch]
+            if first == 0 and not any(outcome.ended == "done" for one in found for outcome in one.outcomes):
+                outcome = found[0].outcomes[0]
+                raise LatconError(f"{record.directory}: no run of the first {len(found)} points is done; the first was "
+                                  f"{outcome.ended}: {outcome.message}")
+        return Fit(place, problem, tuple(evaluated.values()))
