@@ -45,15 +45,14 @@ def write_page(fit: Fit, path: pathlib.Path) -> pathlib.Path:
     return path
 
 
-def _table(table: pd.DataFrame) -> tuple[list[str], list[tuple[str, list[tuple[str, str]]]]]:
+def _table(table: pd.DataFrame) -> tuple[list[str], list[tuple[str, list[str]]]]:
     """Head and rows for the template."""
     def text(value: object) -> str:
         if not isinstance(value, float):
             return str(value)
         return "not determined" if math.isnan(value) else f"{value:.5g}"
     return (["", *(f"#{name}" for name in table.columns)],
-            [("", [("short", str(index)), *(("number", text(value)) for value in row)])
-             for index, row in zip(table.index, table.itertuples(index=False, name=None))])
+            [("", [str(index), *map(text, row)]) for index, *row in table.itertuples(name=None)])
 
 
 def _png(figure: matplotlib.figure.Figure) -> bytes:
@@ -62,13 +61,9 @@ def _png(figure: matplotlib.figure.Figure) -> bytes:
     return buffer.getvalue()
 
 
-def _figure(width: float, height: float) -> matplotlib.figure.Figure:
-    from matplotlib.figure import Figure
-    return Figure(figsize=(width, height), layout="constrained")
-
-
 def _draw_progress(fit: Fit) -> matplotlib.figure.Figure:
-    figure = _figure(8, 3)
+    from matplotlib.figure import Figure
+    figure = Figure(figsize=(8, 3), layout="constrained")
     axes = figure.subplots()
     done = fit.points[np.isfinite(fit.points["misfit"])]
     for stage in ("sobol", "tpe", "local"):
@@ -86,7 +81,8 @@ def _draw_pairs(fit: Fit) -> matplotlib.figure.Figure:
     keys = list(fit.parameters.index)[:_PAIRED]
     pairs = [(first, second) for second in range(1, len(keys)) for first in range(second)]
     size = max(1, len(keys) - 1)
-    figure = _figure(4.5 * size + 1, 3.8 * size)
+    from matplotlib.figure import Figure
+    figure = Figure(figsize=(4.5 * size + 1, 3.8 * size), layout="constrained")
     grid = figure.subplots(size, size, squeeze=False)
     for axes in grid.flat:
         axes.set_visible(False)

@@ -50,12 +50,21 @@ class Film:
         speeds = [np.linalg.norm(frame.fields["velocity"], axis=1) for frame in motion]
         # Flanks that snap back are much faster than waves; the square root of the speed makes both visible.
         self.scale = PowerNorm(0.5, 0.0, max(np.percentile(speed, 99) for speed in speeds) or 1.0, clip=True)
-        page, box = axes_of_sheet(low, high, self.scale)
+        inches = WIDTH - LEFT - 0.2
+        height = inches * (high - low)[1] / (high - low)[0]
+        page = Page(TOP + height + FOOT + BAR)
+        axes = page.axes(LEFT, TOP, inches, height)
+        axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="x [cm]", ylabel="y [cm]")
+        axes.grid(False)
+        ticks = [tick for tick in MaxNLocator(5).tick_values(0, self.scale.vmax) if tick <= self.scale.vmax]
+        page.colour_bar(ScalarMappable(self.scale, COLOURS), LEFT, page.height - 0.7, inches, 0.16, "speed of the material [m/s]",
+                        extend="max", ticks=ticks)
         axes = Image.fromarray(figure_pixels(page.figure))
         shrink = width / axes.width
         self.width = width
         self.axes = np.asarray(axes.resize((width, round(shrink * axes.height)), Image.Resampling.LANCZOS)).astype(int)
-        left, self.top, right, bottom = (round(shrink * side) for side in box)
+        left, self.top, right, bottom = (
+            round(shrink * PIXELS_PER_INCH * side) for side in (LEFT, TOP, LEFT + inches, TOP + height))
         self.left, self.letters = left, ImageFont.truetype(font_manager.findfont("DejaVu Sans"), round(0.021 * width))
         raster = Raster((low[0], high[0], low[1], high[1]), right - left)
         self.sheets = [(frame.time, raster.draw(mesh, 100 * frame.position, speed, frame.time)[:bottom - self.top])
@@ -82,18 +91,3 @@ class Film:
             draw.text((self.left, self.top - 6), f"{1e3 * time:.2f} ms", fill=shades, font=self.letters, anchor="ls")
             made.append(picture)
         return made
-
-
-def axes_of_sheet(low, high, scale):
-    """Empty axes in cm, and their box: left, top, right, bottom [pixels]."""
-    width = WIDTH - LEFT - 0.2
-    height = width * (high - low)[1] / (high - low)[0]
-    page = Page(TOP + height + FOOT + BAR)
-    axes = page.axes(LEFT, TOP, width, height)
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="x [cm]", ylabel="y [cm]")
-    axes.grid(False)
-    ticks = [tick for tick in MaxNLocator(5).tick_values(0, scale.vmax) if tick <= scale.vmax]
-    page.colour_bar(ScalarMappable(scale, COLOURS), LEFT, page.height - 0.7, width, 0.16, "speed of the material [m/s]", extend="max",
-                    ticks=ticks)
-    corner = np.array((LEFT, TOP))
-    return page, PIXELS_PER_INCH * np.concatenate((corner, corner + (width, height)))

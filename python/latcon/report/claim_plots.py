@@ -13,17 +13,11 @@ from ..files import if_present, read_columns
 ROOT = Path(__file__).resolve().parents[3]
 
 
-def module_of(path):
-    """The module in a file `plots.py`."""
-    spec = importlib.util.spec_from_file_location(f"claim_plots_{path.parent.name}", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-# {name of a claim: its module}
-MODULES = {path.parent.name.replace("_", "-"): module_of(path)
-           for folder in ("claims", "verification/claims") for path in sorted(ROOT.glob(f"{folder}/*/plots.py"))}
+MODULES = {}  # by name of the claim
+for _path in (*sorted(ROOT.glob("claims/*/plots.py")), *sorted(ROOT.glob("verification/claims/*/plots.py"))):
+    _spec = importlib.util.spec_from_file_location(f"claim_plots_{_path.parent.name}", _path)
+    MODULES[_path.parent.name.replace("_", "-")] = importlib.util.module_from_spec(_spec)
+    _spec.loader.exec_module(MODULES[_path.parent.name.replace("_", "-")])
 TABLES = {name: columns for module in MODULES.values() for name, columns in module.TABLES.items()}
 # {name of a claim: its plots}
 PLOTS = {claim: module.PLOTS for claim, module in MODULES.items()}

@@ -21,17 +21,12 @@ def claim_sections(runs, plots):
     entries = shared_rows(runs)
     # {name: (title, statement)} of the claims that the runs checked, in the order in which they are checked
     texts = {**{name: text for run in runs for name, text in run.claims.items()}, "fracture": FRACTURE}
-    return [claim_section(name, entries.get(name, []), runs, plots, texts) for name in claim_order(entries, plots, texts)]
-
-
-def claim_order(entries, plots, texts):
-    """Claims that have rows or plots: failing claims first, then in the order of `texts`, then in that of the rows."""
     made = {name for drawn in plots.values() for name in drawn}
     drawn = [claim for claim, own in PLOTS.items() if any(plot.name in made for plot in own)]
-    names = list(dict.fromkeys([*entries, *drawn]))
-    known = list(texts)
-    return sorted(names, key=lambda name: (not any(check.verdict == "fails" for check, _ in entries.get(name, [])),
-                                           known.index(name) if name in known else len(known)))
+    # Claims that have rows or plots: failing claims first, then in the order of `texts`, then in that of the rows.
+    names = [name for name in [*texts, *entries, *drawn] if name in entries or name in drawn]
+    names = sorted(dict.fromkeys(names), key=lambda name: all(check.verdict != "fails" for check, _ in entries.get(name, [])))
+    return [claim_section(name, entries.get(name, []), runs, plots, texts) for name in names]
 
 
 def shared_rows(runs):
@@ -66,7 +61,7 @@ def claim_section(name, entries, runs, plots, texts):
         "explanation": " ".join([*(texts[name][1:] if name in texts else ()),
                                  *(plot.claimed for plot in PLOTS.get(name, ()) if plot.name in drawn)]),
         "plots": [figure for plot in PLOTS.get(name, ()) for figure in plot_figures(plot, runs, plots)],
-        "head": ["verdict", "quantity", "unit", "#lattice", "#continuum", "#published" if name == "fracture" else "#theory",
+        "head": ["verdict", "~quantity", "unit", "#lattice", "#continuum", "#published" if name == "fracture" else "#theory",
                  "#error", "#tolerance", *["run"] * show_runs],
         "failing": rows[True], "others": rows[False], "is_short": len(rows[False]) <= MOST_OPEN_ROWS,
         "summary": folded + (plural(len(rows[False]), " that does not fail", " that do not fail") if rows[True] else ""),
@@ -84,7 +79,7 @@ def plot_figures(plot, runs, plots):
 
 def claim_row(check, shared, show_runs):
     """One checked quantity."""
-    cells = [("words", superscripts(check.quantity)), ("short", superscripts(check.unit))]
-    cells += [("number", number(value, ".7g")) for value in (check.lattice, check.continuum, check.theory)]
-    cells += [("number", number(check.error, ".2e")), ("number", number(check.tolerance, ".3g"))]
-    return row(check.kind, cells + [("short", ", ".join(shared))] * show_runs, check.word)
+    return row(check.kind, [
+        superscripts(check.quantity), superscripts(check.unit),
+        *(number(value, ".7g") for value in (check.lattice, check.continuum, check.theory)),
+        number(check.error, ".2e"), number(check.tolerance, ".3g"), *[", ".join(shared)] * show_runs], check.word)

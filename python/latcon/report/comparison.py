@@ -4,8 +4,8 @@ import numpy as np
 from ..errors import UnreadableFile
 from ..files import read_json
 from ..quantities import number_text, shown_unit
-from .crack_section import rows_of, thinned
-from .pages import FAILED, has_dygraphs, write_page
+from .crack_section import plot_over_X, thinned
+from .pages import FAILED, has_dygraphs, number, write_page
 from .runs import has_rows, read_motion, read_run
 from .sheet_data import LARGEST_SHEETS, sheet_data, sheet_of
 
@@ -14,16 +14,11 @@ SIDES = ("first", "second")
 
 def quantity_rows(rows):
     """Quantities of both runs, the difference, and the difference over the combined uncertainty."""
-    def value(row, scale, key):
-        return "–" if row[key] is None else number_text(row[key], row.get(f"{key}_uncertainty"), scale=scale)
-
     lines = []
     for row in rows:
         scale, unit = shown_unit(row["unit"])
-        ratio = row["difference_over_uncertainty"]
-        lines.append(("", [("words", row["name"].replace("_", " ")),
-                                *(("number", value(row, scale, key)) for key in (*SIDES, "difference")),
-                                ("number", "–" if ratio is None else f"{ratio:+.1f}"), ("short", unit)]))
+        values = [number_text(row[key], row.get(f"{key}_uncertainty"), scale=scale) for key in (*SIDES, "difference")]
+        lines.append(("", [row["name"].replace("_", " "), *values, number(row["difference_over_uncertainty"], "+.1f"), unit]))
     return lines
 
 
@@ -36,17 +31,7 @@ def paths_plot(runs, names):
     curves = {"X [cm]": 100 * X}
     for name, tip in zip(names, tips):  # X of a tip does not decrease
         curves[f"Y of {name} [mm]"] = 1e3 * np.interp(X, tip["X"], tip["Y"], left=np.nan, right=np.nan)
-    return {"labels": list(curves), "rows": rows_of(curves), "colours": ["--first", "--second"], "dashed": [False, False],
-            "x": "X in the undeformed sheet [cm]", "y": "Y [mm]", "follows": "tip", "window": None}
-
-
-def with_common_ranges(sheets):
-    """The same sheets with colours for the same values; None where there is no sheet."""
-    if None in sheets:
-        return sheets
-    ranges = [sheet.contents["ranges"] for sheet in sheets]
-    common = {name: [min(one[name][0] for one in ranges), max(one[name][1] for one in ranges)] for name in ranges[0]}
-    return [sheet_of({**sheet.contents, "ranges": common}) for sheet in sheets]
+    return plot_over_X(curves, [False, False])
 
 
 def distance_sentence(paths):
@@ -66,8 +51,11 @@ def comparison_page(folder):
         raise UnreadableFile(folder / "compare.json", f"{', '.join(missing)} missing")
     runs = [read_run(folder / comparison[f"{side}_folder"]) for side in SIDES]
     motions = [read_motion(run) for run in runs]
-    sheets = with_common_ranges([None if motion is None else sheet_data(run, motion, LARGEST_SHEETS // 2)
-                                 for run, motion in zip(runs, motions)])
+    sheets = [None if motion is None else sheet_data(run, motion, LARGEST_SHEETS // 2) for run, motion in zip(runs, motions)]
+    if None not in sheets:  # colours for the same values
+        both = [sheet.contents["ranges"] for sheet in sheets]
+        ranges = {name: [min(one[name][0] for one in both), max(one[name][1] for one in both)] for name in both[0]}
+        sheets = [sheet_of({**sheet.contents, "ranges": ranges}) for sheet in sheets]
     names = [run.name if runs[0].name != runs[1].name else comparison[side] for run, side in zip(runs, SIDES)]
     plot = paths_plot(runs, names) if has_dygraphs() else None
     problems = comparison["failed_checks"]
@@ -78,7 +66,7 @@ def comparison_page(folder):
         films=[{"name": name, "side": side, "pattern": comparison["pattern"][side], "run": run.name, "sheet": sheet}
                for name, side, run, sheet in zip(names, SIDES, runs, sheets)],
         quantities=quantity_rows(comparison["quantities"]),
-        entries=[("", [("words", entry["key"]), ("short", entry["first"]), ("short", entry["second"]),
-                            ("short", "" if entry["unit"] == "1" else entry["unit"])]) for entry in comparison["entries"]],
+        entries=[("", [entry["key"], entry["first"], entry["second"], "" if entry["unit"] == "1" else entry["unit"]])
+                 for entry in comparison["entries"]],
         with_viewer=any(sheets), with_plots=plot is not None)
     return folder / "compare.html"

@@ -48,12 +48,15 @@ def measured_sinusoid(run):
     crack = run.crack
     if crack is None or crack["pattern"] != "oscillating" or not crack["wavelength"]:
         return None
-    if None in (crack["window_begin"], crack["window_end"]):
-        return None
-    curve = fit_sinusoid(run.tip["X"], run.tip["Y"], crack["wavelength"], crack["window_begin"], crack["window_end"])
-    if curve is None or crack["amplitude"] is None:
-        return curve
-    return replace(curve, amplitude=crack["amplitude"])
+    window = measured_window(run)
+    curve = window and fit_sinusoid(run.tip["X"], run.tip["Y"], crack["wavelength"], *window)
+    return curve if curve is None or crack["amplitude"] is None else replace(curve, amplitude=crack["amplitude"])
+
+
+def measured_window(run):
+    """Both ends of the window of the measurement, X [m]; None if there is none."""
+    window = [(run.crack or {}).get(f"window_{end}") for end in ("begin", "end")]
+    return None if None in window else window
 
 
 def draw_crack_path(run, path):
@@ -99,10 +102,9 @@ def draw_crack_path(run, path):
 
 def draw_measurement(axes, run):
     """Draws the window of the measurement, and the sinusoid of an oscillating crack."""
-    crack = run.crack
-    if crack is None or None in (crack["window_begin"], crack["window_end"]):
+    if (window := measured_window(run)) is None:
         return
-    begin, end = crack["window_begin"], crack["window_end"]
+    crack, (begin, end) = run.crack, window
     if end > begin:
         axes.axvspan(100 * begin, 100 * end, color=GREY, alpha=0.15, linewidth=0, label="measured window")
     curve = measured_sinusoid(run)

@@ -3,7 +3,7 @@ import numpy as np
 from markupsafe import Markup
 
 from ..quantities import number_text
-from .crack_path import measured_sinusoid
+from .crack_path import measured_sinusoid, measured_window
 from .pages import first_sentence, has_dygraphs, superscripts
 from .pictures import SHARES, energy_shares
 from .runs import has_rows
@@ -107,9 +107,8 @@ def near_tip_rows(near_tip):
     """Samples, reason and rows of near_tip.json; no samples if nothing could be measured; None for None."""
     if near_tip is None:
         return None
-    rows = [("", [("short", label), ("number", "–" if near_tip[name] is None else number_text(
-        near_tip[name], near_tip.get(f"{name}_uncertainty"), scale=scale)), ("short", superscripts(unit)), ("words", meaning)])
-        for name, label, unit, scale, meaning in QUANTITIES if name in near_tip]
+    rows = [("", [label, number_text(near_tip[name], near_tip.get(f"{name}_uncertainty"), scale=scale), superscripts(unit), meaning])
+            for name, label, unit, scale, meaning in QUANTITIES if name in near_tip]
     return {"samples": near_tip.get("samples") or 0, "reason": near_tip["reason"], "rows": rows}
 
 
@@ -122,17 +121,18 @@ def path_plot(run):
         return None
     tip = thinned(run.tip)
     curves = {"X [cm]": 100 * tip["X"], "Y of the tip [mm]": 1e3 * tip["Y"]}
-    curve = measured_sinusoid(run)
-    crack = run.crack or {}
-    window = [crack.get("window_begin"), crack.get("window_end")]
+    curve, window = measured_sinusoid(run), measured_window(run)
     if curve is not None:
         inside = (tip["X"] >= window[0]) & (tip["X"] <= window[1])
         curves["measured sinusoid [mm]"] = np.where(inside, 1e3 * curve(tip["X"]), np.nan)
-    return {
-        "labels": list(curves), "rows": rows_of(curves), "colours": ["--first", "--second"][:len(curves) - 1],
-        "dashed": [False, True][:len(curves) - 1], "x": "X in the undeformed sheet [cm]", "y": "Y [mm]", "follows": "tip",
-        "window": None if None in window or window[1] <= window[0] else [100 * end for end in window],
-    }
+    return plot_over_X(curves, [False, True], [100 * end for end in window] if window and window[1] > window[0] else None)
+
+
+def plot_over_X(curves, dashed, window=None):
+    """Data of a plot of one or two paths."""
+    n = len(curves) - 1
+    return {"labels": list(curves), "rows": rows_of(curves), "colours": ["--first", "--second"][:n], "dashed": dashed[:n],
+            "x": "X in the undeformed sheet [cm]", "y": "Y [mm]", "follows": "tip", "window": window}
 
 
 def energy_plot(run):
@@ -143,11 +143,9 @@ def energy_plot(run):
     released, shares = energy_shares(energy)
     curves = {"t [ms]": 1e3 * energy["t"], "released [J/m]": released}
     curves.update({f"{SHARES[name][0]} [J/m]": values for name, values in shares})
-    return {
-        "labels": list(curves), "rows": rows_of(curves), "colours": ["--text", *(f"--{name}" for name, _ in shares)],
-        "dashed": [True] + [False] * len(shares), "stacked": 2, "x": "time [ms]", "y": "energy [J/m]", "follows": "time",
-        "window": None,
-    }
+    return {"labels": list(curves), "rows": rows_of(curves), "colours": ["--text", *(f"--{name}" for name, _ in shares)],
+            "dashed": [True] + [False] * len(shares), "stacked": 2, "x": "time [ms]", "y": "energy [J/m]", "follows": "time",
+            "window": None}
 
 
 def thinned(table):

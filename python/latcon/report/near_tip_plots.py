@@ -45,7 +45,7 @@ def read_near_tip(path):
     return NearTip(X, Y, reference + fields["displacement"], fields["velocity"], fields["cauchy_stress"], fields["occupancy"], samples)
 
 
-def velocity_picture(vti_path, out_png, title="velocity around the tip", crack_speed=None):
+def velocity_picture(vti_path, out_png, crack_speed=None):
     """Draws velocity arrows on the colours of v_x, and outlines the zone of backward motion ahead of the tip.
 
     crack_speed: laboratory speed [m/s]; without it the outline is where v_x changes sign
@@ -71,11 +71,11 @@ def velocity_picture(vti_path, out_png, title="velocity around the tip", crack_s
                          scale_units="width")
     axes.quiverkey(arrows, 0.86, 1.025, fastest, f"{fastest:.3g} m/s", labelpos="E", fontproperties={"size": 9})
     what = f"green: v_x < {limit:.2g} m/s ahead of the tip" if goes_back.any() else "no backward motion ahead of the tip"
-    finish(page, axes, mesh, tip, title, f"v_x [m/s] in the laboratory, along the crack; {what}")
+    finish(page, axes, mesh, tip, "velocity", f"v_x [m/s] in the laboratory, along the crack; {what}")
     save(page.figure, out_png)
 
 
-def opening_stress_picture(vti_path, out_png, title="opening stress around the tip"):
+def opening_stress_picture(vti_path, out_png):
     """Draws filled contours of the Cauchy stress sigma_yy."""
     tip = read_near_tip(vti_path)
     stress = 1e-6 * tip.cauchy_stress[..., 1, 1]
@@ -85,7 +85,7 @@ def opening_stress_picture(vti_path, out_png, title="opening stress around the t
     cells = triangulation(tip)
     mesh = axes.tricontourf(cells, np.nan_to_num(stress).ravel(), levels=levels, cmap=COLOUR_MAP, extend="both")
     axes.tricontour(cells, np.nan_to_num(stress).ravel(), levels=levels, colors="white", linewidths=0.35)
-    finish(page, axes, mesh, tip, title, "Cauchy stress across the crack [MPa], force per current length and "
+    finish(page, axes, mesh, tip, "opening stress", "Cauchy stress across the crack [MPa], force per current length and "
            "undeformed thickness")
     save(page.figure, out_png)
 
@@ -128,5 +128,5 @@ def axes_around(tip):
 def finish(page, axes, mesh, tip, title, label):
     """Adds tip, title and colour bar."""
     axes.plot(0, 0, "+", color=BLACK, markersize=11, markeredgewidth=1.6)
-    axes.set_title(f"{title}: mean of {tip.samples} samples, current configuration")
+    axes.set_title(f"{title} around the tip: mean of {tip.samples} samples, current configuration")
     page.colour_bar(mesh, LEFT, page.height - 0.62, WIDTH - LEFT - 0.25, 0.14, label)

@@ -37,8 +37,8 @@ def plural(count, one, many):
 
 
 def row(verdict, cells, word=None):
-    """A table row in the colour of its verdict, "" for none. The first cell is the verdict, or `word`; cells are (class, text)."""
-    return verdict, [("verdict", f"{MARKS[verdict]} {word or verdict}"), *cells]
+    """A table row in the colour of its verdict: (verdict, cells). The first cell is the verdict, or `word`."""
+    return verdict, [f"{MARKS[verdict]} {word or verdict}", *cells]
 
 
 def number(value, form):
@@ -56,19 +56,10 @@ def first_sentence(text):
     return re.split(r"(?<=[.:])\s", text, maxsplit=1)[0]
 
 
-def _lines(text):
-    return Markup("<br>").join(text.split("\n")) if not isinstance(text, Markup) else text
-
-
 def _data_url(picture):
     """Data URL that embeds a picture, a file or the bytes of a PNG, in the page."""
     kind, data = ("png", picture) if isinstance(picture, bytes) else (picture.suffix[1:], picture.read_bytes())
     return f"data:image/{kind};base64,{base64.b64encode(data).decode('ascii')}"
-
-
-def _json(value):
-    """JSON for a script element."""
-    return Markup(json.dumps(value, separators=(",", ":")).replace("</", "<\\/"))
 
 
 def _asset(name):
@@ -79,5 +70,8 @@ def _asset(name):
 
 _ENVIRONMENT = Environment(loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
                            lstrip_blocks=True)
-_ENVIRONMENT.globals["asset"] = _asset
-_ENVIRONMENT.filters.update({"data_url": _data_url, "first_sentence": first_sentence, "json": _json, "lines": _lines})
+_ENVIRONMENT.globals.update({"asset": _asset, "zip": zip})
+_ENVIRONMENT.filters.update({
+    "data_url": _data_url, "first_sentence": first_sentence,
+    "json": lambda value: Markup(json.dumps(value, separators=(",", ":")).replace("</", "<\\/")),  # of a script element
+    "lines": lambda text: text if isinstance(text, Markup) else Markup("<br>").join(text.split("\n"))})

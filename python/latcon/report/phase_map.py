@@ -1,4 +1,5 @@
 """Map of patterns over two quantities: cells coloured by pattern, boundaries, contours of a third quantity."""
+from collections import namedtuple
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,15 +31,8 @@ class Cell:
         return None if pattern == "undecided" else pattern
 
 
-@dataclass(frozen=True)
-class Bracket:
-    """Two points on a line along one axis, between which the pattern changes."""
-
-    axis: int  # 0: along x, 1: along y
-    across: float  # the other coordinate
-    low: float
-    high: float
-    patterns: tuple  # at low and at high
+# Two points on a line along one axis (0: x, 1: y) with the other coordinate `across`, and the patterns there, which differ.
+Bracket = namedtuple("Bracket", "axis across low high patterns")
 
 
 def draw_phase_map(cells, x_label, y_label, path, contour_label=None, height=5.2):
@@ -70,7 +64,9 @@ def draw_phase_map(cells, x_label, y_label, path, contour_label=None, height=5.2
     axes.grid(False)
     if contour_label and draw_contours(axes, xs, ys, values):
         axes.set_title(f"contours: {contour_label}", fontsize=10)
-    handles = legend(cells) + draw_brackets(axes, brackets(cells))
+    found = {pattern for cell in cells for pattern in cell.patterns}
+    order = [pattern for pattern in COLOURS if pattern in found] + sorted(found - set(COLOURS))
+    handles = [Patch(facecolor=shaded(pattern), label=pattern) for pattern in order] + draw_brackets(axes, brackets(cells))
     for points, style, label in ((mixed, {"marker": "o", "color": BLACK}, "seeds disagree"),
                                  (unmeasured, {"marker": "x", "color": GREY}, "not measured")):
         if points:
@@ -157,13 +153,6 @@ def fill(axes, x, y, patterns):
         axes.add_patch(Rectangle((left, y[0]), width, y[1] - y[0], facecolor=shaded(pattern),
                                  edgecolor="white", linewidth=0.6))
         left += width
-
-
-def legend(cells):
-    """Legend entries of the patterns that occur, in a fixed order."""
-    found = {pattern for cell in cells for pattern in cell.patterns}
-    order = [pattern for pattern in COLOURS if pattern in found] + sorted(found - set(COLOURS))
-    return [Patch(facecolor=shaded(pattern), label=pattern) for pattern in order]
 
 
 def draw_contours(axes, xs, ys, values):

@@ -174,11 +174,6 @@ LEFT, GAP, TOP, FOOT, BAR = 0.75, 0.85, 0.4, 0.6, 0.75  # of the fields: margins
 PIXELS = 160  # of the fields [1/in]
 
 
-def has_fields(frame):
-    """Returns whether a frame has the fields that draw_fields() needs."""
-    return {"velocity", "cauchy_stress", "damage"} <= set(frame.fields)
-
-
 def draw_fields(frame, path):
     """Draws the three fields of a frame."""
     mesh = Mesh(frame)

@@ -21,11 +21,10 @@ class Mesh:
         sorted_keys = keys[order]
         self.bond_end = np.full(len(keys), np.inf)  # time at which it breaks [s]
         if broken is not None and len(keys):
-            point = {site: place for place, site in enumerate(frame.fields["site"].tolist())}
-            ends = np.array([(point.get(a, -1), point.get(b, -1)) for a, b in
-                             zip(broken["site"].astype(int).tolist(), broken["other_site"].astype(int).tolist())])
-            known = (ends >= 0).all(axis=1) if len(ends) else np.empty(0, dtype=bool)
-            found = find(sorted_keys, bond_keys(ends[known], count)) if known.any() else np.empty(0, dtype=int)
+            sites = np.argsort(frame.fields["site"])
+            ends = find(frame.fields["site"][sites], np.column_stack((broken["site"], broken["other_site"])).astype(int))
+            known = (ends >= 0).all(axis=1)
+            found = find(sorted_keys, bond_keys(sites[ends[known]], count))
             self.bond_end[order[found[found >= 0]]] = broken["t"][known][found >= 0]
         length = np.linalg.norm(frame.reference[self.bonds[:, 0]] - frame.reference[self.bonds[:, 1]], axis=1)
         nearest = length < 1.3 * length.min() if len(length) else np.empty(0, dtype=bool)

@@ -14,7 +14,7 @@ from .crack_path import draw_crack_path
 from .crack_section import crack_section, pattern_phrase
 from .near_tip_plots import opening_stress_picture, velocity_picture
 from .pages import FAILED, has_dygraphs, number, plural, row, superscripts, write_page
-from .pictures import draw_energy, draw_fields, draw_sheet, has_fields
+from .pictures import draw_energy, draw_fields, draw_sheet
 from .runs import Unreadable, find_runs, has_rows, read_last_frame, read_motion
 from .sheet_data import LARGEST_SHEETS, sheet_data
 from .summary import comparisons, percent, ratio_text, tallies, tally_of, text_summary, unpublished
@@ -38,7 +38,7 @@ def draw_pictures(run, motion, folder):
     frame = read_last_frame(run.folder)
     if frame is not None:
         draw_sheet(frame, run.input_number("Fracture/breaking stretch"), place("sheet.png"))
-        if has_fields(frame):
+        if {"velocity", "cauchy_stress", "damage"} <= set(frame.fields):
             draw_fields(frame, place("sheet_fields.png"))
     if has_rows(run.tip, 2):
         draw_crack_path(run, place("crack_path.png"))
@@ -51,16 +51,6 @@ def draw_pictures(run, motion, folder):
     return drawn
 
 
-def draw_plots(run, folder):
-    """Plots in a folder of the tables that claims wrote in a run: {plot name: (PNG file, error metrics)}."""
-    made = {}
-    for plot in all_plots():
-        if plot.name in run.tables:
-            path = folder / f"{plot.name}.png"
-            made[plot.name] = (path, plot.write(run.tables, path))
-    return made
-
-
 def report(folder, output_dir=None, quiet=False, animated=False):
     """Draws and writes the report of a folder.
 
@@ -69,6 +59,7 @@ def report(folder, output_dir=None, quiet=False, animated=False):
     """
     output = Path(output_dir or folder)
     found, unreadable = find_runs(folder)
+    # By folder of the run: {name in CAPTIONS: (picture, still or None)}, {plot: (PNG, error metrics)}, data of the viewer or None.
     runs, pictures, plots, sheets = [], {}, {}, {}
     most = LARGEST_SHEETS // max(1, sum(run.is_fracture for run in found))
     for run in found:
@@ -78,12 +69,23 @@ def report(folder, output_dir=None, quiet=False, animated=False):
             place.mkdir(parents=True, exist_ok=True)
             pictures[run.folder] = draw_pictures(run, motion if animated else None, place) if run.is_fracture else {}
             sheets[run.folder] = None if motion is None else sheet_data(run, motion, most)
-            plots[run.folder] = draw_plots(run, place)
+            pngs = {plot: place / f"{plot.name}.png" for plot in all_plots() if plot.name in run.tables}
+            plots[run.folder] = {plot.name: (png, plot.write(run.tables, png)) for plot, png in pngs.items()}
             runs.append(run)
         except UnreadableFile as error:
             unreadable.append(Unreadable(run.name, run.folder, str(error)))
-    write_page(output / "report.html", "report.html",
-               **contents(folder.resolve().name, runs, pictures, plots, sheets, unreadable, animated))
+    versions = sorted({f"latcon {run.info['version']}" for run in runs if run.info and "version" in run.info})
+    several = sum(run.crack is not None for run in runs) > 1
+    cracks = [crack_section(run, position, pictures[run.folder], sheets[run.folder], animated)
+              for position, run in enumerate(runs) if run.is_fracture]
+    write_page(
+        output / "report.html", "report.html", title=folder.resolve().name, versions=", ".join(versions) or "latcon",
+        result=banner(runs, unreadable), cracks=cracks, key_rows=key_rows(runs, several),
+        key_head=["verdict", *["run"] * several, "~quantity", "#latcon", "#paper", "unit", "#difference"],
+        claims=claim_sections(runs, plots), counts=counts(runs),
+        inputs=[{"name": run.name, "facts": facts(run), "case": run.case_text, "info": None if run.info is None else json.dumps(
+            run.info, indent=2, ensure_ascii=False)} for run in runs],
+        with_plots=has_dygraphs() and bool(cracks), with_viewer=any(sheet is not None for sheet in sheets.values()))
     for one in unreadable:
         print(f"error: {one.problem}", file=sys.stderr)
     if not quiet:
@@ -95,29 +97,7 @@ def report(folder, output_dir=None, quiet=False, animated=False):
     return 3 if any(c.verdict == "fails" for run in runs for c in run.checks) else 0
 
 
-def contents(title, runs, pictures, plots, sheets, unreadable=(), animated=False):
-    """Values of the template.
-
-    animated: whether animations were asked for. unreadable: runs that cannot be read
-    pictures: pictures of cracks, {folder of a run: {name of crack_section.CAPTIONS: (picture, still for print or None)}}
-    plots: plots of claims, {folder of a run: {plot name: (PNG file, error metrics)}}
-    sheets: viewer data of cracks (sheet_data.py), {folder of a run: data or None}
-    """
-    versions = sorted({f"latcon {run.info['version']}" for run in runs if run.info and "version" in run.info})
-    several = sum(run.crack is not None for run in runs) > 1
-    cracks = [crack_section(run, position, pictures.get(run.folder, {}), sheets.get(run.folder), animated)
-              for position, run in enumerate(runs) if run.is_fracture]
-    return {
-        "title": title, "versions": ", ".join(versions) or "latcon", "result": banner(runs, unreadable), "cracks": cracks,
-        "key_head": ["verdict", *(["run"] if several else []), "quantity", "#latcon", "#paper", "unit", "#difference"],
-        "key_rows": key_rows(runs, several), "claims": claim_sections(runs, plots), "counts": counts(runs),
-        "inputs": [{"name": run.name, "facts": facts(run), "case": run.case_text, "info": None if run.info is None else json.dumps(
-            run.info, indent=2, ensure_ascii=False)} for run in runs],
-        "with_plots": has_dygraphs() and bool(cracks), "with_viewer": any(sheet is not None for sheet in sheets.values()),
-    }
-
-
-def banner(runs, unreadable=()):
+def banner(runs, unreadable):
     """The overall verdict: (class, text, most important notes)."""
     checks = [check for run in runs for check in run.checks]
     total = tally_of("", checks).count
@@ -157,12 +137,11 @@ def counts(runs):
         link = Markup('<a href="#run-{}">{}</a>').format(position, run.name)
         for tally in tallies(run):
             rows.append(row(tally.kind, [
-                ("short", link), ("short", Markup('<a href="#claim-{0}">{0}</a>').format(tally.claim)),
-                *(("number", str(tally.count[v])) for v in ("holds", "fails", "reported")),
-                ("number", ratio_text(tally.worst))], WORDS[tally.kind]))
+                link, Markup('<a href="#claim-{0}">{0}</a>').format(tally.claim),
+                *(str(tally.count[v]) for v in ("holds", "fails", "reported")), ratio_text(tally.worst)], WORDS[tally.kind]))
         if not run.checks:
             word = "reported" if run.state == "complete" else run.state
-            rows.append(row(word, [("short", link), ("short", "none"), *[("number", "–")] * 4]))
+            rows.append(row(word, [link, "none", *"–" * 4]))
     return rows
 
 
@@ -189,12 +168,8 @@ def facts(run):
 
 def key_rows(runs, several):
     """Measured values of the cracks, with published values where there are any; with names if there are several runs."""
-    rows = [row(c.check.kind, [
-        *([("short", run.name)] if several else []), ("words", superscripts(c.quantity)),
-        ("number", "not measured" if c.measured is None else number_text(c.measured, c.uncertainty)),
-        ("number", number(c.published, ".4g")), ("short", superscripts(c.unit)), ("number", percent(c.difference))],
-        c.check.word) for run in runs for c in comparisons(run)]
-    return rows + [row("reported", [
-        *([("short", run.name)] if several else []), ("words", superscripts(quantity)),
-        ("number", number_text(value, uncertainty)), ("number", "–"), ("short", unit), ("number", "–")], "measured")
-        for run in runs for quantity, unit, value, uncertainty in unpublished(run)]
+    return [row(c.check.kind if c.check else "reported", [
+        *[c.run.name] * several, superscripts(c.quantity),
+        "not measured" if c.measured is None else number_text(c.measured, c.uncertainty), number(c.published, ".4g"),
+        superscripts(c.unit), percent(c.difference) if c.check else "–"], c.check.word if c.check else "measured")
+        for find in (comparisons, unpublished) for run in runs for c in find(run)]

@@ -146,13 +146,17 @@ def find_runs(folder):
 
 
 def read_run(folder):
-    """Reads all files of a run except its fields."""
-    rows, info = if_present(read_rows, folder / "results.json"), if_present(read_json, folder / "run.json")
-    verified = not (info or {}).get("skip_verification")
+    """Reads all files of a run except its fields. The verdicts of rows must follow from their numbers."""
+    results = folder / "results.json"
+    rows, info = if_present(read_rows, results), if_present(read_json, folder / "run.json")
+    checks = [Check(**row, verified=not (info or {}).get("skip_verification")) for row in rows or []]
+    for number, check in enumerate(checks, start=1):
+        if check.verdict != ("reported" if check.tolerance is None else "holds" if check.ratio <= 1 else "fails"):
+            raise UnreadableFile(results, f"row {number} of \"claims\": the verdict {check.verdict!r} contradicts its numbers")
     return Run(
         name=folder.resolve().name,
         folder=folder,
-        checks=read_checks(folder / "results.json", rows or [], verified),
+        checks=checks,
         has_results=rows is not None,
         info=info,
         case_text=if_present(read_text, folder / "case.prm"),
@@ -173,15 +177,6 @@ def read_energy(path):
     if text is None or text.startswith(CONTINUUM_ENERGIES):
         return None
     return if_present(read_columns, path, ("t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance"))
-
-
-def read_checks(path, rows, verified):
-    """Checks of the rows of results.json, whose verdicts must follow from their numbers."""
-    checks = [Check(**row, verified=verified) for row in rows]
-    for number, check in enumerate(checks, start=1):
-        if check.verdict != ("reported" if check.tolerance is None else "holds" if check.ratio <= 1 else "fails"):
-            raise UnreadableFile(path, f"row {number} of \"claims\": the verdict {check.verdict!r} contradicts its numbers")
-    return checks
 
 
 def read_claims(path):
@@ -239,12 +234,9 @@ def read_motion(run):
         return None
     whole = read_sheet(sheets[0][1], sheets[0][0])
     mesh = Mesh(whole, run.broken)
-    return Motion(mesh, whole, [read_reduced_frame(path, time, mesh) for time, path in frames])
-
-
-def read_reduced_frame(path, time, mesh):
-    """Reads a frame without bonds, with the sites of the mesh."""
-    frame = read_frame(path, time, FIELDS)
-    if "velocity" not in frame.fields or len(frame.position) <= mesh.bonds.max(initial=0):
-        raise UnreadableFile(path, "not a frame of the motion of this sheet: velocities or sites are missing")
-    return frame
+    motion = Motion(mesh, whole, [])
+    for time, path in frames:
+        motion.frames.append(read_frame(path, time, FIELDS))
+        if "velocity" not in motion.frames[-1].fields or len(motion.frames[-1].position) <= mesh.bonds.max(initial=0):
+            raise UnreadableFile(path, "not a frame of the motion of this sheet: velocities or sites are missing")
+    return motion

@@ -72,6 +72,12 @@ def contents(run, motion, frames):
                for frame in (frames[0], frames[-1])]
     breaking = run.input_number("Fracture/breaking stretch")
     low, high = np.percentile(np.concatenate(stretch), (1, 99)) if len(length) else (1.0, 2.0)
+    # Bonds of each site before any broke: its bonds in the frame over the undamaged fraction.
+    left = np.bincount(mesh.bonds.ravel(), minlength=len(whole.reference))
+    damage = whole.fields.get("damage", np.zeros(len(left)))
+    # Extent over all frames, without fragments that flew off.
+    ends = [choose(np.percentile(positions, percentage, axis=2), axis=0) for choose, percentage in ((np.min, 0.1), (np.max, 99.9))]
+    box = np.minimum(ends[0], positions[0].min(axis=1)), np.maximum(ends[1], positions[0].max(axis=1))
     return {
         "times": times.tolist(),
         "spacing": spacing,
@@ -81,12 +87,12 @@ def contents(run, motion, frames):
         "speed": packed(np.round(speeds / speed_quantum)),
         "reference": deflated(whole.reference.T.astype("<f8")),
         "site": packed(whole.fields.get("site", np.arange(len(whole.reference)))),
-        "degree": packed(bonds_at_first(whole, mesh)),
+        "degree": packed(np.where(damage < 1, np.round(left / np.where(damage < 1, 1 - damage, 1)), 1)),
         "bonds": packed(mesh.bonds.T),
         "bondEnd": packed(np.searchsorted(times, mesh.bond_end)),
         "triangles": packed(mesh.triangles.T),
         "triangleEnd": packed(np.searchsorted(times, mesh.triangle_end)),
-        "box": box_of(positions),
+        "box": np.column_stack(box).tolist(),
         "tip": tip_points(run.tip, times, whole.reference),
         "breaking": breaking,
         "ranges": {"stretch": [float(low), max(float(breaking or high), float(low) + 1e-3)],
@@ -97,20 +103,6 @@ def contents(run, motion, frames):
                                            .astype(np.uint8).tobytes()).decode("ascii")
                     for name, (colours, low, high) in COLOURS.items()},
     }
-
-
-def box_of(positions):
-    """Extent of the sheet along x and y over all frames, without fragments that flew off [m]."""
-    low, high = np.percentile(positions, 0.1, axis=2).min(axis=0), np.percentile(positions, 99.9, axis=2).max(axis=0)
-    low, high = np.minimum(low, positions[0].min(axis=1)), np.maximum(high, positions[0].max(axis=1))
-    return np.column_stack((low, high)).tolist()
-
-
-def bonds_at_first(frame, mesh):
-    """Number of bonds of each site before any broke: its bonds in the frame over the undamaged fraction."""
-    degree = np.bincount(mesh.bonds.ravel(), minlength=len(frame.reference))
-    damage = frame.fields.get("damage", np.zeros(len(degree)))
-    return np.where(damage < 1, np.round(degree / np.where(damage < 1, 1 - damage, 1)), 1)
 
 
 def tip_points(tip, times, reference):

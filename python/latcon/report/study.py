@@ -79,15 +79,8 @@ def draw_run(seed, folder, most, kinds=tuple(RUN_PICTURES)):
 
 
 def study_page(folder):
-    """Draws the pictures and writes the page. Returns its path."""
-    study = read_study(folder)
-    write_page(folder / "study.html", "study.html", **contents(study))
-    return folder / "study.html"
-
-
-def contents(study):
-    """Draws all pictures for which the runs have data, and returns the values of the template."""
-    folder = study.folder / "pictures"
+    """Draws all pictures for which the runs have data, and writes the page. Returns its path."""
+    study, page, folder = read_study(folder), folder / "study.html", folder / "pictures"
     folder.mkdir(exist_ok=True)
     claims = []
     for number, claim in enumerate(study.claims):
@@ -98,22 +91,22 @@ def contents(study):
     shown = [(name, next((seed for seed in study.runs[name][2] if seed.is_measured), None))
              for name in study.document["pictures"] if name in study.runs]
     speeds = folder / "speeds.png"
-    return {
+    write_page(page, "study.html", **{
         "title": study.document["title"], "with_viewer": False, "with_plots": False,
         "facts": facts(study), "result": banner(study), "overview": draw_overview(study, folder),
         "summary": [row(CLAIM_KINDS[claim["verdict"]],
-                        [("words", Markup('<a href="#claim-{}">{}</a>').format(number, claim["claim"])),
-                         *(("number", str(count)) for count in counts(claim["rows"]).values())], claim["verdict"])
+                        [Markup('<a href="#claim-{}">{}</a>').format(number, claim["claim"]),
+                         *map(str, counts(claim["rows"]).values())], claim["verdict"])
                     for number, claim in enumerate(study.claims)],
         "claims": claims, "speeds": speeds if draw_speeds(study, speeds) else None,
         "pictures": [(name, seed.seed, draw_run(seed, folder, LARGEST_PICTURE)) for name, seed in shown if seed],
         "captions": RUN_PICTURES,
-        "runs": [("", [("short", name), ("words", about),
-                       ("words", "\n".join(f"{key} = {value}" for key, value in changed.items()) or "–"),
-                       ("short", ", ".join(str(seed.seed) for seed in seeds))])
+        "runs": [("", [name, about, "\n".join(f"{key} = {value}" for key, value in changed.items()) or "–",
+                       ", ".join(str(seed.seed) for seed in seeds)])
                  for name, (about, changed, seeds) in study.runs.items()],
         "measured": measured_table(study, MEASURED), "near_tip": measured_table(study, NEAR_TIP), "settings": settings(study.document),
-    }
+    })
+    return page
 
 
 def facts(study):
@@ -162,15 +155,14 @@ def banner(study):
 def claim_row(judged):
     """One row of a claim, lists with one entry per line."""
     return row(KINDS[judged["verdict"]], [
-        ("short", "\n".join(judged["runs"])), ("short", judged["quantity"]), ("words", judged["expected"] or "–"),
-        ("words", judged["measured"].replace("; ", "\n")), ("words", judged["note"].replace("; ", "\n"))], judged["verdict"])
+        "\n".join(judged["runs"]), judged["quantity"], judged["expected"] or "–", judged["measured"].replace("; ", "\n"),
+        judged["note"].replace("; ", "\n")], judged["verdict"])
 
 
 def measured_table(study, columns):
     """Head and rows of a table: a line per case with its pattern and the means of some quantities."""
-    return ["run", "pattern", *(f"#{head}" for *_, head in columns)], [("", [
-        ("short", name), ("words", pattern_text(seeds)),
-        *(("number", value_text(mean_of(seeds, quantity), scale)) for quantity, scale, _ in columns)])
+    return ["run", "~pattern", *(f"#{head}" for *_, head in columns)], [("", [
+        name, pattern_text(seeds), *(value_text(mean_of(seeds, quantity), scale) for quantity, scale, _ in columns)])
         for name, (_, _, seeds) in study.runs.items()]
 
 

@@ -1,4 +1,6 @@
 """Plots of a study: paths of cracks, quantities along a sweep, speeds by pattern; names and customary units of quantities."""
+import itertools
+
 import numpy as np
 from matplotlib.lines import Line2D
 
@@ -58,7 +60,7 @@ def sweeps_of(rows):
     sweeps = {}
     for row in rows:
         if row["against"]:
-            sweeps.setdefault((row["against"], tuple(row["runs"])), []).append(row)
+            sweeps.setdefault((row["against"], *row["runs"]), []).append(row)
     return list(sweeps.values())
 
 
@@ -71,20 +73,12 @@ CONTOURS = ("wavelength", "speed_lagrangian")  # of the map of patterns: the fir
 DECADES = 30.0  # ratio of the largest to the smallest abscissa above which the axis is logarithmic
 
 
-class Panels:
-    """Axes of equal size in rows and columns, each with room for a title and labels."""
-
-    def __init__(self, count, columns, height, top=0.1):
-        self.columns, self.height, self.top = columns, height, top
-        rows = -(-count // columns)
-        self.width = (WIDTH - LEFT - RIGHT - GAP * (columns - 1)) / columns
-        self.pitch = height + 0.85
-        self.page = Page(top + rows * self.pitch)
-
-    def axes(self, number):
-        row, column = divmod(number, self.columns)
-        return self.page.axes(LEFT + column * (self.width + GAP), self.top + 0.3 + row * self.pitch, self.width,
-                              self.height)
+def panels(count, columns, height):
+    """A figure of axes of equal size in rows and columns, each with room for a title and labels: (figure, [axes, ...])."""
+    width, pitch = (WIDTH - LEFT - RIGHT - GAP * (columns - 1)) / columns, height + 0.85
+    page = Page(0.1 + -(-count // columns) * pitch)
+    return page.figure, [page.axes(LEFT + number % columns * (width + GAP), 0.4 + number // columns * pitch, width, height)
+                         for number in range(count)]
 
 
 def draw_map(study, path):
@@ -97,9 +91,9 @@ def draw_map(study, path):
     means = {quantity: [mean_of(seeds, quantity) for _, _, seeds in study.runs.values()] for quantity in CONTOURS}
     quantity = next((name for name in CONTOURS if any(means[name])), CONTOURS[0])
     scale, label = quantity_axis(quantity, study.document["units"][quantity])
-    cells = [Cell(x_unit * x, y_unit * y, patterns_of(seeds), scale * mean.mean if mean else None, study.levels[name])
-             for x, y, (name, (_, _, seeds)), mean in zip(varied[0]["values"], varied[1]["values"], study.runs.items(),
-                                                          means[quantity])]
+    cells = [Cell(x_unit * x, y_unit * y, patterns_of(seeds), scale * mean.mean if mean else None, run.get("level", 0))
+             for x, y, run, (_, _, seeds), mean in zip(varied[0]["values"], varied[1]["values"], study.document["runs"],
+                                                       study.runs.values(), means[quantity])]
     if not draw_phase_map(cells, x_label, y_label, path, label):
         return None
     return (f"Patterns over {varied[0]['entry']} and {varied[1]['entry']}. A cell whose seeds disagree is divided between "
@@ -111,25 +105,22 @@ def draw_paths(study, names, path):
     """Draws paths of the tip, one panel per run with its seeds superimposed. @return whether there are any"""
     tables = {name: [(seed, if_present(read_columns, seed.folder / "crack.csv", ("X", "Y"))) for seed in study.runs[name][2]]
               for name in names}
-    paths = {name: [(seed, (tip["X"], tip["Y"])) for seed, tip in found if tip is not None and len(tip["X"]) > 1]
-             for name, found in tables.items()}
-    paths = {name: ways for name, ways in paths.items() if ways}
+    paths = {name: ways for name, found in tables.items()
+             if (ways := [(seed, tip) for seed, tip in found if tip is not None and len(tip["X"]) > 1])}
     if not paths:
         return False
-    everything = [way for ways in paths.values() for _, way in ways]
-    right = 105 * max(X.max() for X, _ in everything)
-    half = 115 * max(max(np.abs(Y).max() for _, Y in everything), 1e-3)
+    tips = [tip for ways in paths.values() for _, tip in ways]
+    right = 105 * max(tip["X"].max() for tip in tips)
+    half = 115 * max(max(np.abs(tip["Y"]).max() for tip in tips), 1e-3)
     columns = min(2, len(paths))
-    panels = Panels(len(paths), columns, 1.5 if columns == 2 else 2.4)
-    for number, (name, ways) in enumerate(paths.items()):
-        axes = panels.axes(number)
-        for place, (seed, (X, Y)) in enumerate(ways):
-            axes.plot(100 * X, 100 * Y, color=SEED_COLOURS[place % len(SEED_COLOURS)], linewidth=1.1,
-                      label=f"seed {seed.seed}")
+    figure, grid = panels(len(paths), columns, 1.5 if columns == 2 else 2.4)
+    for axes, (name, ways) in zip(grid, paths.items()):
+        for (seed, tip), colour in zip(ways, itertools.cycle(SEED_COLOURS)):
+            axes.plot(100 * tip["X"], 100 * tip["Y"], color=colour, linewidth=1.1, label=f"seed {seed.seed}")
         axes.set(xlim=(0, right), ylim=(-half, half), title=f"{name}: {pattern_text(study.runs[name][2])}",
                  xlabel="X [cm]", ylabel="Y [cm]")
         axes.title.set_fontsize(9.5)
-    save(panels.page.figure, path)
+    save(figure, path)
     return True
 
 
@@ -149,9 +140,8 @@ def draw_sweep(study, row, quantities, path, onsets=None):
     unit, name = entry_axis(row["against"], row["against_unit"])
     points = [(unit * x, seeds) for x, seeds in points]
     columns = min(3, len(quantities))
-    panels = Panels(len(quantities), columns, 2.2 if columns == 3 else 2.6)
-    for number, quantity in enumerate(quantities):
-        axes = panels.axes(number)
+    figure, grid = panels(len(quantities), columns, 2.2 if columns == 3 else 2.6)
+    for axes, quantity in zip(grid, quantities):
         scale, label = quantity_axis(quantity, study.document["units"][quantity])
         for x, seeds in points:
             marker, colour = PATTERNS[next(iter(patterns_of(seeds)))]
@@ -159,8 +149,11 @@ def draw_sweep(study, row, quantities, path, onsets=None):
             y, error = (scale * found.mean, scale * (found.deviation or 0.0)) if found else (0.0, 0.0)
             axes.errorbar(x, y, yerr=error, marker=marker, color=colour, capsize=3, markersize=6, linestyle="none",
                           markerfacecolor=colour if found else "white")
-        if onsets and quantity in onsets:
-            draw_onset(axes, onsets[quantity], unit, scale, max(x for x, _ in points))
+        if onsets and quantity in onsets:  # the power law above the onset
+            fit = onsets[quantity]
+            distance = np.linspace(0, max(x for x, _ in points) / unit - fit["onset"]["value"], 200)
+            axes.plot(unit * (fit["onset"]["value"] + distance),
+                      scale * fit["prefactor"] * distance ** fit["exponent"]["value"], color=GREY, linewidth=1)
         axes.set(xlabel=name, ylabel=label)
         if axes.get_ylim()[0] >= 0:  # the axis begins at 0 unless values are negative
             top = max(axes.get_ylim()[1], 1e-12)
@@ -168,19 +161,11 @@ def draw_sweep(study, row, quantities, path, onsets=None):
         if min(x for x, _ in points) > 0 and max(x for x, _ in points) > DECADES * min(x for x, _ in points):
             axes.set_xscale("log")
     shown = {next(iter(patterns_of(seeds))) for _, seeds in points}
-    panels.page.figure.legend(handles=[
-        Line2D([], [], linestyle="none", marker=marker, color=colour, label=pattern)
-        for pattern, (marker, colour) in PATTERNS.items() if pattern in shown],
-                              loc="upper left", bbox_to_anchor=(LEFT / WIDTH, 1), ncol=4)
-    save(panels.page.figure, path)
+    handles = [Line2D([], [], linestyle="none", marker=marker, color=colour, label=pattern)
+               for pattern, (marker, colour) in PATTERNS.items() if pattern in shown]
+    figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(LEFT / WIDTH, 1), ncol=4)
+    save(figure, path)
     return True
-
-
-def draw_onset(axes, fit, unit, scale, end):
-    """Draws the power law of a row above its onset, from there to `end`."""
-    distance = np.linspace(0, end / unit - fit["onset"]["value"], 200)
-    axes.plot(unit * (fit["onset"]["value"] + distance), scale * fit["prefactor"] * distance ** fit["exponent"]["value"],
-              color=GREY, linewidth=1)
 
 
 def draw_speeds(study, path):
@@ -189,8 +174,7 @@ def draw_speeds(study, path):
               if seed.pattern and "speed_over_shear" in seed.values]
     if not points:
         return False
-    panels = Panels(1, 1, 2.8)
-    axes = panels.axes(0)
+    figure, (axes,) = panels(1, 1, 2.8)
     shown = [pattern for pattern in PATTERNS if any(p == pattern for p, _ in points)]
     for place, pattern in enumerate(shown):
         marker, colour = PATTERNS[pattern]
@@ -200,5 +184,5 @@ def draw_speeds(study, path):
     axes.axhline(1, color=BLACK, linestyle="--", linewidth=1)
     axes.set(xticks=range(len(shown)), xticklabels=shown, xlim=(-0.6, len(shown) - 0.4),
              ylabel="crack speed /\nshear speed")
-    save(panels.page.figure, path)
+    save(figure, path)
     return True

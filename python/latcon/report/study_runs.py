@@ -1,11 +1,12 @@
 """Reader of studies: study.json and the output directories of the runs."""
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import UnreadableFile
 from ..files import if_present, read_json
 from ..quantities import number_text
-from ..study.outcome import RunOutcome, RunState, statistics
+from ..study.outcome import RunOutcome, RunState, number_of, statistics
 
 
 @dataclass
@@ -37,11 +38,6 @@ class Study:
         return self.document.get("varied", [])
 
     @property
-    def levels(self):
-        """Level of refinement of each run: {name: level}."""
-        return {run["run"]: run.get("level", 0) for run in self.document["runs"]}
-
-    @property
     def abscissas(self):
         """Entries over which the page may begin with a map or plot: those that the runs of a sweep vary, if all values
         are numbers and no point occurs twice; none for studies without a sweep."""
@@ -60,21 +56,16 @@ def read_study(folder):
     """Reads the study in a folder. @raises UnreadableFile"""
     path = folder / "study.json"
     document = read_json(path)
-    try:
+    try:  # wall times are in run.json alone, so that equal runs give an equal study.json
         seeds = [Seed(s["run"], s["seed"], RunState(s["state"]), problem=s["problem"], pattern=s["pattern"],
                       values={name: value for name, value in s["values"].items() if value is not None},
-                      wall_time=wall_time(folder / s["folder"]), folder=folder / s["folder"]) for s in document["seeds"]]
+                      wall_time=number_of(if_present(read_json, folder / s["folder"] / "run.json") or {}, "wall_time_total_s", 0.0),
+                      folder=folder / s["folder"]) for s in document["seeds"]]
         runs = {run["run"]: (run["about"], run["set"], [seed for seed in seeds if seed.run == run["run"]])
                 for run in document["runs"]}
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise UnreadableFile(path, f"lacks {error}") from error
     return Study(folder, document, runs)
-
-
-def wall_time(folder):
-    """Wall time of the run in a folder [s]; 0 if unknown. study.json has none, so that equal runs give equal files."""
-    seconds = (if_present(read_json, folder / "run.json") or {}).get("wall_time_total_s")
-    return seconds if isinstance(seconds, (int, float)) else 0.
 
 
 def mean_of(seeds, quantity):
@@ -85,8 +76,7 @@ def mean_of(seeds, quantity):
 
 def patterns_of(seeds):
     """Number of seeds with each pattern, the most frequent first: {pattern: count}."""
-    found = [seed.pattern for seed in seeds if seed.pattern]
-    return {pattern: found.count(pattern) for pattern in sorted(set(found), key=lambda p: (-found.count(p), p))}
+    return dict(Counter(sorted(seed.pattern for seed in seeds if seed.pattern)).most_common())
 
 
 def value_text(mean, scale=1.0):

@@ -25,15 +25,15 @@ class Comparison:
     run: Run
     quantity: str
     unit: str
-    published: float
+    published: float  # None: none is known
     measured: float  # None: not measured
     uncertainty: float  # one standard deviation; None: not known
-    check: Check  # the row
+    check: Check = None  # the row, with a published value
 
     @property
     def difference(self):
         """Relative difference from the published value [1]; None if nothing was measured."""
-        return None if self.measured is None or self.published == 0 else self.measured / self.published - 1
+        return self.measured / self.published - 1 if self.published and self.measured is not None else None
 
 
 def tallies(run):
@@ -71,14 +71,14 @@ NAMES = {"Lagrangian crack speed": "speed_lagrangian", "laboratory crack speed":
 
 
 def unpublished(run):
-    """Quantities of crack.json without a published value: [(quantity, unit, value, uncertainty), ...], lengths in cm."""
+    """Quantities of crack.json without a published value, lengths in cm."""
     compared = {c.quantity for c in comparisons(run)}
     found = []
     for quantity, name in NAMES.items():
         value, uncertainty = ((run.crack or {}).get(key) for key in (name, f"{name}_uncertainty"))
         if quantity not in compared and value is not None:
             scale, unit = shown_unit(UNITS[name])
-            found.append((quantity, unit, scale * value, None if uncertainty is None else scale * uncertainty))
+            found.append(Comparison(run, quantity, unit, None, scale * value, None if uncertainty is None else scale * uncertainty))
     return found
 
 
@@ -108,7 +108,7 @@ def text_table(header, rows, numbers, width=120):
     return "\n".join(lines)
 
 
-def text_summary(runs, unreadable=()):
+def text_summary(runs, unreadable):
     """Text for the terminal: claims of every run, failing rows, measured and published values. `unreadable`: runs that
     cannot be read."""
     parts = []

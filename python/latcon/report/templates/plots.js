@@ -24,8 +24,8 @@ function stacked(plot) {
 
 function drawPlot(figure, viewer) {
   const plot = JSON.parse(document.getElementById(figure.dataset.plot).textContent);
-  const below = figure.querySelector(".legend"), labels = plot.labels;
-  let cursor = null, graph = null;
+  const labels = plot.labels;
+  let cursor = null;
   const look = () => ({
     colors: plot.colours.map(themed),
     gridLineColor: themed("--line"),
@@ -33,7 +33,7 @@ function drawPlot(figure, viewer) {
   });
   const options = {
     labels,
-    labelsDiv: below,
+    labelsDiv: figure.querySelector(".legend"),
     legend: "always",
     legendFormatter: (data) => {
       const row = data.x === undefined ? null : plot.rows.findIndex((values) => values[0] === data.x);
@@ -55,14 +55,12 @@ function drawPlot(figure, viewer) {
       ...(plot.stacked && i + 1 >= plot.stacked ? {fillGraph: true, fillAlpha: 1, strokeWidth: 0.5} : {}),
     }])),
     underlayCallback: (context, area, graph) => {
-      const column = (x) => graph.toDomXCoord(x);
-      if (plot.window) {
-        context.fillStyle = themed("--card");
-        const [begin, end] = plot.window.map(column);
-        context.fillRect(begin, area.y, end - begin, area.h);
-      }
+      if (!plot.window) return;
+      const [begin, end] = plot.window.map((x) => graph.toDomXCoord(x));
+      context.fillStyle = themed("--card");
+      context.fillRect(begin, area.y, end - begin, area.h);
     },
-    drawCallback: (graph) => drawCursor(graph),
+    drawCallback: drawCursor,
     // Fingers scroll the page; a tap shows the values.
     interactionModel: Object.fromEntries(
       Object.entries(Dygraph.defaultInteractionModel).filter(([name]) => !name.startsWith("touch"))),
@@ -82,15 +80,13 @@ function drawPlot(figure, viewer) {
     context.stroke();
     context.restore();
   }
-  graph = new Dygraph(figure.querySelector(".plot"), stacked(plot), options);
-  figure.graph = graph;
+  const graph = figure.graph = new Dygraph(figure.querySelector(".plot"), stacked(plot), options);
   viewer?.addEventListener("frame", ({detail}) => {
     cursor = plot.follows === "tip" ? detail.tip && 100 * detail.tip : 1e3 * detail.time;
     graph.clearSelection(); // wipes the upper canvas
     drawCursor(graph);
   });
-  for (const query of ["(prefers-color-scheme: dark)", "print"])
-    matchMedia(query).addEventListener("change", () => graph.updateOptions(look()));
+  onNewColours(() => graph.updateOptions(look()));
 }
 
 for (const figure of document.querySelectorAll(".live"))

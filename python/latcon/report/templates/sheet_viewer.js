@@ -5,6 +5,9 @@
 const scaled = (steps, quantum) => new Float64Array(steps).map((step) => step * quantum);
 const css = (colour) => `rgb(${colour & 255},${colour >> 8 & 255},${colour >> 16 & 255})`;
 const themed = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+/** Calls a function when the page becomes dark or light, or is printed. */
+const onNewColours = (draw) => ["(prefers-color-scheme: dark)", "print"].forEach(
+  (query) => matchMedia(query).addEventListener("change", draw));
 const QUANTITIES = {
   stretch: {name: "stretch of bonds", unit: "1", root: false},
   speed: {name: "speed of the material", unit: "m/s", root: true}, // waves are seen by the root
@@ -59,15 +62,12 @@ class SheetViewer {
     for (let i = 0; i < a.length; i++)
       if (sheet.triangleEnd[i] > frame) this.torn[a[i]] = this.torn[b[i]] = this.torn[c[i]] = 0;
     for (let i = 0; i < from.length; i++) if (bondEnd[i] <= frame) this.torn[from[i]] = this.torn[to[i]] = 1;
-    this.siteValue = this.quantity === "stretch" ? this.meanStretch(n, from, to, alive) : this[this.quantity];
-  }
-
-  /** Mean stretch of the bonds of each site; 1 without bonds. */
-  meanStretch(n, from, to, alive) {
-    const sum = new Float64Array(n);
+    this.siteValue = this[this.quantity];
+    if (this.quantity !== "stretch") return;
+    const sum = new Float64Array(n); // a site has the mean stretch of its bonds, 1 without bonds
     for (let i = 0; i < from.length; i++)
-      if (this.sheet.bondEnd[i] > this.frame) { sum[from[i]] += this.stretch[i]; sum[to[i]] += this.stretch[i]; }
-    return sum.map((value, i) => alive[i] ? value / alive[i] : 1);
+      if (bondEnd[i] > frame) { sum[from[i]] += this.stretch[i]; sum[to[i]] += this.stretch[i]; }
+    this.siteValue = sum.map((value, i) => alive[i] ? value / alive[i] : 1);
   }
 
   /** Place of a value in the colour table. */
@@ -265,19 +265,15 @@ class SheetViewer {
     const beyond = this.quantity === "stretch" && sheet.breaking ? "; orange: beyond the breaking stretch" : "";
     this.part("colour-name").textContent = `${name} [${unit}]${beyond}`;
     const said = this.part("values");
-    if (!picked) {
-      said.textContent = said.dataset.hint;
-    } else {
-      const {site, bond} = picked, [X, Y] = sheet.reference, [x, y] = this.current;
-      let text = `site ${sheet.site[site]}: X ${cm(X[site])} cm, Y ${cm(Y[site])} cm, ` +
-        `x ${cm(x[site])} cm, y ${cm(y[site])} cm, ` +
-        `speed ${this.speed[site].toFixed(2)} m/s, damage ${this.damage[site].toFixed(3)}`;
-      if (bond !== null) {
-        const ends = sheet.bonds.map((end) => sheet.site[end[bond]]);
-        text += `; bond ${ends.join("–")}: stretch ${this.stretch[bond].toFixed(3)}`;
-      }
-      said.textContent = text;
-    }
+    said.textContent = said.dataset.hint;
+    if (!picked) return;
+    const {site, bond} = picked, [X, Y] = sheet.reference, [x, y] = this.current;
+    said.textContent = `site ${sheet.site[site]}: X ${cm(X[site])} cm, Y ${cm(Y[site])} cm, ` +
+      `x ${cm(x[site])} cm, y ${cm(y[site])} cm, ` +
+      `speed ${this.speed[site].toFixed(2)} m/s, damage ${this.damage[site].toFixed(3)}`;
+    if (bond === null) return;
+    const atEnds = sheet.bonds.map((end) => sheet.site[end[bond]]);
+    said.textContent += `; bond ${atEnds.join("–")}: stretch ${this.stretch[bond].toFixed(3)}`;
   }
 
   /** Shows a frame. */
@@ -344,8 +340,7 @@ class SheetViewer {
     this.part("reset").addEventListener("click", () => { for (const view of this.views) this.zoom(view, 0); });
     this.views.forEach((view) => this.listenTo(view));
     new ResizeObserver(() => this.resize()).observe(sheet.canvas);
-    for (const query of ["(prefers-color-scheme: dark)", "print"])
-      matchMedia(query).addEventListener("change", () => this.draw());
+    onNewColours(() => this.draw());
   }
 
   listenTo(view) {
@@ -377,10 +372,8 @@ class SheetViewer {
         fingers.set(event.pointerId, [u, v]);
         this.draw();
       } else {
-        const found = this.pick(view, u, v), {picked} = this;
-        const same = found?.site === picked?.site && found?.bond === picked?.bond;
-        this.picked = found;
-        if (!same) this.draw();
+        const {picked} = this, found = this.picked = this.pick(view, u, v);
+        if (found?.site !== picked?.site || found?.bond !== picked?.bond) this.draw();
       }
     });
     canvas.addEventListener("pointerleave", () => {
