@@ -7,7 +7,7 @@ from ..quantities import number_text, shown_unit
 from .crack_section import plot_over_X, thinned
 from .pages import FAILED, has_dygraphs, number, write_page
 from .runs import has_rows, read_motion, read_run
-from .sheet_data import LARGEST_SHEETS, sheet_data, sheet_of
+from .sheet_data import LARGEST_SHEETS, Sheet, sheet_data
 
 SIDES = ("first", "second")
 
@@ -55,7 +55,7 @@ def comparison_page(folder):
     if None not in sheets:  # colours for the same values
         both = [sheet.contents["ranges"] for sheet in sheets]
         ranges = {name: [min(one[name][0] for one in both), max(one[name][1] for one in both)] for name in both[0]}
-        sheets = [sheet_of({**sheet.contents, "ranges": ranges}) for sheet in sheets]
+        sheets = [Sheet({**sheet.contents, "ranges": ranges}) for sheet in sheets]
     names = [run.name if runs[0].name != runs[1].name else comparison[side] for run, side in zip(runs, SIDES)]
     plot = paths_plot(runs, names) if has_dygraphs() else None
     problems = comparison["failed_checks"]

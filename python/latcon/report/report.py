@@ -73,7 +73,7 @@ def report(folder, output_dir=None, quiet=False, animated=False):
             plots[run.folder] = {plot.name: (png, plot.write(run.tables, png)) for plot, png in pngs.items()}
             runs.append(run)
         except UnreadableFile as error:
-            unreadable.append(Unreadable(run.name, run.folder, str(error)))
+            unreadable.append(Unreadable(run.name, str(error)))
     versions = sorted({f"latcon {run.info['version']}" for run in runs if run.info and "version" in run.info})
     several = sum(run.crack is not None for run in runs) > 1
     cracks = [crack_section(run, position, pictures[run.folder], sheets[run.folder], animated)

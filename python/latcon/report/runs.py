@@ -1,5 +1,6 @@
 """Reader of the runs in a folder: their checks and measurements, the last frame of a sheet, and those of its motion."""
 import math
+from collections import namedtuple
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -107,13 +108,8 @@ class Run:
             return None
 
 
-@dataclass(frozen=True)
-class Unreadable:
-    """A run that cannot be read."""
-
-    name: str
-    folder: Path
-    problem: str  # the file and what is wrong with it
+# A run that cannot be read: the file and what is wrong with it.
+Unreadable = namedtuple("Unreadable", "name problem")
 
 
 def has_rows(table, at_least=1):
@@ -141,7 +137,7 @@ def find_runs(folder):
         try:
             runs.append(read_run(path))
         except UnreadableFile as error:
-            unreadable.append(Unreadable(path.resolve().name, path, str(error)))
+            unreadable.append(Unreadable(path.resolve().name, str(error)))
     return sorted(runs, key=lambda run: run.is_fracture), unreadable
 
 

@@ -8,6 +8,7 @@ import json
 import math
 import zlib
 from dataclasses import dataclass
+from functools import cached_property
 
 import matplotlib
 import numpy as np
@@ -26,7 +27,11 @@ class Sheet:
     """Data for the viewer."""
 
     contents: dict
-    text: str  # JSON of it
+
+    @cached_property
+    def text(self):
+        """JSON of the contents."""
+        return json.dumps(self.contents, separators=(",", ":"))
 
     @property
     def precision(self):
@@ -43,17 +48,12 @@ def sheet_data(run, motion, most):
     """
     frames = motion.frames
     while True:
-        sheet = sheet_of(contents(run, motion, frames))
+        sheet = Sheet(contents(run, motion, frames))
         if len(sheet.text) <= most:
             return sheet
         if len(frames) < 2 * FEWEST_FRAMES:
             return None
         frames = [frames[i] for i in np.round(np.linspace(0, len(frames) - 1, (len(frames) + 1) // 2)).astype(int)]
-
-
-def sheet_of(found):
-    """The Sheet with the given contents."""
-    return Sheet(found, json.dumps(found, separators=(",", ":")))
 
 
 def contents(run, motion, frames):
