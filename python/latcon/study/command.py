@@ -1,9 +1,7 @@
 """``latcon study``, ``latcon batch`` and ``latcon compare`` of two cracks, with the options that the program has parsed."""
 from __future__ import annotations
 
-import bisect
 import dataclasses
-import math
 import os
 import signal
 import time
@@ -11,11 +9,13 @@ import traceback
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from ..errors import BAD_INPUT, CLAIM_FAILED, DONE, INTERNAL_ERROR, INTERRUPTED, OUTPUT_FAILED, SOLVER_FAILED
 from ..compare import compare_cracks
 from ..folder import FolderLock, prepare_run, remove, require_in_place, write_file
 from .batch import write_batch
-from .outcome import RunOutcome, RunState, is_begun, is_finished, read_outcome
+from .outcome import RunOutcome, RunState, is_begun, read_outcome
 from .output import StudyResults, plan_table, result_table, study_csv, study_json
 from .plan import (PLAN_FILE, PlannedRun, Verification, base_text, parse_shard, plan_difference, plan_runs, plan_text,
                    read_requested_study, require_folder_of, require_no_refinement, runs_of_shard, verification_of)
@@ -163,8 +163,10 @@ class _StudyCommand:
         for i in selected:
             folder = self.folder(plan[i])
             write_file(self.case(plan[i]), plan[i].text(program))
-            if self.resume and is_finished(program, plan[i], folder, self.case(plan[i]), skip):
-                outcomes[i] = read_outcome(program, plan[i], folder)
+            is_usable = self.resume and is_begun(program, plan[i], folder, self.case(plan[i]), skip)
+            found = read_outcome(program, plan[i], folder) if is_usable else outcomes[i]
+            if found.state in (RunState.MEASURED, RunState.REJECTED):  # another run would end alike
+                outcomes[i] = found
             else:
                 jobs.append(i)
         self.printed.say(f"{len(jobs)} runs, {len(selected) - len(jobs)} are finished already")
@@ -302,8 +304,9 @@ def refined_runs(study: Study, plan: Sequence[PlannedRun], outcomes: Sequence[Ru
 
     axes = [sorted({value(run, entry) for run in planned.values() if swept[run.run].level == 0}) for entry in study.swept]
     per_interval = 2**level  # points of this level are at odd indices
-    points = {tuple(_index(axis, value(run, entry), per_interval) for entry, axis in zip(study.swept, axes)): name
-              for name, run in planned.items()}
+    # The closest indices of this level, since values are written with twelve digits.
+    points = {tuple(round(per_interval * float(np.interp(value(run, entry), axis, range(len(axis)))))
+                    for entry, axis in zip(study.swept, axes)): name for name, run in planned.items()}
     patterns: dict[str, set[str]] = {}
     for outcome in outcomes:
         if outcome.state is RunState.MEASURED:
@@ -317,7 +320,8 @@ def refined_runs(study: Study, plan: Sequence[PlannedRun], outcomes: Sequence[Ru
             seen = patterns.get(name, set()), patterns.get(points[following], set())
             if not all(seen) or seen[0] == seen[1] and len(seen[0]) == 1 or middle in found:
                 continue
-            values = [plain_number(_value_at(axis, index, per_interval)) for axis, index in zip(axes, middle)]
+            values = [plain_number(float(np.interp(index / per_interval, range(len(axis)), axis)))
+                      for axis, index in zip(axes, middle)]
             own = dict(zip(study.swept, values))
             run = swept[name]
             found[middle] = dataclasses.replace(run, name=combination_name(study.swept, values), level=level, own=run.own | own,
@@ -328,17 +332,3 @@ def refined_runs(study: Study, plan: Sequence[PlannedRun], outcomes: Sequence[Ru
         if len(run.name) > MAX_NAME_LENGTH or run.name in names:
             run.name = f"level-{level}-{number}"
     return refined
-
-
-def _value_at(axis: Sequence[float], index: int, per_interval: int) -> float:
-    left, rest = divmod(index, per_interval)
-    return axis[left] if rest == 0 else axis[left] + rest / per_interval * (axis[left + 1] - axis[left])
-
-
-def _index(axis: Sequence[float], value: float, per_interval: int) -> int:
-    """Returns the index of the finest level closest to a value, since values are written with twelve digits."""
-    if len(axis) < 2:
-        return 0
-    above = bisect.bisect_right(axis, value, 1, len(axis) - 1)
-    share = (value - axis[above - 1]) / (axis[above] - axis[above - 1])
-    return (above - 1) * per_interval + math.floor(share * per_interval + 0.5)

@@ -104,12 +104,6 @@ def is_begun(program: Program, run: PlannedRun, folder: str, case: str, skip_ver
             and content(f"{folder}/case.prm") == content(case) != "")
 
 
-def is_finished(program: Program, run: PlannedRun, folder: str, case: str, skip_verification: bool) -> bool:
-    """Returns whether a folder contains this run, and its crack ended: another run would end alike."""
-    return (is_begun(program, run, folder, case, skip_verification)
-            and read_outcome(program, run, folder).state in (RunState.MEASURED, RunState.REJECTED))
-
-
 def number_of(document: dict[str, Any], key: str, otherwise: Any) -> Any:
     """Returns a number of a JSON object, or another value if there is none."""
     value = document.get(key)

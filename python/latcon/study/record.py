@@ -106,18 +106,15 @@ class Record:
 
     def end(self, rows: Sequence[Mapping[str, Any]], exit_code: int) -> int:
         """Writes the rows, and the record with the exit code, which is returned: CLAIM_FAILED instead of DONE if a row fails."""
-        columns = ("claim", "quantity", "unit", "lattice", "continuum", "theory", "error", "tolerance", "verdict", "reason", "gate", "kind")
-        claims = [{key: whole[key] for key in columns}
-                  for row in rows for whole in [{**row, "continuum": None, "verdict": _verdict(row), "gate": False, "kind": "claim"}]]
-        verdicts = {claim["verdict"] for claim in claims}
+        verdicts = {row["verdict"] for row in rows}
         verdict = next((word for word in ("fails", "holds") if word in verdicts), "reported")
-        write_file(f"{self.directory}/results.json", json_text({"claims": claims, "verdict": verdict}))
+        write_file(f"{self.directory}/results.json", json_text({"claims": rows, "verdict": verdict}))
         write_file(f"{self.directory}/results.csv", csv_text(
-            columns, [["false" if value is False else value for value in claim.values()] for claim in claims]))
+            ["claim", "quantity", "unit", "lattice", "continuum", "theory", "error", "tolerance", "verdict", "reason", "gate", "kind"],
+            [["false" if value is False else value for value in row.values()] for row in rows]))
         if exit_code == DONE and verdict == "fails":
             exit_code = CLAIM_FAILED
-        self.add(verdict=verdict, failed_rows={f"{claim['claim']}: {claim['quantity']}": "claim" for claim in claims
-                                               if claim["verdict"] == "fails"})
+        self.add(verdict=verdict, failed_rows={f"{row['claim']}: {row['quantity']}": "claim" for row in rows if row["verdict"] == "fails"})
         self.write(exit_code)
         if exit_code == INTERRUPTED:
             say_error(f"latcon: interrupted; --resume goes on from what is in {self.directory}\n")
@@ -158,15 +155,6 @@ class Record:
         shutil.rmtree(folder)
         if child.returncode != DONE:
             raise Ended(CLAIM_FAILED, "latcon: " + message)
-
-
-def _verdict(row: Mapping[str, Any]) -> str:
-    if row["tolerance"] is None:
-        return "reported"
-    # A number that is not finite is a text.
-    numbers = [row[key] for key in ("lattice", "theory", "error", "tolerance")]
-    is_lost = any(isinstance(number, str) or number is not None and not math.isfinite(number) for number in numbers)
-    return "holds" if not is_lost and row["error"] is not None and row["error"] <= row["tolerance"] else "fails"
 
 
 BEGIN = time.monotonic()

@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
+
 SIGNIFICANCE = 0.05
 """Probability that a test finds a difference if there is none."""
 
@@ -57,13 +59,10 @@ def adjust_by_holm(p_values: Sequence[float]) -> list[float]:
 
     The probability that at least one of them falls below a bound by chance is at most that bound. NaN remains NaN, and counts.
     """
-    adjusted = list(p_values)
-    last = 0.0
-    order = sorted((i for i, p in enumerate(p_values) if not math.isnan(p)), key=lambda i: p_values[i])
-    for rank, i in enumerate(order):
-        last = max(last, (len(p_values) - rank) * p_values[i])
-        adjusted[i] = min(last, 1.0)
-    return adjusted
+    p = np.array(p_values, float)
+    order = np.argsort(p)  # NaN last
+    p[order] = np.minimum(np.maximum.accumulate(np.arange(len(p), 0, -1) * p[order]), 1.0)
+    return p.tolist()
 
 
 def isotonic_blocks(means: Sequence[float], weights: Sequence[float]) -> list[tuple[float, float, int]]:
@@ -84,7 +83,6 @@ def level_probabilities(weights: Sequence[float]) -> list[float]:
     P(l, k; w) of Robertson, Wright, and Dykstra, Order Restricted Statistical Inference, Wiley 1988, section 2.3, estimated from
     20,000 draws of a fixed sequence of random numbers, with a standard deviation of at most 0.004.
     """
-    import numpy as np
     from scipy.special import ndtri
     n_draws = 20000
     draws = _mersenne_twister(19590601, n_draws * len(weights))
@@ -98,7 +96,6 @@ def level_probabilities(weights: Sequence[float]) -> list[float]:
 
 def _mersenne_twister(seed: int, n: int) -> Any:
     """Returns n numbers of the 64-bit Mersenne twister (T. Nishimura, ACM Trans. Model. Comput. Simul. 10, 348 (2000))."""
-    import numpy as np
     mask = 2**64 - 1
     state = [seed]
     for i in range(1, 312):
@@ -210,7 +207,6 @@ def fit_onset(points: Sequence[tuple[float, SampleMean]]) -> OnsetFit | None:
         return None
     variance, freedom = pooled
 
-    import numpy as np
     from scipy.special import fdtrc, fdtri
     start, extent = p[0], p[-1] - p[0]
     x = (np.array(p) - start) / extent

@@ -95,8 +95,11 @@ class RowOutcome:
         if self.number is None and self.verdict is Verdict.REPORTED:
             return None
         row = self.row
-        result: dict[str, Any] = {"claim": claim, "quantity": ", ".join(row.runs) + ": " + row.quantity, "unit": row.unit, "lattice": self.number,
-                  "theory": 1.0 if row.rule is Rule.IS else self.bound, "error": None, "tolerance": None, "reason": ""}
+        result: dict[str, Any] = {
+            "claim": claim, "quantity": ", ".join(row.runs) + ": " + row.quantity, "unit": row.unit, "lattice": self.number,
+            "continuum": None, "theory": 1.0 if row.rule is Rule.IS else self.bound, "error": None, "tolerance": None,
+            "verdict": {Verdict.HOLDS: "holds", Verdict.REPORTED: "reported"}.get(self.verdict, "fails"), "reason": "",
+            "gate": False, "kind": "claim"}
         if row.rule.is_along:
             result["quantity"] += ", " + self.expected
             result["unit"] = "1"
