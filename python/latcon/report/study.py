@@ -91,21 +91,20 @@ def study_page(folder):
     shown = [(name, next((seed for seed in study.runs[name][2] if seed.is_measured), None))
              for name in study.document["pictures"] if name in study.runs]
     speeds = folder / "speeds.png"
-    write_page(page, "study.html", **{
-        "title": study.document["title"], "with_viewer": False, "with_plots": False,
-        "facts": facts(study), "result": banner(study), "overview": draw_overview(study, folder),
-        "summary": [row(CLAIM_KINDS[claim["verdict"]],
+    write_page(
+        page, "study.html", title=study.document["title"], with_viewer=False, with_plots=False,
+        facts=facts(study), result=banner(study), overview=draw_overview(study, folder),
+        summary=[row(CLAIM_KINDS[claim["verdict"]],
                         [Markup('<a href="#claim-{}">{}</a>').format(number, claim["claim"]),
                          *map(str, counts(claim["rows"]).values())], claim["verdict"])
                     for number, claim in enumerate(study.claims)],
-        "claims": claims, "speeds": speeds if draw_speeds(study, speeds) else None,
-        "pictures": [(name, seed.seed, draw_run(seed, folder, LARGEST_PICTURE)) for name, seed in shown if seed],
-        "captions": RUN_PICTURES,
-        "runs": [("", [name, about, "\n".join(f"{key} = {value}" for key, value in changed.items()) or "–",
+        claims=claims, speeds=speeds if draw_speeds(study, speeds) else None,
+        pictures=[(name, seed.seed, draw_run(seed, folder, LARGEST_PICTURE)) for name, seed in shown if seed],
+        captions=RUN_PICTURES,
+        runs=[("", [name, about, "\n".join(f"{key} = {value}" for key, value in changed.items()) or "–",
                        ", ".join(str(seed.seed) for seed in seeds)])
                  for name, (about, changed, seeds) in study.runs.items()],
-        "measured": measured_table(study, MEASURED), "near_tip": measured_table(study, NEAR_TIP), "settings": settings(study.document),
-    })
+        measured=measured_table(study, MEASURED), near_tip=measured_table(study, NEAR_TIP), settings=settings(study.document))
     return page
 
 

@@ -126,8 +126,8 @@ def _rounded(value: float) -> int:
 
 
 def result_table(program: Program, results: StudyResults) -> str:
-    """Returns the table of verdicts, at most 120 columns wide; without claims a line per run, of at
-    most 60: patterns, speed, wavelength and amplitude over the seeds.
+    """Returns the table of verdicts, at most 120 columns wide; without claims a line per run, of at most 60: patterns, speed,
+    wavelength and amplitude over the seeds.
     """
     lines: list[str] = []
     groups, runs = group_by_run(results.outcomes), results.study.runs

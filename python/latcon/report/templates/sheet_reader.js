@@ -33,13 +33,10 @@ async function readSheet(data) {
   const names = ["position", "speed", "site", "degree", "bonds", "bondEnd", "triangles", "triangleEnd"];
   for (const name of names) sheet[name] = await integers(data[name]);
   for (const name of ["site", "degree", "bondEnd", "triangleEnd"]) sheet[name] = sheet[name][0];
-  const position = [];
-  sheet.position.forEach((steps, row) => {
-    const before = row > 1 ? position[(row >> 1) - 1][row & 1] : null;
-    if (before) for (let i = 0; i < steps.length; i++) steps[i] += before[i];
-    if (row & 1) position[row >> 1].push(steps); else position.push([steps]);
-  });
-  sheet.position = position;
+  const rows = sheet.position; // x and y of each frame, as differences to the frame before
+  for (let row = 2; row < rows.length; row++)
+    for (let i = 0; i < rows[row].length; i++) rows[row][i] += rows[row - 2][i];
+  sheet.position = sheet.times.map((_, frame) => rows.slice(2 * frame, 2 * frame + 2));
   const {values, shape} = await inflated(data.reference, Float64Array);
   sheet.reference = [values.subarray(0, shape[1]), values.subarray(shape[1])];
   sheet.length = lengths(sheet.reference, sheet.bonds);
