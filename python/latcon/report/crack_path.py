@@ -84,7 +84,15 @@ def draw_crack_path(run, path):
     speed = None if run.crack is None else run.crack["speed_lagrangian"]
     axes.plot(X, Y, color=BLUE, label="tip" if speed is None else
               f"tip, {number_text(speed, run.crack['speed_lagrangian_uncertainty'])} m/s")
-    draw_measurement(axes, run)
+    window, curve = measured_window(run), measured_sinusoid(run)
+    if window and window[1] > window[0]:
+        axes.axvspan(100 * window[0], 100 * window[1], color=GREY, alpha=0.15, linewidth=0, label="measured window")
+    if curve is not None:
+        text = f"sinusoid, wavelength {in_cm(run.crack, 'wavelength')} cm"
+        if run.crack["amplitude"] is not None:
+            text += f", amplitude {in_cm(run.crack, 'amplitude')} cm"
+        along = np.linspace(*window, 500)
+        axes.plot(100 * along, 100 * curve(along), "--", color=RED, label=text)
     larger = f",\n{exaggeration} times the scale of X" if exaggeration > 1 else ""
     axes.set(xlim=X_range, ylim=(centre - half, centre + half), ylabel=f"Y of the tip [cm]{larger}")
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=3, borderaxespad=0.2, fontsize=9.5, columnspacing=1.5)
@@ -98,23 +106,6 @@ def draw_crack_path(run, path):
                   xlabel="X in the undeformed sheet [cm]", title="midpoints of broken bonds, equal axes")
         page.colour_bar(dots, LEFT, page.height - 0.68, width, 0.13, "time of breaking [ms]")
     save(page.figure, path)
-
-
-def draw_measurement(axes, run):
-    """Draws the window of the measurement, and the sinusoid of an oscillating crack."""
-    if (window := measured_window(run)) is None:
-        return
-    crack, (begin, end) = run.crack, window
-    if end > begin:
-        axes.axvspan(100 * begin, 100 * end, color=GREY, alpha=0.15, linewidth=0, label="measured window")
-    curve = measured_sinusoid(run)
-    if curve is None:
-        return
-    text = f"sinusoid, wavelength {in_cm(crack, 'wavelength')} cm"
-    if crack["amplitude"] is not None:
-        text += f", amplitude {in_cm(crack, 'amplitude')} cm"
-    X = np.linspace(begin, end, 500)
-    axes.plot(100 * X, 100 * curve(X), "--", color=RED, label=text)
 
 
 def in_cm(crack, name):
