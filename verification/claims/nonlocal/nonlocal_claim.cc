@@ -176,12 +176,12 @@ public:
                "1", {}, speeds_, share_of_bound);
     rows.add("energy of a cut along x, simulator against the sum over half-bonds that cross it", "1", {}, cut_,
              equal_sums);
-  }
     rows.add("tip of that cut, found by the simulator, behind the cut's end, over the period of the grid", "1", {},
              tip_, {1.02, "points left and right of the end are a period apart, which the end divides 1 : 76"});
     rows.add("stress at F = (1.2, 1.2) while Maxwell branches relax, simulator against the network, error over the "
              "overstress at the start",
              "1", {}, relaxation_, equal_sums);
+  }
 
 private:
   void moduli(const StencilSheet &sheet)
