@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from .claim_tables import fitted_order, groups, range_text, sorted_by
+from .claim_tables import fitted_order, groups, range_text, sorted_by, states
 from .pictures import BLACK, BLUE, GREEN, RED, WIDTH, Page
 
 LEFT, RIGHT, GAP = 0.95, 0.2, 0.85  # margins of the grid and space between its columns [in]
@@ -95,6 +95,33 @@ def note(axes, lines, corner="upper left"):
                       xytext=(0, -13 * number if top else 13 * number), textcoords="offset points", color=colour,
                       fontsize=9, ha="left" if left else "right", va="top" if top else "bottom",
                       bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1})
+
+
+def curve(axes, x, y, style, colour):
+    """One curve in a style of matplotlib: markers are open, and "-x" joins the values that were computed."""
+    shown = np.isfinite(y) if style == "-x" else slice(None)
+    options = {} if style in ("--", ":") else {"linewidth": 1, "markersize": 5} if style == "-x" else {
+        "markerfacecolor": "none", "markersize": 6}
+    axes.plot(x[shown], y[shown], style, color=colour, **options)
+
+
+def draw_waves(table, titles, ylabel, legend, styles, value, errors):
+    """A row of panels for each state: curves of longitudinal and of shear waves against k d, one colour for each
+    direction, and the errors of laws. styles: {side: style}; value(part, side) and errors(state), {law: column}, are what
+    is drawn. Returns the grid and [(name of the state, its rows, {law: its orders in words})]."""
+    colours, angles = colours_of(table["angle [deg]"], "waves along", "°")
+    rows = states(table)
+    grid = Grid([name for name, _ in rows], 3, legend + angles)
+    drawn = []
+    for name, state, (*panels, axes) in grid.each(rows, titles, "k d [1]"):
+        panels[0].set_ylabel(ylabel)
+        panels = dict(zip(WAVES, panels))
+        for (wave, angle), part in groups(state, "wave", "angle [deg]"):
+            part = sorted_by(part, "k d")
+            for side, style in styles.items():
+                curve(panels[wave], part["k d"], value(part, side), style, colours[angle])
+        drawn.append((name, state, draw_errors(axes, state, errors(state))))
+    return grid, drawn
 
 
 def draw_errors(axes, state, errors):

@@ -2,7 +2,7 @@
 import numpy as np
 
 from latcon.report.claim_tables import WAVE, Plot, groups, largest_text, off, sorted_by, states
-from latcon.report.panels import MARKERS, Grid, colours_of, draw_errors, entry, headroom, logarithmic, note
+from latcon.report.panels import MARKERS, Grid, colours_of, draw_waves, entry, headroom, logarithmic, note
 from latcon.report.pictures import BLACK, GREY
 
 TABLES = {
@@ -16,31 +16,17 @@ TABLES = {
 
 def draw_sinusoidal_energy(tables):
     """Energy of a sheet displaced along a sinusoid over that of the local continuum, and differences from the lattice."""
-    table = tables["sinusoidal_energy"]
-    colours, angles = colours_of(table["angle [deg]"], "waves along", "°")
-    laws = ("local", "gradient", "filtered")
-    legend = [entry("lattice", "", marker="o"), entry("gradient energy", "--"), entry("filtered", ":"),
-              entry("finite elements", "-", marker="x")] + angles
-    rows = states(table)
-    grid = Grid([name for name, _ in rows], 3, legend)
-    metrics = []
-    titles = ("longitudinal waves", "shear waves", "off the lattice's, relative [1]")
-    for name, state, (*panels, error) in grid.each(rows, titles, "k d [1]"):
-        panels[0].set_ylabel("energy / local [1]")
-        panels = dict(zip("LS", panels))
-        for (wave, angle), part in groups(state, "wave", "angle [deg]"):
-            part = sorted_by(part, "k d")
-            k, axes, colour = part["k d"], panels[wave], colours[angle]
-            axes.plot(k, part["gradient"], "--", color=colour)
-            axes.plot(k, part["filtered"], ":", color=colour)
-            done = np.isfinite(part["fem"])
-            axes.plot(k[done], part["fem"][done], "-x", color=colour, linewidth=1, markersize=5)
-            axes.plot(k, part["lattice"], "o", color=colour, markerfacecolor="none", markersize=6)
-        orders = draw_errors(error, state, {law: state[law] / state["lattice"] - 1 for law in laws})
-        found = [f"order of the {law} energy {order}" for law, order in orders.items()]
-        found.append(f"finite elements off the gradient energy by {largest_text(state['fem'] / state['gradient'] - 1)}")
-        metrics.append(f"{name}: {'; '.join(found)}")
-    return grid, metrics
+    grid, drawn = draw_waves(
+        tables["sinusoidal_energy"], ("longitudinal waves", "shear waves", "off the lattice's, relative [1]"),
+        "energy / local [1]",
+        [entry("lattice", "", marker="o"), entry("gradient energy", "--"), entry("filtered", ":"),
+         entry("finite elements", "-", marker="x")],
+        {"gradient": "--", "filtered": ":", "fem": "-x", "lattice": "o"}, lambda part, side: part[side],
+        lambda state: {law: state[law] / state["lattice"] - 1 for law in ("local", "gradient", "filtered")})
+    return grid, [f"{name}: " + "; ".join((
+        *(f"order of the {law} energy {order}" for law, order in orders.items()),
+        f"finite elements off the gradient energy by {largest_text(state['fem'] / state['gradient'] - 1)}"))
+        for name, state, orders in drawn]
 
 
 def draw_travelling_waves(tables):
@@ -53,36 +39,33 @@ def draw_travelling_waves(tables):
     grid = Grid([name for name, _ in rows], 3, legend + angles, per_line=5)
     metrics = []
     titles = ("elastic energy / theory [1]", "kinetic energy / theory [1]", "elements off lattice, relative [1]")
-    for name, state, (elastic, kinetic, error) in grid.each(rows, titles, "k d [1]"):
+    for name, state, (*panels, error) in grid.each(rows, titles, "k d [1]"):
         for (wave, angle), part in groups(state, "wave", "angle [deg]"):
             part = sorted_by(part, "k d")
-            k, colour, theory = part["k d"], colours[angle], part["theory [J/m^3]"]
-            for axes, lattice, fem in ((elastic, *elastic_energies(part)), (kinetic, *kinetic_energies(part))):
-                axes.plot(k, lattice / theory, MARKERS[wave], color=colour, markerfacecolor="none", markersize=6)
-                axes.plot(k, fem / theory, "-x", color=colour, linewidth=1, markersize=5)
+            k, colour = part["k d"], colours[angle]
+            for axes, (lattice, fem), style in zip(panels, energies(part).values(), ("-", ":")):
+                axes.plot(k, lattice / part["theory [J/m^3]"], MARKERS[wave], color=colour, markerfacecolor="none",
+                          markersize=6)
+                axes.plot(k, fem / part["theory [J/m^3]"], "-x", color=colour, linewidth=1, markersize=5)
                 difference = np.abs(fem / lattice - 1)
-                error.plot(k, np.where(difference > 0, difference, np.nan), "-" if axes is elastic else ":",
-                           marker=MARKERS[wave], color=colour, markersize=4, linewidth=1)
-        for axes in (elastic, kinetic):
+                error.plot(k, np.where(difference > 0, difference, np.nan), style, marker=MARKERS[wave], color=colour,
+                           markersize=4, linewidth=1)
+        for axes in panels:
             axes.axhline(1, linestyle="--", color=BLACK, linewidth=1.2)
         logarithmic(error)
         headroom(error, 1.2)
         note(error, [("solid: elastic, dotted: kinetic", BLACK)])
-        parts = (("elastic", elastic_energies(state)), ("kinetic", kinetic_energies(state)))
-        metrics.append(f"{name}: " + "; ".join(filter(None, (
+        metrics.append(f"{name}: " + "; ".join(
             off(f"{what} energy of the finite elements", fem, lattice, "the lattice's")
-            for what, (lattice, fem) in parts))))
+            for what, (lattice, fem) in energies(state).items()))
     return grid, metrics
 
 
-def elastic_energies(part):
-    """Mean elastic energy density of lattice and finite elements [J/m^3]."""
-    return part["lattice_elastic [J/m^3]"], part["fem_elastic [J/m^3]"]
-
-
-def kinetic_energies(part):
-    """Mean kinetic energy density of lattice and finite elements [J/m^3], micro-inertia included."""
-    return part["lattice_kinetic [J/m^3]"], part["fem_kinetic [J/m^3]"] + part["fem_micro_inertia [J/m^3]"]
+def energies(part):
+    """Mean energy densities of lattice and finite elements [J/m^3], micro-inertia included."""
+    return {"elastic": (part["lattice_elastic [J/m^3]"], part["fem_elastic [J/m^3]"]),
+            "kinetic": (part["lattice_kinetic [J/m^3]"],
+                        part["fem_kinetic [J/m^3]"] + part["fem_micro_inertia [J/m^3]"])}
 
 
 PLOTS = (

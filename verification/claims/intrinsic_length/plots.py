@@ -2,7 +2,7 @@
 import numpy as np
 
 from latcon.report.claim_tables import Plot, groups, largest, largest_text, range_text, sorted_by
-from latcon.report.panels import Grid, entry, headroom, logarithmic, note
+from latcon.report.panels import Grid, curve, entry, headroom, logarithmic, note
 from latcon.report.pictures import BLACK, BLUE, GREEN, GREY, RED, SKY
 
 OTHER_COLOURS = ("#cc79a7", SKY, BLACK, GREY)
@@ -33,13 +33,12 @@ def draw_dispersion(tables):
         worst = []
         for wave, (_, colour) in waves.items():
             angle, alpha = part["angle [deg]"], part[f"alpha_{wave}"]
-            axes.plot(angle, alpha, "--", color=colour)
+            curve(axes, angle, alpha, "--", colour)
             axes.plot(angle, part[f"nearest_{wave}"], ":", color=colour, linewidth=1.2)
             axes.plot(angle, part[f"isotropic_{wave}"], "-.", color=colour, linewidth=1)
             for (other,), measured in groups(runs, "shells") if runs is not None else ():
                 if other == name:
-                    axes.plot(measured["angle [deg]"], measured[f"alpha_{wave}"], "o", color=colour,
-                              markerfacecolor="none", markersize=6)
+                    curve(axes, measured["angle [deg]"], measured[f"alpha_{wave}"], "o", colour)
                     exact = np.interp(measured["angle [deg]"], angle, alpha)
                     worst.append(measured[f"alpha_{wave}"] / exact - 1)
         axes.set_ylim(bottom=min(0, axes.get_ylim()[0]))

@@ -2,7 +2,7 @@
 from functools import partial
 
 from latcon.report.claim_tables import Plot, groups, largest_text, sorted_by, states
-from latcon.report.panels import WAVES, Grid, entry, logarithmic_along_x
+from latcon.report.panels import WAVES, Grid, curve, entry, logarithmic_along_x
 from latcon.report.pictures import BLUE, GREY
 
 
@@ -29,9 +29,8 @@ def draw_waves(tables, name, theory, run, run_name):
         part = sorted_by(part, "w tau")
         unit = part["rubbery [rad/s]"]
         for axes, quantity in zip(panels, ("frequency [rad/s]", "decay [1/s]")):
-            axes.plot(part["w tau"], part[f"{theory}_{quantity}"] / unit, "--", color=BLUE)
-            axes.plot(part["w tau"], part[f"{run}_{quantity}"] / unit, "o", color=BLUE, markerfacecolor="none",
-                      markersize=6)
+            curve(axes, part["w tau"], part[f"{theory}_{quantity}"] / unit, "--", BLUE)
+            curve(axes, part["w tau"], part[f"{run}_{quantity}"] / unit, "o", BLUE)
         for limit in ("rubbery [rad/s]", "glassy [rad/s]"):
             panels[0].plot(part["w tau"], part[limit] / unit, ":", color=GREY)
         for axes in panels:

@@ -2,7 +2,7 @@
 import numpy as np
 
 from latcon.report.claim_tables import WAVE, Plot, groups, largest, off, sorted_by, states
-from latcon.report.panels import WAVES, Grid, colours_of, draw_errors, entry, logarithmic, logarithmic_along_x
+from latcon.report.panels import WAVES, Grid, curve, draw_waves, entry, logarithmic, logarithmic_along_x
 from latcon.report.pictures import BLUE
 
 TABLES = {
@@ -18,37 +18,19 @@ TABLES = {
 def draw_wave_speeds(tables):
     """Phase velocities of both waves relative to that of long waves, and errors of the continua."""
     table = tables["wave_speeds"]
-    colours, angles = colours_of(table["angle [deg]"], "waves along", "°")
     laws = [law for law in ("local", "isotropic", "gradient") if np.isfinite(table[f"{law} [m/s]"]).any()]
-    legend = [entry("lattice, exact", "--"), entry("gradient continuum", ":"),
-              entry("lattice, run in time", "", marker="o"), entry("finite elements", "-", marker="x")] + angles
-    rows = states(table)
-    grid = Grid([name for name, _ in rows], 3, legend)
-    metrics = []
-    titles = (*(f"{word} waves" for word in WAVES.values()), "off the lattice's, relative [1]")
-    for name, state, (*panels, axes) in grid.each(rows, titles, "k d [1]"):
-        panels[0].set_ylabel("phase velocity off\nthat of long waves [%]")
-        panels = dict(zip(WAVES, panels))
-        for (wave, angle), part in groups(state, "wave", "angle [deg]"):
-            draw_speeds(panels[wave], sorted_by(part, "k d"), colours[angle])
-        orders = draw_errors(axes, state, {law: state[f"{law} [m/s]"] / state["bloch [m/s]"] - 1 for law in laws})
-        metrics.append(f"{name}: " + "; ".join(filter(None, (
-            off("a run of the lattice", state["lattice [m/s]"], state["bloch [m/s]"], "the exact dispersion"),
-            off("finite elements", state["fem [m/s]"], state["gradient [m/s]"], "the gradient continuum"),
-            *(f"order of the {law} continuum {order}" for law, order in orders.items())))))
-    return grid, metrics
-
-
-def draw_speeds(axes, part, colour):
-    """One wave along one direction, relative to its speed when it is long, in percent."""
-    k = part["k d"]
-    bloch, gradient, fem, lattice = (100 * (part[f"{side} [m/s]"] / part["local [m/s]"] - 1)
-                                     for side in ("bloch", "gradient", "fem", "lattice"))
-    axes.plot(k, bloch, "--", color=colour)
-    axes.plot(k, gradient, ":", color=colour)
-    done = np.isfinite(fem)
-    axes.plot(k[done], fem[done], "-x", color=colour, linewidth=1, markersize=5)
-    axes.plot(k, lattice, "o", color=colour, markerfacecolor="none", markersize=6)
+    grid, drawn = draw_waves(
+        table, (*(f"{word} waves" for word in WAVES.values()), "off the lattice's, relative [1]"),
+        "phase velocity off\nthat of long waves [%]",
+        [entry("lattice, exact", "--"), entry("gradient continuum", ":"),
+         entry("lattice, run in time", "", marker="o"), entry("finite elements", "-", marker="x")],
+        {"bloch": "--", "gradient": ":", "fem": "-x", "lattice": "o"},
+        lambda part, side: 100 * (part[f"{side} [m/s]"] / part["local [m/s]"] - 1),
+        lambda state: {law: state[f"{law} [m/s]"] / state["bloch [m/s]"] - 1 for law in laws})
+    return grid, [f"{name}: " + "; ".join((
+        off("a run of the lattice", state["lattice [m/s]"], state["bloch [m/s]"], "the exact dispersion"),
+        off("finite elements", state["fem [m/s]"], state["gradient [m/s]"], "the gradient continuum"),
+        *(f"order of the {law} continuum {order}" for law, order in orders.items()))) for name, state, orders in drawn]
 
 
 def draw_attenuation(tables):
@@ -66,10 +48,8 @@ def draw_attenuation(tables):
         for _, part in groups(state, "angle [deg]"):
             part = sorted_by(part, "k d")
             for axes, what, scale in zip(panels, ("decay [1/s]", "frequency [rad/s]"), (1, 1e-3)):
-                axes.plot(part["k d"], scale * part[f"theory_{what}"], "--", color=BLUE)
-                for side, marker in sides.items():
-                    axes.plot(part["k d"], scale * part[f"{side}_{what}"], marker, color=BLUE, markersize=6,
-                              markerfacecolor="none")
+                for side, style in {"theory": "--", **sides}.items():
+                    curve(axes, part["k d"], scale * part[f"{side}_{what}"], style, BLUE)
             for side, marker in sides.items():
                 error = rate_error(part, side)
                 panels[2].plot(part["k d"], np.where(error > 0, error, np.nan), "-", marker=marker, markersize=5,
