@@ -23,6 +23,7 @@
 
 #include "support/atomic_file.h"
 #include "support/errors.h"
+#include "support/folder_lock.h"
 #include "verification/claims/claim_inputs.h"
 #include "verification/input/data_folder.h"
 #include "verification/input/sha256.h"
@@ -301,24 +302,19 @@ void VerdictStore::write(const VerdictKey &key, const std::string &text) const
   chmod(path(key).c_str(), S_IRUSR | S_IWUSR); // read() refuses other modes, whatever the umask
 }
 
-VerdictStore::Turn::Turn(std::filesystem::path folder) : folder_(std::move(folder))
+std::shared_ptr<void> VerdictStore::wait_for_turn(const VerdictKey &key) const
 {
   constexpr std::chrono::minutes patience(10);
-  std::filesystem::create_directories(folder_);
-  lock_ = std::make_unique<support::FolderLock>(folder_, patience);
-}
-
-VerdictStore::Turn::~Turn()
-{
-  std::error_code ignored; // an empty folder does no harm
-  std::filesystem::remove_all(folder_, ignored);
-}
-
-std::unique_ptr<VerdictStore::Turn> VerdictStore::wait_for_turn(const VerdictKey &key) const
-{
+  const std::filesystem::path folder = folder_ + "/" + key.hash + ".checking";
   try
   {
-    return std::make_unique<Turn>(folder_ + "/" + key.hash + ".checking");
+    std::filesystem::create_directories(folder);
+    return {new support::FolderLock(folder, patience), [folder](support::FolderLock *lock)
+            {
+              std::error_code ignored; // an empty folder does no harm
+              std::filesystem::remove_all(folder, ignored);
+              delete lock;
+            }};
   }
   catch (const std::runtime_error &) // FolderInUse, OutputError, std::filesystem::filesystem_error
   {

@@ -1,7 +1,6 @@
 /// Cache of verdicts, by the hash of everything they depend on.
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -9,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "support/folder_lock.h"
 #include "verification/bridge/laws.h"
 #include "verification/claims/claim.h"
 #include "verification/claims/claim_outcome.h"
@@ -92,23 +90,10 @@ public:
   /// @throws OutputError
   void write(const VerdictKey &key, const std::string &text) const;
 
-  /// Turn of one process to check the claims of a key. Ends with the object.
-  class Turn
-  {
-  public:
-    explicit Turn(std::filesystem::path folder);
-    ~Turn();
-    Turn(const Turn &) = delete;
-    Turn &operator=(const Turn &) = delete;
-
-  private:
-    std::filesystem::path folder_;
-    std::unique_ptr<support::FolderLock> lock_;
-  };
-
   /// Waits while another process checks the claims of the key, so that the runs of a study or of a job array check them
   /// once. The wait is at most ten minutes, and none where folders cannot be created or locked: then both check.
-  [[nodiscard]] std::unique_ptr<Turn> wait_for_turn(const VerdictKey &key) const;
+  /// @return turn of this process, which ends with the object
+  [[nodiscard]] std::shared_ptr<void> wait_for_turn(const VerdictKey &key) const;
 
 private:
   std::string folder_;

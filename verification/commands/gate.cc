@@ -27,7 +27,7 @@ struct Stored
   std::string key;  // inputs that the verdicts depend on; empty: not known
   std::string text; // content of the stored file; empty: none that can be read
   std::string note; // message for the user; empty: no problem
-  std::unique_ptr<claims::VerdictStore::Turn> turn = nullptr; // of the root rank, to check the claims
+  std::shared_ptr<void> turn = nullptr; // of the root rank, to check the claims
 };
 
 std::string unused(const std::string &path, const std::string &reason)
