@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "verification/bridge/plane_waves.h"
+
 namespace latcon::bridge
 {
 
@@ -39,6 +41,18 @@ Eigen::Matrix2d lattice_rotation(int k)
 RotationMean rotation_mean(const Eigen::MatrixXd &values)
 {
   return mean_of_period(values, n_lattice_rotations, 1);
+}
+
+Eigen::MatrixXd rotated_bloch_stiffness(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                        const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+{
+  Eigen::MatrixXd matrices(4, n_lattice_rotations);
+  for (int k = 0; k < n_lattice_rotations; ++k)
+  {
+    const Eigen::Matrix2d R = lattice_rotation(k);
+    matrices.col(k) = bloch_matrices(lattice, material, F * R, R.transpose() * K).stiffness.reshaped();
+  }
+  return matrices;
 }
 
 Eigen::Vector2d bond_direction(int k)

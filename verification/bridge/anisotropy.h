@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include "lattice/material.h"
 
 namespace latcon::bridge
 {
@@ -25,6 +25,11 @@ struct RotationMean
 /// Computes mean and bound (theory-comparison.md, eqs. (H.14), (H.15)). @param values a column of values for each
 /// rotation 0, 1 ... n_lattice_rotations - 1
 RotationMean rotation_mean(const Eigen::MatrixXd &values);
+
+/// Returns such columns of the dynamical matrices D of a lattice without dashpots (theory-comparison.md, eq. (W.1)):
+/// turned by R, it has that of the lattice as it stands at F R for the wave R^T K.
+Eigen::MatrixXd rotated_bloch_stiffness(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                        const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
 
 /// Number of directions of a bond over which means are taken, equispaced over half a turn. Aliasing of higher harmonics
 /// as for rotations.

@@ -63,25 +63,19 @@ ContinuumModel::ContinuumModel(const input::Case &input)
   const lattice::TriangularLattice sheet = input.lattice();
   extent_ = std::min(sheet.length(), sheet.height());
   const GradientLengths lengths = gradient_lengths(sheet, subject_.material);
-  switch (input.continuum.gradient)
+  using input::ContinuumGradient;
+  const ContinuumGradient gradient = input.continuum.gradient;
+  const double of_bonds = gradient == ContinuumGradient::isotropic ? lengths.isotropic_inertia : lengths.lattice;
+  inertia_length_ = input.continuum.inertia_length.value_or(gradient == ContinuumGradient::none ? 0. : of_bonds);
+  if (gradient == ContinuumGradient::isotropic)
   {
-  case input::ContinuumGradient::isotropic:
     static_length_ = input.continuum.static_length.value_or(lengths.isotropic_static);
-    inertia_length_ = input.continuum.inertia_length.value_or(lengths.isotropic_inertia);
     gradient_ = std::make_unique<continuum::IsotropicGradient>(subject_.theory.shear_modulus, static_length_);
-    break;
-  case input::ContinuumGradient::lattice:
-    inertia_length_ = input.continuum.inertia_length.value_or(lengths.lattice);
-    gradient_ = std::make_unique<continuum::LatticeGradient>(bond_families(sheet, subject_.material), inertia_length_);
-    break;
-  case input::ContinuumGradient::network:
-    inertia_length_ = input.continuum.inertia_length.value_or(lengths.lattice);
-    gradient_ = std::make_unique<continuum::NetworkGradient>(bond_families(sheet, subject_.material), inertia_length_);
-    break;
-  case input::ContinuumGradient::none:
-    inertia_length_ = input.continuum.inertia_length.value_or(0.);
-    break;
   }
+  else if (gradient == ContinuumGradient::lattice)
+    gradient_ = std::make_unique<continuum::LatticeGradient>(bond_families(sheet, subject_.material), inertia_length_);
+  else if (gradient == ContinuumGradient::network)
+    gradient_ = std::make_unique<continuum::NetworkGradient>(bond_families(sheet, subject_.material), inertia_length_);
   make_mesh(input);
   make_conditions(input);
 }
@@ -173,19 +167,11 @@ void ContinuumModel::make_conditions(const input::Case &input)
 
 continuum::Constitution ContinuumModel::constitution() const
 {
-  const continuum::Material *law = nullptr;
-  switch (law_)
-  {
-  case input::ContinuumLaw::cauchy_born:
-    law = &subject_.cauchy_born;
-    break;
-  case input::ContinuumLaw::mooney_rivlin_network:
+  const continuum::Material *law = &subject_.cauchy_born;
+  if (law_ == input::ContinuumLaw::mooney_rivlin_network)
     law = &subject_.network;
-    break;
-  case input::ContinuumLaw::mooney_rivlin:
+  else if (law_ == input::ContinuumLaw::mooney_rivlin)
     law = &*mooney_rivlin_;
-    break;
-  }
   continuum::Constitution constitution(*law);
   constitution.gradient = gradient_.get();
   constitution.penalty = penalty_;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "continuum/cauchy_born.h"
+#include "continuum/fibre_memory.h"
 #include "continuum/isotropic_network.h"
 #include "continuum/lattice_gradient.h"
 #include "continuum/mooney_rivlin.h"
@@ -36,6 +37,13 @@ std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::Trian
                                                             const lattice::Material &material,
                                                             double gradient_length = 0.);
 
+/// Returns the Maxwell branches of a lattice as those of fibres, with weights as in cauchy_born()
+/// (theory-comparison.md, eq. (H.1); theory-viscoelastic.md, eq. (V.1)); null if there are no branches. Branches are
+/// numbered as in lattice::Simulation::mechanism_energies(): those of nearest-neighbour bonds first.
+/// @throws std::invalid_argument for bonds with a memory of another program
+std::unique_ptr<continuum::FibreMemory> homogenised_memory(const lattice::TriangularLattice &lattice,
+                                                           const lattice::Material &material);
+
 /// Lengths of the gradient continuum.
 struct GradientLengths
 {
@@ -55,7 +63,6 @@ struct Calibration
 {
   double ratio;                           ///< r = C2 / (C1 + C2) [-] (theory-comparison.md, eq. (H.4))
   double energy_residual;                 ///< rms over the path of W_MR / W_CB - 1 [-]
-  double largest_energy_residual;         ///< largest of |W_MR / W_CB - 1| [-]
   double smallest_acoustic_eigenvalue;    ///< smallest rho c^2 along the path over mu; strongly elliptic if > 0 [-]
   continuum::MooneyRivlin::Constants law; ///< [Pa]
 };

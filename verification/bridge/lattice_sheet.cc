@@ -1,5 +1,7 @@
 #include "verification/bridge/lattice_sheet.h"
 
+#include <algorithm>
+
 #include "lattice/cutout.h"
 #include "lattice/end_loads.h"
 
@@ -69,10 +71,8 @@ void require_lattice_sheet(const input::Case &input, input::Parameters &p, const
     check_period(input, p, command);
   if (input.solution == input::Case::Solution::relaxed)
   {
-    bool held = false;
-    for (std::size_t id = 0; id < 4; ++id)
-      held = held || c.edges[id].condition == Condition::held;
-    if (!held)
+    if (std::none_of(c.edges.begin(), c.edges.begin() + 4,
+                     [](const input::EdgeCase &edge) { return edge.condition == Condition::held; }))
       p.error("Left edge/condition", command + " needs a held edge for equilibrium",
               {"Right edge/condition", "Bottom edge/condition", "Top edge/condition"});
     return;

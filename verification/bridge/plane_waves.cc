@@ -5,6 +5,7 @@
 #include <complex>
 #include <limits>
 #include <stdexcept>
+#include <variant>
 
 #include <Eigen/LU>
 
@@ -57,6 +58,44 @@ std::array<PlaneWave, 2> damped(const WaveMatrices &matrices)
   return {wave(order[0]), wave(order[1])};
 }
 
+Eigen::Matrix2d sum_of(const std::vector<BranchMatrix> &branches)
+{
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (const BranchMatrix &branch : branches)
+    sum += branch.stiffness;
+  return sum;
+}
+
+// The branches of each shell.
+std::vector<BranchMatrix> branch_matrices(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                          const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+{
+  std::vector<BranchMatrix> branches;
+  const double mass = lattice::site_mass(material, lattice);
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+  {
+    const lattice::Shell *shell = material.in_shell(number);
+    if (shell != nullptr && std::holds_alternative<lattice::CustomMemory>(shell->memory))
+      throw std::invalid_argument("waves in bonds with a custom memory have no closed form");
+    const auto *memory = shell != nullptr ? std::get_if<lattice::MaxwellMemory>(&shell->memory) : nullptr;
+    if (memory == nullptr)
+      continue;
+    // Per unit of the modulus.
+    Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();
+    for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+      if (lattice::shell_of(kind) == number)
+      {
+        const Eigen::Vector2d R = lattice.bond_vector(kind), n = (F * R).normalized();
+        const double phase = 4. * std::pow(std::sin(0.5 * K.dot(R)), 2);
+        stiffness +=
+          phase * lattice::cross_section(*shell, lattice) / lattice.rest_length(kind) / mass * n * n.transpose();
+      }
+    for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
+      branches.push_back({branch.modulus * stiffness, branch.relaxation_time});
+  }
+  return branches;
+}
+
 } // namespace
 
 std::array<PlaneWave, 2> plane_waves(const WaveMatrices &matrices, const Eigen::Vector2d &normal)
@@ -82,6 +121,98 @@ double fastest_frequency(const std::array<PlaneWave, 2> &waves)
 Eigen::Vector2d wave_normal(const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
 {
   return (F.inverse().transpose() * K).normalized();
+}
+
+WaveMatrices bloch_matrices(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                            const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+{
+  WaveMatrices matrices{Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
+  const double mass = lattice::site_mass(material, lattice);
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+  {
+    const lattice::Shell *shell = material.shell(lattice, kind);
+    if (shell == nullptr)
+      continue;
+    const Eigen::Vector2d R = lattice.bond_vector(kind);
+    const double length = lattice.rest_length(kind);
+    const double stretch = (F * R).norm() / length;
+    const Eigen::Vector2d n = (F * R).normalized();
+    const Eigen::Matrix2d along = n * n.transpose();
+    const double section_over_length = lattice::cross_section(*shell, lattice, kind) / length;
+    // 2 (1 - cos K.R) of both ends of the bond, in a form without cancellation for long waves.
+    const double phase = 4. * std::pow(std::sin(0.5 * K.dot(R)), 2);
+    matrices.stiffness += phase * section_over_length / mass *
+                          (lattice::stiffness(shell->law, stretch) * along +
+                           lattice::force(shell->law, stretch) / stretch * (Eigen::Matrix2d::Identity() - along));
+    matrices.damping += phase * section_over_length / mass * shell->viscosity * along;
+  }
+  return matrices;
+}
+
+std::array<PlaneWave, 2> bloch_waves(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                     const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+{
+  WaveMatrices matrices = bloch_matrices(lattice, material, F, K);
+  matrices.damping.setZero();
+  return plane_waves(matrices, wave_normal(F, K));
+}
+
+Eigen::Matrix2d glassy_stiffness(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                 const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+{
+  return sum_of(branch_matrices(lattice, material, F, K));
+}
+
+std::array<MemoryWave, 2> memory_waves(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                       const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+{
+  return memory_waves(bloch_matrices(lattice, material, F, K), branch_matrices(lattice, material, F, K),
+                      wave_normal(F, K));
+}
+
+std::array<MemoryWave, 2> memory_waves(const WaveMatrices &relaxed, const std::vector<BranchMatrix> &branches,
+                                       const Eigen::Vector2d &normal)
+{
+  // (u, u'/r, r_1, r_2, ...)' = r B (...) with the forces r_i' = G_i u' - r_i / tau_i per mass and r^2, and a rate r
+  // that scales the entries to similar size.
+  const double rate = std::sqrt(relaxed.stiffness.norm() + sum_of(branches).norm());
+  const auto size = static_cast<Eigen::Index>(4 + 2 * branches.size());
+  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(size, size);
+  B.block<2, 2>(0, 2).setIdentity();
+  B.block<2, 2>(2, 0) = -relaxed.stiffness / (rate * rate);
+  B.block<2, 2>(2, 2) = -relaxed.damping / rate;
+  Eigen::Index at = 4;
+  for (const BranchMatrix &branch : branches)
+  {
+    B.block<2, 2>(2, at) = -Eigen::Matrix2d::Identity();
+    B.block<2, 2>(at, 2) = branch.stiffness / (rate * rate);
+    B.block<2, 2>(at, at) = -Eigen::Matrix2d::Identity() / (rate * branch.relaxation_time);
+    at += 2;
+  }
+  // The solver of eigenvalues does not handle values that are not finite.
+  if (!B.allFinite())
+    throw std::runtime_error("the stiffness of a sheet is not finite");
+  const support::ComplexModes modes = support::complex_modes(B);
+  // Everything else relaxes.
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index i = 0; i < size; ++i)
+    order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return modes.values[a].imag() > modes.values[b].imag(); });
+  const auto wave = [&](Eigen::Index i)
+  {
+    if (!(modes.values[i].imag() > 0.)) // some mode that relaxes
+      return MemoryWave{{not_a_number, not_a_number}, Eigen::Vector2cd::Constant(std::complex<double>(not_a_number, not_a_number))};
+    const Eigen::Vector2cd p = modes.vectors.col(i).head<2>();
+    return MemoryWave{rate * modes.values[i], p / (std::abs(p[0]) > std::abs(p[1]) ? p[0] : p[1])};
+  };
+  std::array<MemoryWave, 2> waves{wave(order[0]), wave(order[1])};
+  const auto along = [&](const MemoryWave &w)
+  { return std::abs(w.polarisation.dot(normal.cast<std::complex<double>>())) / w.polarisation.norm(); };
+  const double along_first = along(waves[0]), along_second = along(waves[1]);
+  if (along_first < (std::isnan(along_second) ? std::sqrt(0.5) : along_second))
+    std::swap(waves[0], waves[1]);
+  return waves;
 }
 
 } // namespace latcon::bridge

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "support/dense.h"
-#include "verification/bridge/bloch.h"
+#include "verification/bridge/plane_waves.h"
 
 namespace latcon::bridge
 {
@@ -17,35 +17,30 @@ constexpr double shortest = 0.01, longest = 4. * M_PI / 3.;
 constexpr int n_angles = 120, n_lengths = 60;
 constexpr double angle_step = M_PI / n_angles, length_step = (longest - shortest) / n_lengths;
 
-// Smaller of the two w^2 / k^2 at wave vectors in polar coordinates.
-class SquaredSpeed
-{
-public:
-  SquaredSpeed(const lattice::TriangularLattice &lattice, const lattice::Material &material, const Eigen::Matrix2d &F)
-    : lattice_(lattice), material_(material), F_(F)
-  {
-  }
+} // namespace
 
-  // @param kd length of K times d; lengths beyond the ends of the grid are moved there
-  SlowestWave operator()(double angle, double kd) const
+SlowestWave slowest_wave(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                         const Eigen::Matrix2d &F)
+{
+  // Smaller of the two w^2 / k^2 at a wave vector in polar coordinates; lengths k d beyond the ends of the grid are moved
+  // there.
+  const auto at = [&](double angle, double kd) -> SlowestWave
   {
     const double length = kd < shortest ? shortest : kd > longest ? longest : kd;
-    const Eigen::Vector2d K = length / lattice_.spacing() * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-    return {support::symmetric_eigenvalues(bloch_matrices(lattice_, material_, F_, K).stiffness)[0] / K.squaredNorm(),
-            K};
-  }
-
+    const Eigen::Vector2d K = length / lattice.spacing() * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    return {support::symmetric_eigenvalues(bloch_matrices(lattice, material, F, K).stiffness)[0] / K.squaredNorm(), K};
+  };
   // Descends from a point of the grid in ever smaller steps along and across K.
-  SlowestWave descend(double angle, double kd) const
+  const auto descend = [&](double angle, double kd)
   {
-    SlowestWave slowest = (*this)(angle, kd);
+    SlowestWave slowest = at(angle, kd);
     for (double step = 0.5; step > 1e-6;)
     {
       bool is_lower = false;
       for (const auto &[turns, lengthens] : {std::array{1., 0.}, {-1., 0.}, {0., 1.}, {0., -1.}})
       {
         const double to = angle + turns * step * angle_step, length = kd + lengthens * step * length_step;
-        if (const SlowestWave found = (*this)(to, length); found.squared_speed < slowest.squared_speed)
+        if (const SlowestWave found = at(to, length); found.squared_speed < slowest.squared_speed)
         {
           slowest = found;
           angle = to;
@@ -57,20 +52,7 @@ public:
         step /= 2.;
     }
     return slowest;
-  }
-
-private:
-  const lattice::TriangularLattice &lattice_;
-  const lattice::Material &material_;
-  const Eigen::Matrix2d &F_;
-};
-
-} // namespace
-
-SlowestWave slowest_wave(const lattice::TriangularLattice &lattice, const lattice::Material &material,
-                         const Eigen::Matrix2d &F)
-{
-  const SquaredSpeed at(lattice, material, F);
+  };
   std::array<std::array<double, n_lengths + 1>, n_angles> grid{};
   for (int i = 0; i < n_angles; ++i)
     for (int j = 0; j <= n_lengths; ++j)
@@ -91,7 +73,7 @@ SlowestWave slowest_wave(const lattice::TriangularLattice &lattice, const lattic
           is_minimum = is_minimum && grid[i][j] <= grid[(i + a + n_angles) % n_angles][j + b];
       if (!is_minimum)
         continue;
-      if (const SlowestWave found = at.descend(i * angle_step, shortest + j * length_step);
+      if (const SlowestWave found = descend(i * angle_step, shortest + j * length_step);
           found.squared_speed < slowest.squared_speed)
         slowest = found;
     }

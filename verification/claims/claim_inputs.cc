@@ -98,25 +98,20 @@ void check_user_laws(const input::Case &input, input::Parameters &parameters)
 {
   if (!parameters.good())
     return; // there may be no law
-  const auto check = [&](const input::ShellCase &shell, const std::string &section)
-  {
-    if (!shell.has_user_law())
-      return;
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
     try
     {
-      (void)shell.shell(support::largest_of({largest_stretch, input.longest_stretch()}));
+      if (input.has_shell(number) && input.shell(number).has_user_law())
+        (void)input.shell(number).shell(support::largest_of({largest_stretch, input.longest_stretch()}));
     }
     catch (const input::UserLaw::Problem &problem)
     {
+      const std::string section = input::Case::shell_sections[number];
       parameters.error(section + "/" + problem.entry,
                        "claims evaluate the law at stretches up to " + support::full_precision(largest_stretch) + ": " +
                          problem.what(),
                        {section + "/law"});
     }
-  };
-  for (std::size_t number = 0; number < lattice::n_shells; ++number)
-    if (input.has_shell(number))
-      check(input.shell(number), input::Case::shell_sections[number]);
 }
 
 } // namespace latcon::claims

@@ -4,7 +4,6 @@
 #include "continuum/dynamic_solver.h"
 #include "continuum/fibre_memory.h"
 #include "continuum/viscosity.h"
-#include "verification/bridge/memory_waves.h"
 #include "verification/bridge/plane_waves.h"
 #include "verification/bridge/subject.h"
 #include "verification/claims/oscillation.h"
@@ -93,16 +92,25 @@ struct ElementWave
 ElementWave element_wave(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
                          const bridge::MemoryWave &wave, const WaveMesh &mesh);
 
+/// Returns (1/2) d2E/de2 at e = 0 of an energy without odd terms, from second differences with e and 2 e.
+template <class Energy>
+double half_second_derivative(const Energy &energy, double e)
+{
+  const double at_rest = energy(0.);
+  const auto second = [&](double x) { return 0.5 * (energy(x) + energy(-x) - 2. * at_rest) / (x * x); };
+  return (4. * second(e) - second(2. * e)) / 3.;
+}
+
 /// Energy density that the displacement amplitude * p cos K.X adds to the homogeneous state, over amplitude^2 [J/m^5]:
 /// from second differences of the energy of the finite element sheet, extrapolated. Every rank computes all of it.
 double sinusoidal_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
                          const Eigen::Vector2d &p, double amplitude, const WaveMesh &mesh);
 
-/// Energy densities of a wave that travels through the finite element sheet [J/m^3].
+/// Energy densities of a travelling wave [J/m^3].
 struct TravellingEnergy
 {
   double elastic;       ///< above that of the homogeneous state
-  double kinetic;       ///< with micro-inertia
+  double kinetic;       ///< with micro-inertia, which the lattice lacks
   double micro_inertia; ///< the share of that in `kinetic`
 };
 

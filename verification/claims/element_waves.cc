@@ -19,60 +19,61 @@ namespace
 
 using Vector = continuum::Sheet::Vector;
 
-// A sheet with its mass matrix, and both waves on it.
-class WaveSheet
+// A sheet at a homogeneous state, with its mass matrix.
+struct WaveSheet
 {
-public:
-  WaveSheet(const WaveContinuum &medium, const continuum::Sheet &sheet, const Eigen::Matrix2d &F,
-            const Eigen::Vector2d &K)
-    : sheet_(sheet), waves_(bridge::plane_waves(elastic(continuum_matrices(medium, F, K)), bridge::wave_normal(F, K)))
+  WaveSheet(const WaveContinuum &medium, const continuum::Sheet &of, const Eigen::Matrix2d &F)
+    : sheet(of), base(interpolated(of, bridge::AffineDisplacement(F)))
   {
-    sheet.make_matrix(sheet.conformity_constraints(), mass_);
-    sheet.mass(medium.inertia.density, medium.inertia.length, sheet.conformity_constraints(), mass_);
-    base_ = interpolated(sheet, bridge::AffineDisplacement(F));
-    for (std::size_t w = 0; w < 2; ++w)
-      shapes_[w] = interpolated(sheet, CosineWave(K, waves_[w].polarisation));
+    sheet.make_matrix(sheet.conformity_constraints(), mass);
+    sheet.mass(medium.inertia.density, medium.inertia.length, sheet.conformity_constraints(), mass);
   }
-
-  const continuum::Sheet::Matrix &mass() const { return mass_; }
-  const Vector &base() const { return base_; } ///< displacement of the homogeneous state [m]
-  const Vector &shape(std::size_t w) const { return shapes_[w]; }
-  const bridge::PlaneWave &wave(std::size_t w) const { return waves_[w]; }
 
   /// x.A y over the independent unknowns.
   double form(const continuum::Sheet::Matrix &A, const Vector &x, const Vector &y) const
   {
-    Vector product = sheet_.make_owned();
+    Vector product = sheet.make_owned();
     A.vmult(product, y);
     double sum = 0.;
-    for (const auto i : sheet_.owned())
-      if (!sheet_.conformity_constraints().is_constrained(i))
+    for (const auto i : sheet.owned())
+      if (!sheet.conformity_constraints().is_constrained(i))
         sum += x(i) * product(i);
     return sum;
   }
 
-  /// Clears the rows of dependent unknowns; the prescribed values are zero.
-  void clear_dependent(Vector &b) const
+  /// M x without the rows of dependent unknowns; the prescribed values are zero.
+  Vector weighted(const Vector &x) const
   {
-    for (const auto i : sheet_.owned())
-      if (sheet_.conformity_constraints().is_constrained(i))
+    Vector b = sheet.make_owned();
+    mass.vmult(b, x);
+    for (const auto i : sheet.owned())
+      if (sheet.conformity_constraints().is_constrained(i))
         b(i) = 0.;
     b.compress(dealii::VectorOperation::insert);
+    return b;
   }
 
-private:
-  static bridge::WaveMatrices elastic(bridge::WaveMatrices matrices)
-  {
-    matrices.damping.setZero();
-    return matrices;
-  }
-
-  const continuum::Sheet &sheet_;
-  std::array<bridge::PlaneWave, 2> waves_;
-  continuum::Sheet::Matrix mass_;
-  Vector base_;
-  std::array<Vector, 2> shapes_;
+  const continuum::Sheet &sheet;
+  Vector base; // displacement of the homogeneous state [m]
+  continuum::Sheet::Matrix mass;
 };
+
+// Nodal values of both waves of a continuum without viscosity.
+std::array<Vector, 2> elastic_waves(const WaveContinuum &medium, const continuum::Sheet &sheet,
+                                    const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+{
+  const auto waves = continuum_waves({medium.constitution, medium.inertia}, F, K);
+  return {interpolated(sheet, CosineWave(K, waves[0].polarisation)),
+          interpolated(sheet, CosineWave(K, waves[1].polarisation))};
+}
+
+// Energy [J/m] of a sheet with these nodal values.
+double energy(const continuum::Sheet &sheet, const Vector &nodal)
+{
+  Vector u = sheet.make_ghosted();
+  u = nodal;
+  return sheet.energy(u);
+}
 
 // A periodic sheet as long as the wave, in motion.
 struct MovingSheet
@@ -109,12 +110,13 @@ std::vector<Oscillation> measure(const WaveContinuum &medium, const Eigen::Matri
 {
   MovingSheet moving(medium, K, resolution, settings_for(time_step, resolution, 1e-9));
   continuum::DynamicSolver &solver = moving.solver;
-  const WaveSheet wave_sheet(medium, solver.sheet(), F, K);
+  const WaveSheet at_rest(medium, solver.sheet(), F);
+  const std::array<Vector, 2> shapes = elastic_waves(medium, solver.sheet(), F, K);
   // Nonlinear terms change frequencies by the square of this strain; Newton's method sees the wave above the round-off
   // of the forces in the stretched sheet.
   const double amplitude = 1e-4 / K.norm();
-  Vector u = wave_sheet.base();
-  u.add(amplitude, wave_sheet.shape(0), amplitude, wave_sheet.shape(1));
+  Vector u = at_rest.base;
+  u.add(amplitude, shapes[0], amplitude, shapes[1]);
   solver.start(u, solver.sheet().make_owned());
 
   WaveRecord record(2);
@@ -122,13 +124,10 @@ std::vector<Oscillation> measure(const WaveContinuum &medium, const Eigen::Matri
   const auto observe = [&]
   {
     difference = solver.displacement();
-    difference -= wave_sheet.base();
+    difference -= at_rest.base;
     for (std::size_t w = 0; w < 2; ++w)
-    {
-      const Vector &shape = wave_sheet.shape(w);
-      record.add(w, wave_sheet.form(wave_sheet.mass(), shape, difference) /
-                      (amplitude * wave_sheet.form(wave_sheet.mass(), shape, shape)));
-    }
+      record.add(w, at_rest.form(at_rest.mass, shapes[w], difference) /
+                      (amplitude * at_rest.form(at_rest.mass, shapes[w], shapes[w])));
   };
   observe();
   constexpr std::size_t max_steps = 2000;
@@ -173,14 +172,14 @@ ElementWave measure(const WaveContinuum &medium, const Eigen::Matrix2d &F, const
   MovingSheet moving(medium, K, resolution, settings_for(time_step, resolution, 1e-10));
   continuum::DynamicSolver &solver = moving.solver;
   const continuum::Sheet &sheet = solver.sheet();
-  const Vector base = interpolated(sheet, bridge::AffineDisplacement(F));
+  const WaveSheet at_rest(medium, sheet, F);
   // At the phase of the wave, times `factor`, added to the homogeneous state or to nothing.
   const auto field = [&](const std::complex<double> &factor, bool is_on_base)
   {
     const Eigen::Vector2cd p = memory_wave_strain / K.norm() * factor * wave.polarisation;
     Vector nodal = interpolated(sheet, CosineWave(K, p.real()));
     if (is_on_base)
-      nodal += base;
+      nodal += at_rest.base;
     return nodal;
   };
   // Re(s tau / (1 + s tau) p) is the strain of the spring, so that a branch is relaxed at Re(p / (1 + s tau)).
@@ -189,27 +188,16 @@ ElementWave measure(const WaveContinuum &medium, const Eigen::Matrix2d &F, const
     relaxed.push_back(field(1. / (1. + wave.rate * time), true));
   solver.start(field(1., true), field(wave.rate, false), 0., relaxed);
 
-  continuum::Sheet::Matrix mass;
-  sheet.make_matrix(sheet.conformity_constraints(), mass);
-  sheet.mass(medium.inertia.density, medium.inertia.length, sheet.conformity_constraints(), mass);
-  const Vector shape = interpolated(sheet, CosineWave(K, wave.polarisation.real().normalized()));
-  Vector weights = sheet.make_owned();
-  mass.vmult(weights, shape);
-  for (const auto i : sheet.owned())
-    if (sheet.conformity_constraints().is_constrained(i))
-      weights(i) = 0.;
-  weights.compress(dealii::VectorOperation::insert);
-
-  Vector ghosted = sheet.make_ghosted();
-  ghosted = base;
-  const double energy = solver.ledger().stored + solver.ledger().kinetic - sheet.energy(ghosted);
+  const Vector shape = interpolated(sheet, CosineWave(K, wave.polarisation.real().normalized())),
+               weights = at_rest.weighted(shape);
+  const double of_wave = solver.ledger().stored + solver.ledger().kinetic - energy(sheet, at_rest.base);
   support::LargestError imbalance;
   const auto amplitude = [&]
   {
     Vector difference = sheet.make_owned();
     difference = solver.displacement();
-    difference -= base;
-    imbalance.add(std::abs(solver.ledger().imbalance) / energy);
+    difference -= at_rest.base;
+    imbalance.add(std::abs(solver.ledger().imbalance) / of_wave);
     return (weights * difference) * K.norm() / (memory_wave_strain * (weights * shape));
   };
   const Oscillation found = followed(wave.frequency(), time_step, stride, amplitude, [&] { solver.step(); });
@@ -228,9 +216,9 @@ RitzMatrices ritz_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F
   continuum::Sheet::Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, one_wavelength(K, resolution.cells));
   const continuum::Sheet sheet(mesh, medium.constitution, resolution.degree, periodic_edges());
-  const WaveSheet wave_sheet(medium, sheet, F, K);
+  const WaveSheet at_rest(medium, sheet, F);
   Vector u = sheet.make_ghosted();
-  u = wave_sheet.base();
+  u = at_rest.base;
   continuum::Sheet::Matrix stiffness;
   sheet.make_matrix(sheet.conformity_constraints(), stiffness);
   sheet.tangent(u, sheet.conformity_constraints(), stiffness);
@@ -238,21 +226,18 @@ RitzMatrices ritz_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F
 
   // Both waves at once, by inverse iteration with a shift below them. Translations by whole cells keep waves of other
   // wave vectors out, so what dies out are the higher branches of this one, of 9 times the eigenvalue and more.
-  std::array<Vector, 2> x{wave_sheet.shape(0), wave_sheet.shape(1)};
-  const auto quotient = [&](std::size_t w)
-  { return wave_sheet.form(stiffness, x[w], x[w]) / wave_sheet.form(wave_sheet.mass(), x[w], x[w]); };
+  std::array<Vector, 2> x = elastic_waves(medium, sheet, F, K);
+  const auto quotient = [&](const Vector &y)
+  { return at_rest.form(stiffness, y, y) / at_rest.form(at_rest.mass, y, y); };
   continuum::Sheet::Matrix shifted;
   sheet.make_matrix(sheet.conformity_constraints(), shifted);
   shifted.add(1., stiffness);
-  shifted.add(0.1 * support::smallest_of({quotient(0), quotient(1)}), wave_sheet.mass());
-  Vector b = sheet.make_owned();
+  shifted.add(0.1 * support::smallest_of({quotient(x[0]), quotient(x[1])}), at_rest.mass);
   for (Vector &y : x)
   {
     // Once: nodal values of the wave are off by the size of the interpolation error, of which the eigenvalue has the
     // square.
-    wave_sheet.mass().vmult(b, y);
-    wave_sheet.clear_dependent(b);
-    solver.solve(shifted, y, b);
+    solver.solve(shifted, y, at_rest.weighted(y));
     y *= 1. / y.linfty_norm();
     sheet.conformity_constraints().distribute(y);
   }
@@ -265,9 +250,9 @@ RitzMatrices ritz_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F
   for (std::size_t v = 0; v < 2; ++v)
     for (std::size_t w = 0; w < 2; ++w)
     {
-      ritz.stiffness(v, w) = wave_sheet.form(stiffness, x[v], x[w]);
-      ritz.damping(v, w) = wave_sheet.form(damping, x[v], x[w]);
-      ritz.mass(v, w) = wave_sheet.form(wave_sheet.mass(), x[v], x[w]);
+      ritz.stiffness(v, w) = at_rest.form(stiffness, x[v], x[w]);
+      ritz.damping(v, w) = at_rest.form(damping, x[v], x[w]);
+      ritz.mass(v, w) = at_rest.form(at_rest.mass, x[v], x[w]);
     }
   if (!ritz.stiffness.allFinite() || !ritz.damping.allFinite() || !ritz.mass.allFinite())
     throw std::runtime_error("the finite elements have no waves: their tangent is not finite");
@@ -325,17 +310,13 @@ double sinusoidal_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, 
   continuum::make_rectangle(mesh, rectangle);
   const continuum::Sheet sheet(mesh, medium.constitution, resolution.degree, periodic_edges());
   const Vector base = interpolated(sheet, bridge::AffineDisplacement(F)), shape = interpolated(sheet, CosineWave(K, p));
-  Vector u = sheet.make_ghosted(), sum = sheet.make_owned();
-  const auto energy = [&](double size)
+  const auto of_size = [&](double size)
   {
-    sum = base;
+    Vector sum = base;
     sum.add(size, shape);
-    u = sum;
-    return sheet.energy(u);
+    return energy(sheet, sum);
   };
-  const double at_rest = energy(0.);
-  const auto second = [&](double size) { return 0.5 * (energy(size) + energy(-size) - 2. * at_rest) / (size * size); };
-  return (4. * second(amplitude) - second(2. * amplitude)) / 3. / (rectangle.length * rectangle.height);
+  return half_second_derivative(of_size, amplitude) / (rectangle.length * rectangle.height);
 }
 
 TravellingEnergy travelling_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
@@ -347,9 +328,7 @@ TravellingEnergy travelling_energy(const WaveContinuum &medium, const Eigen::Mat
   continuum::DynamicSolver &solver = moving.solver;
   const continuum::Sheet &sheet = solver.sheet();
   const Vector base = interpolated(sheet, bridge::AffineDisplacement(F));
-  Vector ghosted = sheet.make_ghosted();
-  ghosted = base;
-  const double at_rest = sheet.energy(ghosted);
+  const double at_rest = energy(sheet, base);
   Vector u = base;
   u += interpolated(sheet, CosineWave(K, amplitude * found.polarisation));
   // cos(phase - pi/2) = sin(phase), the rate of cos(phase - w t) at t = 0 over w.

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numeric>
 #include <stdexcept>
 #include <variant>
 
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
-#include "verification/bridge/bloch.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/claims/spectrum.h"
 
 namespace latcon::claims
@@ -25,43 +26,22 @@ constexpr double strain = 1e-5;
 // 2e-7.
 constexpr double phase_per_step = 0.12;
 
-// The sites of a cell and cos K.X there.
-class Sites
+// cos K.X at the sites of a cell, 0 at other places.
+lattice::Field cosine_of(const WaveCell &cell)
 {
-public:
-  explicit Sites(const WaveCell &cell)
-  {
-    for_each_site(cell,
-                  [&](std::size_t place, double phase)
-                  {
-                    places_.push_back(place);
-                    shapes_.push_back(std::cos(phase));
-                  });
-  }
+  lattice::Field shape(cell.sheet.n_places(), 0.);
+  for_each_site(cell, [&](std::size_t place, double phase) { shape[place] = std::cos(phase); });
+  return shape;
+}
 
-  // Sums over the sites of cos K.X times the displacement from another state, and of its square.
-  Eigen::Vector2d project(const lattice::State &now, const lattice::State &at_rest) const
-  {
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-    for (std::size_t i = 0; i < places_.size(); ++i)
-    {
-      const std::size_t place = places_[i];
-      sum += shapes_[i] * Eigen::Vector2d(now.x[place] - at_rest.x[place], now.y[place] - at_rest.y[place]);
-    }
-    return sum;
-  }
-  double norm() const
-  {
-    double sum = 0.;
-    for (const double shape : shapes_)
-      sum += shape * shape;
-    return sum;
-  }
-
-private:
-  std::vector<std::size_t> places_;
-  std::vector<double> shapes_;
-};
+// Sum over the sites of a shape times the displacement from another state.
+Eigen::Vector2d project(const lattice::Field &shape, const lattice::State &now, const lattice::State &at_rest)
+{
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (std::size_t place = 0; place < shape.size(); ++place)
+    sum += shape[place] * Eigen::Vector2d(now.x[place] - at_rest.x[place], now.y[place] - at_rest.y[place]);
+  return sum;
+}
 
 // Both standing waves, released from rest.
 std::vector<Oscillation> measure(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
@@ -72,22 +52,15 @@ std::vector<Oscillation> measure(const WaveCell &cell, const lattice::Material &
   const lattice::State at_rest = lattice::homogeneous_state(cell.sheet, material, F, lattice::Edges::free);
   lattice::State state = at_rest;
   const double amplitude = strain / cell.K.norm();
-  for_each_site(cell,
-                [&](std::size_t place, double phase)
-                {
-                  for (const bridge::PlaneWave &wave : waves)
-                  {
-                    state.x[place] += amplitude * std::cos(phase) * wave.polarisation.x();
-                    state.y[place] += amplitude * std::cos(phase) * wave.polarisation.y();
-                  }
-                });
+  for (const bridge::PlaneWave &wave : waves)
+    add_wave(state, cell, amplitude, wave.polarisation);
   lattice::Simulation simulation(cell.sheet, material, std::move(state), stepping);
-  const Sites sites(cell);
-  const double norm = sites.norm();
+  const lattice::Field shape = cosine_of(cell);
+  const double norm = std::inner_product(shape.begin(), shape.end(), shape.begin(), 0.);
   WaveRecord record(2);
   const auto observe = [&]
   {
-    const Eigen::Vector2d sum = sites.project(simulation.state(), at_rest);
+    const Eigen::Vector2d sum = project(shape, simulation.state(), at_rest);
     for (std::size_t w = 0; w < 2; ++w)
       record.add(w, waves[w].polarisation.dot(sum) / (amplitude * norm));
   };
@@ -172,10 +145,10 @@ Oscillation measure(const WaveCell &cell, const lattice::Material &material, con
   const lattice::State at_rest = lattice::homogeneous_state(cell.sheet, material, F, lattice::Edges::free);
   lattice::Simulation simulation(cell.sheet, material, excited(cell, material, at_rest, wave), time_step);
   const Eigen::Vector2d direction = wave.polarisation.real().normalized();
-  const Sites sites(cell);
+  const lattice::Field shape = cosine_of(cell);
   return followed(
     wave.frequency(), time_step, stride,
-    [&] { return direction.dot(sites.project(simulation.state(), at_rest)) * cell.K.norm() / strain; },
+    [&] { return direction.dot(project(shape, simulation.state(), at_rest)) * cell.K.norm() / strain; },
     [&] { simulation.step(); });
 }
 
@@ -192,6 +165,20 @@ Eigen::Vector2d reciprocal(const WaveDirection &direction, lattice::Orientation 
 }
 
 } // namespace
+
+void add_wave(lattice::State &state, const WaveCell &cell, double amplitude, const Eigen::Vector2d &p, double frequency)
+{
+  for_each_site(cell,
+                [&](std::size_t place, double phase)
+                {
+                  const Eigen::Vector2d u = amplitude * std::cos(phase) * p,
+                                        v = amplitude * frequency * std::sin(phase) * p;
+                  state.x[place] += u.x();
+                  state.y[place] += u.y();
+                  state.vx[place] += v.x();
+                  state.vy[place] += v.y();
+                });
+}
 
 std::array<WaveDirection, 4> wave_directions(lattice::Orientation orientation)
 {

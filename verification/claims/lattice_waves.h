@@ -3,7 +3,8 @@
 #include <array>
 
 #include "lattice/material.h"
-#include "verification/bridge/memory_waves.h"
+#include "lattice/state.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/claims/oscillation.h"
 #include "verification/input/case.h"
 
@@ -28,6 +29,11 @@ void for_each_site(const WaveCell &cell, const Visit &visit)
       visit(place, cell.K.dot(cell.sheet.reference(place)));
     }
 }
+
+/// Adds amplitude p cos(K.X - w t) at t = 0 to the positions of a state, and its rate to the velocities.
+/// @param frequency w [rad/s]
+void add_wave(lattice::State &state, const WaveCell &cell, double amplitude, const Eigen::Vector2d &p,
+              double frequency = 0.);
 
 /// Direction of a wave vector in units of the reciprocal periods of the lattice along x and y; not both 0.
 struct WaveDirection

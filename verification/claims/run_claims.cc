@@ -1,6 +1,5 @@
 #include "verification/claims/run_claims.h"
 
-#include <functional>
 #include <map>
 #include <optional>
 
@@ -11,25 +10,15 @@
 
 namespace latcon::claims
 {
-namespace
-{
 
-// Functions that check the claims, by name.
-const std::map<std::string, std::function<ClaimOutcome(const ClaimInput &)>> &checks()
+ClaimOutcome check_claim(const std::string &name, const ClaimInput &input)
 {
-  static const std::map<std::string, std::function<ClaimOutcome(const ClaimInput &)>> map{
+  static const std::map<std::string, ClaimOutcome (*)(const ClaimInput &)> checks{
 #define LATCON_CLAIM(name, ...) {claim_name(#name), check_##name},
 #include "verification/claims/claim_table.inc"
 #undef LATCON_CLAIM
   };
-  return map;
-}
-
-} // namespace
-
-ClaimOutcome check_claim(const std::string &name, const ClaimInput &input)
-{
-  return checks().at(name)(input);
+  return checks.at(name)(input);
 }
 
 ClaimOutcome run_claims(const input::Case &input, const std::vector<Claim> &claims, bool quick, Shells shells,

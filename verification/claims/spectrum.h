@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "lattice/material.h"
+#include "lattice/state.h"
 
 namespace latcon::claims
 {
@@ -50,7 +50,19 @@ inline lattice::Material with_branches(lattice::Material material, const std::ve
   return material;
 }
 
-/// Returns a material with other branches in the lattice that runs; tests plant faults with it. Empty: the same.
+/// Returns the held sheet, strained suddenly from I to F: memories are those of the unloaded sheet at rest.
+inline lattice::State suddenly_strained(const lattice::RowPartition &rows, const lattice::Material &material,
+                                        const Eigen::Matrix2d &F)
+{
+  lattice::State unloaded =
+    lattice::homogeneous_state(rows, material, Eigen::Matrix2d::Identity(), lattice::Edges::held);
+  lattice::relax_memory(unloaded, rows, material);
+  lattice::State state = lattice::homogeneous_state(rows, material, F, lattice::Edges::held);
+  state.history = std::move(unloaded.history);
+  return state;
+}
+
+/// Returns a material with other branches in the lattice that runs; tests plant faults with it.
 using PlantedBranches = std::function<lattice::Material(const lattice::Material &)>;
 
 } // namespace latcon::claims

@@ -11,7 +11,7 @@
 #include "continuum/field_writer.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/field_function.h"
-#include "verification/bridge/homogenised_memory.h"
+#include "verification/bridge/homogenisation.h"
 #include "verification/commands/equilibrium.h"
 #include "verification/commands/motion.h"
 #include "verification/output/continuum_record.h"

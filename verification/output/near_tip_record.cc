@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "verification/bridge/bloch.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/bridge/small_strain.h"
 #include "verification/output/near_tip_writer.h"
 #include "verification/output/output_file.h"

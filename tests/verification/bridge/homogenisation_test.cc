@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/subjects.h"
-#include "verification/bridge/homogenised_memory.h"
 #include "verification/claims/intrinsic_length/dispersion.h"
 
 namespace homogenisation_test

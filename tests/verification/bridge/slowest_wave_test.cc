@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/subjects.h"
-#include "verification/bridge/bloch.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/claims/states.h"
 
 namespace slowest_wave_test

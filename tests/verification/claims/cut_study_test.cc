@@ -132,7 +132,7 @@ TEST(CutStudy, ForcesOnAnEdgeIncludeThoseNextToAFreeEdge)
     const CutLattice cut = relaxed_lattice(right, sheet);
     const EquivalentSheet domain = equivalent_sheet(cut.lattice, right.material, cut.state, sheet.held, sheet.cutout);
     std::string failure;
-    const auto found = compare(cut, sheet, domain, {right.cauchy_born}, study.mesh, failure);
+    const auto found = compare(cut, domain, {right.cauchy_born}, study.mesh, failure);
     ASSERT_TRUE(found) << failure;
     errors.push_back(found->errors.reaction_vector);
   }

@@ -4,9 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/faults.h"
-#include "verification/claims/intrinsic_length/dispersion.h"
 #include "verification/claims/intrinsic_length/edge_layer.h"
-#include "verification/claims/intrinsic_length/gradient_positivity.h"
 
 namespace intrinsic_length_test
 {
@@ -18,12 +16,7 @@ using namespace claims;
 using namespace input;
 using namespace output;
 
-IntrinsicLengthOptions small_version()
-{
-  IntrinsicLengthOptions options;
-  options.angle_step = 30.;
-  return options;
-}
+constexpr double angle_step = 30.;
 
 Eigen::Vector2d direction(double degrees)
 {
@@ -118,7 +111,7 @@ TEST(GradientPositivity, HasNoLengthWhereBondsAreCompressed)
 
   Subject subject = bridge::subject(input, subjects::nearest_only(input));
   subject.deformation = compressed;
-  const ClaimOutcome outcome = intrinsic_length_claim(subject, small_version());
+  const ClaimOutcome outcome = intrinsic_length_claim(subject, angle_step);
   EXPECT_EQ(faults::failing(outcome.results, ""), 0u);
   std::size_t n_reported = 0;
   for (const Result &row : outcome.results.rows())
@@ -135,7 +128,7 @@ TEST(GradientPositivity, HasNoLengthWhereBondsAreCompressed)
 TEST(IntrinsicLength, HoldsForBothShellSetsAndOrientations)
 {
   faults::expect_holds([](const Case &, const Subject &subject)
-                       { return intrinsic_length_claim(subject, small_version()).results; });
+                       { return intrinsic_length_claim(subject, angle_step).results; });
 }
 
 } // namespace intrinsic_length_test

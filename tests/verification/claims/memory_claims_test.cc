@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "tests/verification/claims/subjects.h"
-#include "verification/bridge/bloch.h"
-#include "verification/bridge/memory_waves.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/claims/relaxation/relaxation_claim.h"
 #include "verification/claims/viscoelastic_waves/viscoelastic_waves_claim.h"
 #include "verification/commands/claim_registry.h"

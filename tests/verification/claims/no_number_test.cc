@@ -12,10 +12,9 @@
 #include <vector>
 
 #include "tests/verification/claims/faults.h"
-#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/claim_inputs.h"
 #include "verification/claims/energy/energy_claim.h"
-#include "verification/claims/energy/wave_energy.h"
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 #include "verification/claims/prestretch/cut_study.h"
 #include "verification/claims/prestretch/prestretch_claim.h"
@@ -174,12 +173,8 @@ const ClaimPart damped_waves{"wave-speeds, damped", [](const Subject &s)
                                options.damped_states = {s.deformation};
                                return wave_speeds_claim(s, options).results;
                              }};
-const ClaimPart intrinsic_length{"intrinsic-length", [](const Subject &s)
-                                 {
-                                   IntrinsicLengthOptions options;
-                                   options.angle_step = 30.;
-                                   return intrinsic_length_claim(s, options).results;
-                                 }};
+const ClaimPart intrinsic_length{"intrinsic-length",
+                                 [](const Subject &s) { return intrinsic_length_claim(s, 30.).results; }};
 const ClaimPart prestretch{"prestretch", [](const Subject &s)
                            {
                              PrestretchOptions options;

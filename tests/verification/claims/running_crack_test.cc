@@ -174,7 +174,7 @@ TEST(TipField, AveragesAndInterpolates)
   CrackDrive drive{1., lattice::Orientation::rows_along_crack, 40., 30., 0., 1., 4};
   drive.start_near(20.);
   const lattice::TriangularLattice sheet(1., 40., 30., drive.orientation);
-  TipField field(drive, 6.);
+  TipField field(drive);
   std::size_t n = 0;
   for (unsigned int stride = 1; stride <= CrackDrive::n_samples; ++stride)
     for (const TipSite &site : tip_sites(drive, sheet, drive.tip(stride), 6.))

@@ -10,10 +10,7 @@
 
 #include "tests/verification/claims/faults.h"
 #include "verification/claims/order_fit.h"
-#include "verification/claims/steady_crack/crack_run.h"
-#include "verification/claims/steady_crack/static_crack.h"
 #include "verification/claims/steady_crack/steady_crack_claim.h"
-#include "verification/claims/steady_crack/steady_fields.h"
 
 namespace steady_crack_test
 {

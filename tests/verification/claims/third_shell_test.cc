@@ -5,7 +5,6 @@
 #include "tests/verification/claims/small_sheet.h"
 #include "verification/claims/claim_inputs.h"
 #include "verification/claims/energy/energy_claim.h"
-#include "verification/claims/intrinsic_length/dispersion.h"
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 #include "verification/claims/prestretch/prestretch_claim.h"
 
@@ -30,12 +29,7 @@ Case with_third_shell(lattice::Orientation orientation = lattice::Orientation::r
 
 constexpr unsigned int samples = 50;
 
-IntrinsicLengthOptions few_angles()
-{
-  IntrinsicLengthOptions options;
-  options.angle_step = 30.;
-  return options;
-}
+constexpr double angle_step = 30.;
 
 void expect_none_fails(const Results &results)
 {
@@ -99,10 +93,10 @@ TEST(ThirdShell, IsAmongTheInputsOfClaims)
 
 TEST(ThirdShell, IntrinsicLengthHolds)
 {
-  expect_none_fails(intrinsic_length_claim(subject(with_third_shell()), few_angles()).results);
+  expect_none_fails(intrinsic_length_claim(subject(with_third_shell()), angle_step).results);
   Case without_next_nearest = with_third_shell(); // whose free edges have no layer
   without_next_nearest.has_next_nearest = false;
-  expect_none_fails(intrinsic_length_claim(subject(without_next_nearest), few_angles()).results);
+  expect_none_fails(intrinsic_length_claim(subject(without_next_nearest), angle_step).results);
 }
 
 } // namespace claims_third_shell_test

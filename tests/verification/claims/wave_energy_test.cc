@@ -1,12 +1,11 @@
 // Energies of fields that vary, and what makes the claim about them fail.
-#include "verification/claims/energy/wave_energy.h"
+#include "verification/claims/energy/energy_claim.h"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/faults.h"
-#include "verification/claims/energy/energy_claim.h"
 
 namespace wave_energy_test
 {

@@ -5,7 +5,7 @@
 
 #include "lattice/forces.h"
 #include "tests/verification/claims/faults.h"
-#include "verification/bridge/bloch.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/claims/lattice_waves.h"
 
 namespace wave_speeds_test

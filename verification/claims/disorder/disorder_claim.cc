@@ -9,7 +9,6 @@
 #include "lattice/energy.h"
 #include "lattice/relaxation.h"
 #include "support/largest_error.h"
-#include "verification/claims/claim_input.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/disorder/effective_medium.h"
 #include "verification/claims/rows.h"
@@ -34,11 +33,6 @@ double student_quantile(double n)
   return boost::math::quantile(boost::math::complement(boost::math::students_t(n - 1.), 0.5 * exceeded));
 }
 
-Rows disorder_rows(const bridge::Subject &subject, ClaimOutcome &outcome)
-{
-  return {outcome.results, "disorder", subject.name + ": "};
-}
-
 // One sheet at one load.
 struct Measured
 {
@@ -49,10 +43,12 @@ struct Measured
 class DisorderedSheets
 {
 public:
-  DisorderedSheets(const bridge::Subject &subject, const DisorderOptions &options, lattice::Disorder disorder)
-    : subject_(subject), options_(options), disorder_(std::move(disorder)),
-      sheet_(subject.spacing, extent(options), pitch() * extent(options), lattice::Orientation::rows_along_crack,
-             {true, true}),
+  DisorderedSheets(const bridge::Subject &subject, const DisorderOptions &options, lattice::Disorder disorder,
+                   const Rows &rows)
+    : subject_(subject), options_(options), disorder_(std::move(disorder)), rows_(rows),
+      sheet_(subject.spacing, static_cast<double>(options.columns) * subject.spacing,
+             std::sqrt(3.) / 2. * (static_cast<double>(options.columns) * subject.spacing),
+             lattice::Orientation::rows_along_crack, {true, true}),
       material_(lattice::without_dashpots(subject.material)),
       medium_(effective_medium(sheet_, material_, disorder_.stiffness))
   {
@@ -62,28 +58,21 @@ public:
   {
     Eigen::Matrix2d shear;
     shear << 1., 0., 0., -1.;
-    const std::vector<std::pair<std::string, Eigen::Matrix2d>> loads{{"bulk modulus", Eigen::Matrix2d::Identity()},
-                                                                     {"shear modulus", shear}};
-    std::vector<std::vector<Measured>> measured(loads.size());
+    const Eigen::Matrix2d dilation = Eigen::Matrix2d::Identity();
+    std::vector<Measured> dilated, sheared;
     for (std::size_t i = 0; i < options_.n_sheets; ++i)
     {
       material_.disorder = disorder_;
       material_.disorder.seed += i;
-      for (std::size_t load = 0; load < loads.size(); ++load)
-        measured[load].push_back(measure(loads[load].second, load == 0));
+      dilated.push_back(measure(dilation, true));
+      sheared.push_back(measure(shear, false));
     }
-    add_factor_rows(outcome);
-    for (std::size_t load = 0; load < loads.size(); ++load)
-      add_modulus_rows(loads[load].first, loads[load].second, measured[load], outcome);
+    add_factor_rows();
+    add_modulus_rows("bulk modulus", dilation, dilated, outcome);
+    add_modulus_rows("shear modulus", shear, sheared, outcome);
   }
 
 private:
-  static double pitch() { return std::sqrt(3.) / 2.; }
-  double extent(const DisorderOptions &options) const
-  {
-    return static_cast<double>(options.columns) * subject_.spacing;
-  }
-
   // Energy of an undisordered bond of a kind under a strain, over a common factor.
   double weight(std::size_t kind, const Eigen::Matrix2d &load) const
   {
@@ -104,8 +93,7 @@ private:
     {
       lattice::State state = lattice::homogeneous_state(
         sheet_, material_, Eigen::Matrix2d::Identity() + sign * load_strain * load, lattice::Edges::free);
-      if (options_.planted)
-        options_.planted(state);
+      options_.planted(state);
       if (sign > 0.)
         lattice::for_each_bond(state, sheet_,
                                [&](const lattice::Bond &bond)
@@ -115,8 +103,11 @@ private:
                                  all += w;
                                  stiff += w * factor;
                                  soft += w / factor;
-                                 if (counts_factors)
-                                   note(factor);
+                                 if (!counts_factors)
+                                   return;
+                                 n_factors_ += 1.;
+                                 sum_ += factor - 1.;
+                                 squares_ += (factor - 1.) * (factor - 1.);
                                });
       result.homogeneous += lattice::elastic_energy(state, sheet_, material_);
       const double force =
@@ -129,23 +120,15 @@ private:
     return result;
   }
 
-  void note(double factor)
-  {
-    n_factors_ += 1.;
-    sum_ += factor - 1.;
-    squares_ += (factor - 1.) * (factor - 1.);
-  }
-
-  void add_factor_rows(ClaimOutcome &outcome) const
+  void add_factor_rows() const
   {
     const double width = disorder_.stiffness.width(), mean = 1. + sum_ / n_factors_;
     const double found = std::sqrt(squares_ / n_factors_);
     const double fourth = mean_over(disorder_.stiffness, [](double factor) { return std::pow(factor - 1., 4); });
     const double root = std::sqrt(n_factors_);
-    const Rows rows = disorder_rows(subject_, outcome);
-    rows.add("mean factor of the stiffness of the bonds of all sheets", "1", of_lattice(mean, 1.), std::abs(mean - 1.),
+    rows_.add("mean factor of the stiffness of the bonds of all sheets", "1", of_lattice(mean, 1.), std::abs(mean - 1.),
              {normal_quantile * width / root, "five standard errors of a mean over all bonds"});
-    rows.add("standard deviation of the factor", "1", of_lattice(found, width), support::relative_error(found, width),
+    rows_.add("standard deviation of the factor", "1", of_lattice(found, width), support::relative_error(found, width),
              {0.5 * normal_quantile * std::sqrt(fourth / std::pow(width, 4) - 1.) / root,
               "five standard errors, from the fourth moment of the distribution"});
   }
@@ -192,11 +175,10 @@ private:
     const double of_pairs = 0.5 * share * (1. - share) * std::pow(width, 4);
     const double order = of_pairs + std::pow(width, 5);
     const double nonlinear = nonlinearity_tolerance * (1. - theory);
-    const Rows rows = disorder_rows(subject_, outcome);
-    rows.add(modulus + " over that of homogeneous deformation, beyond the bounds of Voigt and Reuss, worst sheet", "1",
+    rows_.add(modulus + " over that of homogeneous deformation, beyond the bounds of Voigt and Reuss, worst sheet", "1",
              of_lattice(excess.value()), excess,
              {nonlinear, "laws that are not linear: 100 times the square of the strain, times the reduction"});
-    rows.add("reduction of the " + modulus +
+    rows_.add("reduction of the " + modulus +
                " by disorder, mean over sheets against effective medium, error over the modulus",
              "1", of_lattice(1. - mean, 1. - theory), std::abs(mean - theory),
              {sampling + order + nonlinear,
@@ -207,6 +189,7 @@ private:
   const bridge::Subject &subject_;
   const DisorderOptions &options_;
   lattice::Disorder disorder_;
+  const Rows &rows_;
   lattice::TriangularLattice sheet_;
   lattice::Material material_;
   EffectiveMedium medium_;
@@ -223,9 +206,9 @@ ClaimOutcome disorder_claim(const bridge::Subject &subject, const DisorderOption
     disorder.stiffness = {lattice::Distribution::Kind::uniform, widest_checked_disorder};
   else if (disorder.stiffness.width() > widest_checked_disorder)
     disorder.stiffness = {disorder.stiffness.kind(), widest_checked_disorder};
-  disorder_rows(subject, outcome)
-    .attempt("sheets with disorder of the stiffness",
-             [&] { DisorderedSheets(subject, options, disorder).run(outcome); });
+  const Rows rows(outcome.results, "disorder", subject.name + ": ");
+  rows.attempt("sheets with disorder of the stiffness",
+               [&] { DisorderedSheets(subject, options, disorder, rows).run(outcome); });
   return outcome;
 }
 

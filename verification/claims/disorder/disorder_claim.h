@@ -15,7 +15,7 @@ struct DisorderOptions
   lattice::Disorder disorder = {};                    ///< of the case; its strength does not matter
   std::size_t n_sheets = 24;                          ///< with different seeds, at least 2
   std::size_t columns = 24;                           ///< sites along and rows across a periodic sheet, even
-  std::function<void(lattice::State &)> planted = {}; ///< changes a sheet before it relaxes; for tests
+  std::function<void(lattice::State &)> planted = [](auto &) {}; ///< changes a sheet before it relaxes; for tests
 };
 
 /// Widest distribution of stiffness for which the claim is checked [-]; a wider one is taken with this width.

@@ -1,13 +1,12 @@
-#include "verification/claims/energy/wave_energy.h"
+#include "verification/claims/energy/energy_claim.h"
 
-#include <array>
 #include <cmath>
 #include <sstream>
 
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
-#include "verification/bridge/bloch.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/claims/lattice_waves.h"
 #include "verification/claims/order_fit.h"
 #include "verification/claims/states.h"
@@ -24,15 +23,6 @@ const output::Tolerance lattice_energy_tolerance{
 // Travelling waves that are judged.
 constexpr double judged_kd = 0.25;
 
-// (1/2) d2E/de2 at e = 0 of an energy without odd terms.
-template <class Energy>
-double half_second_derivative(const Energy &energy, double e)
-{
-  const double at_rest = energy(0.);
-  const auto second = [&](double x) { return 0.5 * (energy(x) + energy(-x) - 2. * at_rest) / (x * x); };
-  return (4. * second(e) - second(2. * e)) / 3.;
-}
-
 // Energy density that the displacement amplitude * p cos K.X adds, over amplitude^2 [J/m^5], on the lattice.
 double lattice_stiffness(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
                          const Eigen::Vector2d &p)
@@ -42,12 +32,7 @@ double lattice_stiffness(const WaveCell &cell, const lattice::Material &material
   const auto energy = [&](double amplitude)
   {
     lattice::State state = at_rest;
-    for_each_site(cell,
-                  [&](std::size_t place, double phase)
-                  {
-                    state.x[place] += amplitude * std::cos(phase) * p.x();
-                    state.y[place] += amplitude * std::cos(phase) * p.y();
-                  });
+    add_wave(state, cell, amplitude, p);
     lattice::update_images(state, sheet);
     return lattice::elastic_energy(state, sheet, material);
   };
@@ -145,28 +130,14 @@ void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
 // Of the lattice, in the eighth of a period for which a wave travels.
 constexpr double least_steps = 40.;
 
-struct Densities
-{
-  double elastic, kinetic; // [J/m^3]
-};
-
 // A wave amplitude * p cos(K.X - w t) that travels through the lattice for an eighth of a period.
-Densities travelling_lattice(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
-                             const bridge::PlaneWave &wave, double amplitude)
+TravellingEnergy travelling_lattice(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
+                                    const bridge::PlaneWave &wave, double amplitude)
 {
   const lattice::TriangularLattice &sheet = cell.sheet;
   lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
   const double at_rest = lattice::elastic_energy(state, sheet, material);
-  for_each_site(cell,
-                [&](std::size_t place, double phase)
-                {
-                  const Eigen::Vector2d u = amplitude * std::cos(phase) * wave.polarisation,
-                                        v = amplitude * wave.frequency * std::sin(phase) * wave.polarisation;
-                  state.x[place] += u.x();
-                  state.y[place] += u.y();
-                  state.vx[place] = v.x();
-                  state.vy[place] = v.y();
-                });
+  add_wave(state, cell, amplitude, wave.polarisation, wave.frequency);
   // The wave itself shortens bonds a little more.
   const double limit = lattice::time_step_limits(sheet, material, 0.99 * smallest_stretch(sheet, F)).combined;
   const double eighth = 0.25 * M_PI / wave.frequency;
@@ -176,7 +147,7 @@ Densities travelling_lattice(const WaveCell &cell, const lattice::Material &mate
     simulation.step();
   const lattice::EnergyBalance energies = simulation.energies();
   const double area = static_cast<double>(sheet.n_sites()) * sheet.site_area();
-  return {(energies.elastic - at_rest) / area, energies.kinetic / area};
+  return {(energies.elastic - at_rest) / area, energies.kinetic / area, 0.};
 }
 
 void travelling(const bridge::Subject &subject, const Eigen::Matrix2d &F, double wanted_kd, const WaveMesh &mesh,
@@ -201,7 +172,7 @@ void travelling(const bridge::Subject &subject, const Eigen::Matrix2d &F, double
                                        "fem_kinetic [J/m^3]", "fem_micro_inertia [J/m^3]", "theory [J/m^3]"});
   for (std::size_t w = 0; w < 2; ++w)
   {
-    const Densities run = travelling_lattice(cell, material, F, bloch[w], amplitude);
+    const TravellingEnergy run = travelling_lattice(cell, material, F, bloch[w], amplitude);
     const TravellingEnergy elements = travelling_energy(media.gradient, F, cell.K, w, amplitude, mesh);
     const double theory = 0.5 * rho * std::pow(bloch[w].frequency * amplitude, 2),
                  continuum_theory = 0.5 * rho * inertia * std::pow(closed[w].frequency * amplitude, 2);

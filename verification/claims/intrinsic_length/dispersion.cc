@@ -1,10 +1,10 @@
-#include "verification/claims/intrinsic_length/dispersion.h"
+#include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 
 #include <cmath>
 
 #include <Eigen/LU>
 
-#include "verification/bridge/bloch.h"
+#include "verification/bridge/plane_waves.h"
 
 namespace latcon::claims
 {

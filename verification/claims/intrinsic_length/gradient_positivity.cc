@@ -1,4 +1,4 @@
-#include "verification/claims/intrinsic_length/gradient_positivity.h"
+#include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 
 #include <cmath>
 #include <limits>

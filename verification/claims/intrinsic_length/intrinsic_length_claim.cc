@@ -3,11 +3,8 @@
 #include <cmath>
 
 #include "support/largest_error.h"
-#include "verification/claims/claim_input.h"
 #include "verification/claims/claim_list.h"
-#include "verification/claims/intrinsic_length/dispersion.h"
 #include "verification/claims/intrinsic_length/edge_layer.h"
-#include "verification/claims/intrinsic_length/gradient_positivity.h"
 #include "verification/claims/rows.h"
 #include "verification/claims/states.h"
 
@@ -31,20 +28,14 @@ output::Tolerance run_tolerance(const bridge::Subject &subject)
           "7.6e-6; errors of the waves, 2e-7, times twenty; half of both for a margin"};
 }
 
-Rows length_rows(const bridge::Subject &subject, ClaimOutcome &outcome)
-{
-  return {outcome.results, "intrinsic-length", subject.name + ": "};
-}
-
 // alpha at F = I: its dependence on direction, from Bloch, from runs, in the continua.
-void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &options, ClaimOutcome &outcome)
+void dispersion(const bridge::Subject &subject, double angle_step, const Rows &rows, ClaimOutcome &outcome)
 {
   const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
   const lattice::TriangularLattice sheet = subject.sheet();
   const lattice::Material material = lattice::without_dashpots(subject.material);
   const double d = subject.spacing;
   const SubjectContinua media(subject);
-  const Rows rows = length_rows(subject, outcome);
 
   // All directions.
   output::Table &table = outcome.table("dispersion", {"shells", "angle [deg]", "alpha_L", "alpha_S", "nearest_L",
@@ -55,7 +46,7 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
   std::array<support::LargestError, 2> network_loss;
   std::vector<Alpha> of_network;
   Alpha mean{}, isotropic_alpha{}, nearest_mean{};
-  const auto n_angles = static_cast<int>(std::lround(180. / options.angle_step));
+  const auto n_angles = static_cast<int>(std::lround(180. / angle_step));
   for (int i = 0; i <= n_angles; ++i)
   {
     const double degrees = 180. * i / n_angles, radians = degrees * M_PI / 180.;
@@ -137,12 +128,11 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
 }
 
 // The length that keeps the gradient energy positive.
-void positivity(const bridge::Subject &subject, ClaimOutcome &outcome)
+void positivity(const bridge::Subject &subject, const Rows &rows)
 {
   const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
   const lattice::TriangularLattice sheet = subject.sheet();
   const double d = subject.spacing, unit = subject.theory.shear_modulus * d * d;
-  const Rows rows = length_rows(subject, outcome);
   const double longest = subject.material.third_nearest  ? 2. * d
                          : subject.material.next_nearest ? std::sqrt(3.) * d
                                                          : d;
@@ -151,12 +141,7 @@ void positivity(const bridge::Subject &subject, ClaimOutcome &outcome)
            of_both(length, subject.lengths.lattice, length), support::relative_error(subject.lengths.lattice, length),
            equal_closed_forms);
 
-  struct State
-  {
-    const char *name;
-    Eigen::Matrix2d F;
-  };
-  for (const auto &[name, F] : {State{"F = I", I}, State{"loaded", subject.deformation}})
+  for (const auto &[name, F] : {std::pair("F = I", I), std::pair("loaded", subject.deformation)})
   {
     const std::string where = std::string(", ") + name;
     const std::optional<double> critical = critical_length(sheet, subject.material, F);
@@ -185,15 +170,16 @@ void positivity(const bridge::Subject &subject, ClaimOutcome &outcome)
 }
 
 // A free edge, its rows along x.
-void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &options, ClaimOutcome &outcome)
+void edge_layer(const bridge::Subject &subject, const Rows &rows, ClaimOutcome &outcome)
 {
-  const Rows rows = length_rows(subject, outcome);
+  constexpr double stretch = 1.05; // along the edge [-]
+  constexpr std::size_t n_rows = 12;
   const lattice::Material material = lattice::without_dashpots(subject.material);
   // Without an equilibrium the rows fail.
-  EdgeLayer layer{unknown, std::vector<double>(options.edge_rows, unknown), unknown};
+  EdgeLayer layer{unknown, std::vector<double>(n_rows, unknown), unknown};
   rows.attempt("edge layer, relaxed strip",
-               [&] { layer = relaxed_edge(subject.spacing, material, options.edge_stretch, options.edge_rows); });
-  const double root = edge_decay(subject.spacing, material, options.edge_stretch, layer.stretch_across);
+               [&] { layer = relaxed_edge(subject.spacing, material, stretch, n_rows); });
+  const double root = edge_decay(subject.spacing, material, stretch, layer.stretch_across);
   // Linear from the third spacing on, where the deviation is below 1e-3; anchored there.
   constexpr std::size_t anchor = 2;
   output::Table &table = outcome.table("edge_layer", {"shells", "row", "deviation", "theory"});
@@ -215,9 +201,7 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
              largest, {1e-10, "residual of the relaxed strip"});
     return;
   }
-  rows.add("edge layer: deviation of the first row spacing, stretch " +
-             std::to_string(options.edge_stretch).substr(0, 4),
-           "1", of_lattice(layer.deviations[0]));
+  rows.add("edge layer: deviation of the first row spacing, stretch 1.05", "1", of_lattice(layer.deviations[0]));
   // Rows four to seven: the second power of the deviation is gone, round-off not yet met.
   constexpr std::size_t first = 3, last = 6;
   const double decay = -std::pow(std::abs(layer.deviations[last] / layer.deviations[first]), 1. / (last - first));
@@ -230,9 +214,7 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
                     "terms of second order: deviation of the fourth row times third over second moduli, up to 10"));
   // Layer of a continuum with that gradient energy: exp(-Y / l), of one sign.
   const WaveContinuum gradient{{subject.cauchy_born, *subject.lattice_gradient}, {subject.material.density, 0.}};
-  Eigen::Matrix2d F = Eigen::Matrix2d::Identity();
-  F(0, 0) = options.edge_stretch;
-  F(1, 1) = layer.stretch_across;
+  const Eigen::Matrix2d F = Eigen::Vector2d(stretch, layer.stretch_across).asDiagonal();
   const Alpha alpha = continuum_alpha(gradient, F, Eigen::Vector2d(0., 1.), subject.spacing);
   rows.add("edge layer: decay factor per row, gradient continuum (always positive)", "1",
            of_both(factor, std::exp(-std::sqrt(3.) / 2. / std::sqrt(-alpha[0]))));
@@ -240,21 +222,19 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
 
 } // namespace
 
-ClaimOutcome intrinsic_length_claim(const bridge::Subject &subject, const IntrinsicLengthOptions &options)
+ClaimOutcome intrinsic_length_claim(const bridge::Subject &subject, double angle_step)
 {
   ClaimOutcome outcome;
-  const Rows rows = length_rows(subject, outcome);
-  rows.attempt("alpha", [&] { dispersion(subject, options, outcome); });
-  rows.attempt("positive gradient energy", [&] { positivity(subject, outcome); });
-  rows.attempt("edge layer", [&] { edge_layer(subject, options, outcome); });
+  const Rows rows(outcome.results, "intrinsic-length", subject.name + ": ");
+  rows.attempt("alpha", [&] { dispersion(subject, angle_step, rows, outcome); });
+  rows.attempt("positive gradient energy", [&] { positivity(subject, rows); });
+  rows.attempt("edge layer", [&] { edge_layer(subject, rows, outcome); });
   return outcome;
 }
 
 ClaimOutcome check_intrinsic_length(const ClaimInput &input)
 {
-  IntrinsicLengthOptions options;
-  options.angle_step = input.quick ? 15. : 3.;
-  return intrinsic_length_claim(input.subject, options);
+  return intrinsic_length_claim(input.subject, input.quick ? 15. : 3.);
 }
 
 } // namespace latcon::claims

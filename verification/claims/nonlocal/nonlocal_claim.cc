@@ -6,16 +6,12 @@
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
 #include "verification/bridge/anisotropy.h"
-#include "verification/bridge/bloch.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/nonlocal_continuum.h"
-#include "verification/claims/claim_input.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/continuum_waves.h"
 #include "verification/claims/homogeneous_deformations.h"
-#include "verification/claims/nonlocal/ring_convergence.h"
-#include "verification/claims/nonlocal/stencil_sheet.h"
-#include "verification/claims/rows.h"
 #include "verification/claims/states.h"
 
 namespace latcon::claims
@@ -36,20 +32,16 @@ Eigen::Vector2d vector_of_wave(double k, double angle)
   return {k * std::cos(angle), k * std::sin(angle)};
 }
 
-// Bound (H.26) on the error of a sum over bonds, `values` being the share of a bond of a shell with direction N.
-template <class Values>
-double bound_of_harmonics(const bridge::Subject &subject, const Values &values)
+// Bound (H.26) on the error of a sum over bonds, `share` being the 1 or 4 values of a bond of a ring with direction N.
+template <class Share>
+double bound_of_harmonics(const bridge::Subject &subject, int n_values, const Share &share)
 {
   double bound = 0.;
   for (const lattice::Ring &ring : bridge::rings_of(subject.material, subject.spacing, subject.orientation))
   {
-    Eigen::MatrixXd columns;
+    Eigen::MatrixXd columns(n_values, bridge::n_bond_directions);
     for (int k = 0; k < bridge::n_bond_directions; ++k)
-    {
-      const Eigen::VectorXd value = values(*subject.material.in_shell(ring.shell), ring, bridge::bond_direction(k));
-      columns.conservativeResize(value.size(), bridge::n_bond_directions);
-      columns.col(k) = value;
-    }
+      columns.col(k) = share(*subject.material.in_shell(ring.shell), ring, bridge::bond_direction(k)).reshaped();
     bound += bridge::ring_weight(subject.material, subject.spacing, ring) * bridge::direction_mean(columns).bound;
   }
   return bound;
@@ -66,20 +58,15 @@ struct NetworkAt
     : energy(subject.network.energy(bridge::to_continuum(F))),
       stress(bridge::to_lattice(subject.network.first_piola_stress(bridge::to_continuum(F))))
   {
-    energy_bound = *equal_sums * std::abs(energy) +
-                   bound_of_harmonics(subject,
-                                      [&](const lattice::Shell &shell, const lattice::Ring &, const Eigen::Vector2d &N) {
-                                        return Eigen::VectorXd::Constant(1, lattice::energy(shell.law, (F * N).norm()));
-                                      });
-    stress_bound =
-      *equal_sums * stress.norm() +
-      bound_of_harmonics(subject,
-                         [&](const lattice::Shell &shell, const lattice::Ring &, const Eigen::Vector2d &N)
-                         {
-                           const Eigen::Vector2d n = F * N;
-                           const Eigen::Matrix2d P = lattice::force(shell.law, n.norm()) / n.norm() * n * N.transpose();
-                           return Eigen::VectorXd(P.reshaped());
-                         });
+    const auto energy_of = [&](const lattice::Shell &shell, const lattice::Ring &, const Eigen::Vector2d &N)
+    { return Eigen::VectorXd::Constant(1, lattice::energy(shell.law, (F * N).norm())).eval(); };
+    const auto stress_of = [&](const lattice::Shell &shell, const lattice::Ring &, const Eigen::Vector2d &N)
+    {
+      const Eigen::Vector2d n = F * N;
+      return Eigen::Matrix2d(lattice::force(shell.law, n.norm()) / n.norm() * n * N.transpose());
+    };
+    energy_bound = *equal_sums * std::abs(energy) + bound_of_harmonics(subject, 1, energy_of);
+    stress_bound = *equal_sums * stress.norm() + bound_of_harmonics(subject, 4, stress_of);
   }
 };
 
@@ -87,17 +74,16 @@ struct NetworkAt
 double wave_bound(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
 {
   return bound_of_harmonics(
-    subject,
+    subject, 4,
     [&](const lattice::Shell &shell, const lattice::Ring &ring, const Eigen::Vector2d &N)
     {
       const Eigen::Vector2d n = F * N;
       const double stretch = n.norm(), l = ring.radius;
       const Eigen::Matrix2d along = n * n.transpose() / (stretch * stretch);
       const double phase = std::pow(2. * std::sin(0.5 * l * K.dot(N)) / l, 2) / subject.material.density;
-      const Eigen::Matrix2d share = phase * (lattice::stiffness(shell.law, stretch) * along +
-                                             lattice::force(shell.law, stretch) / stretch *
-                                               (Eigen::Matrix2d::Identity() - along));
-      return Eigen::VectorXd(share.reshaped());
+      return Eigen::Matrix2d(phase * (lattice::stiffness(shell.law, stretch) * along +
+                                      lattice::force(shell.law, stretch) / stretch *
+                                        (Eigen::Matrix2d::Identity() - along)));
     });
 }
 
@@ -121,19 +107,6 @@ double squared_length_of(const bridge::Subject &subject, const Stiffness &stiffn
 Eigen::Matrix2d of_lattice_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
 {
   return bridge::bloch_matrices(subject.sheet(), lattice::without_dashpots(subject.material), F, K).stiffness;
-}
-
-// Mean of the lattice's matrix over its rotations.
-Eigen::Matrix2d mean_of_lattice_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F,
-                                      const Eigen::Vector2d &K)
-{
-  Eigen::MatrixXd matrices(4, bridge::n_lattice_rotations);
-  for (int k = 0; k < bridge::n_lattice_rotations; ++k)
-  {
-    const Eigen::Matrix2d R = bridge::lattice_rotation(k);
-    matrices.col(k) = of_lattice_waves(subject, F * R, R.transpose() * K).reshaped();
-  }
-  return bridge::rotation_mean(matrices).mean.reshaped(2, 2);
 }
 
 // Rows of one stencil, and the largest errors of several.
@@ -237,6 +210,7 @@ private:
   {
     const double d = subject_.spacing, h = stencil.grid.spacing;
     const SubjectContinua media(subject_);
+    const lattice::Material elastic = lattice::without_dashpots(subject_.material);
     // The width of a ring lengthens its bonds in the mean of squares, the shortest ring most, see (H.27).
     const double longer = 0.5 * std::pow(h / d, 2) + 0.19 * std::pow(h / d, 1.5);
     std::vector<Eigen::Matrix2d> states{Eigen::Matrix2d::Identity()};
@@ -246,7 +220,8 @@ private:
       for (const double degrees : stencil_wave_degrees)
       {
         const Eigen::Vector2d K = vector_of_wave(stencil_wave_kd / d, degrees * M_PI / 180.);
-        const Eigen::Matrix2d mean = mean_of_lattice_waves(subject_, F, K);
+        const Eigen::Matrix2d mean =
+          bridge::rotation_mean(bridge::rotated_bloch_stiffness(subject_.sheet(), elastic, F, K)).mean.reshaped(2, 2);
         const double of_lengths = (continuum_matrices(media.network, F, K).stiffness - mean).norm();
         waves_.add((sheet.wave_stiffness(F, K) - mean).norm() /
                    (wave_bound(subject_, F, K) + longer * of_lengths + 1e-8 * mean.norm()));
@@ -261,7 +236,7 @@ private:
       const auto found = bridge::plane_waves({sheet.wave_stiffness(F, K), Eigen::Matrix2d::Zero()},
                                              bridge::wave_normal(F, K)),
                  network = continuum_waves(media.network, F, K),
-                 on_lattice = bridge::bloch_waves(subject_.sheet(), lattice::without_dashpots(subject_.material), F, K);
+                 on_lattice = bridge::bloch_waves(subject_.sheet(), elastic, F, K);
       for (std::size_t w = 0; w < 2; ++w)
       {
         const double exact = std::pow(network[w].frequency, 2);
@@ -334,7 +309,7 @@ private:
         relaxed += stress * std::exp(-static_cast<double>(n_steps) * step / branch.relaxation_time);
       }
     const Eigen::Matrix2d I = Eigen::Matrix2d::Identity(), F = stretch * I;
-    const lattice::Material simulated = options_.planted_branches ? options_.planted_branches(material) : material;
+    const lattice::Material simulated = options_.planted_branches(material);
     relaxation_.add(
       (sheet.relaxed_stress(simulated, F, step, n_steps) - NetworkAt(subject_, F).stress - relaxed * I).norm() /
       (at_start * I).norm());

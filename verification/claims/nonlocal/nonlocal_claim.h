@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/subject.h"
+#include "verification/claims/rows.h"
 #include "verification/claims/spectrum.h"
-#include "verification/output/results.h"
 
 namespace latcon::claims
 {
@@ -29,7 +30,7 @@ struct NonlocalOptions
   std::function<void(std::vector<lattice::Ring> &)> planted_rings = [](auto &) {};
   std::function<void(std::vector<lattice::HalfBond> &)> planted_bonds = [](auto &) {};
   double planted_tip = 0.; ///< added to the tip of the cut [m], as of a rule that finds another one
-  PlantedBranches planted_branches = {};
+  PlantedBranches planted_branches = [](const lattice::Material &material) { return material; };
 };
 
 /// Square and triangular grids of a lattice with spacing `d` [m] for m = 1.5, 2 and 3, bonds in all directions.
@@ -42,5 +43,53 @@ std::vector<NonlocalStencil> fixed_stencils(double d, lattice::Orientation orien
 /// Energies, stresses, waves and the energy of a cut are those of the simulator on a sheet with the stencil. Every rank
 /// computes all of it.
 output::Results nonlocal_claim(const bridge::Subject &subject, const NonlocalOptions &options);
+
+/// Returns the half-bonds of rings on a grid, with the faults that tests plant.
+std::vector<lattice::HalfBond> planted_bonds(const bridge::Subject &subject, const lattice::Grid &grid,
+                                             const NonlocalOptions &options, double half_width = M_PI / 6.);
+
+/// Rows of the claim `nonlocal` on the orders in 1/m with which rings in all directions converge to the network and to
+/// the lattice's mean over rotations.
+void ring_convergence(const bridge::Subject &subject, const NonlocalOptions &options, const Rows &rows);
+
+/// The simulator on a sheet of 12 by 12 spacings of the lattice with the half-bonds of a nonlocal continuum, without
+/// dashpots.
+class StencilSheet
+{
+public:
+  StencilSheet(const bridge::Subject &subject, const lattice::Grid &grid, std::vector<lattice::HalfBond> half_bonds);
+
+  const std::vector<lattice::HalfBond> &half_bonds() const { return half_bonds_; }
+
+  bridge::LatticeResponse response(const Eigen::Matrix2d &F) const
+  {
+    return bridge::homogeneous_response(sheet_, material_, F);
+  }
+
+  /// Stiffness of plane waves [1/s^2], that of bridge::WaveMatrices, from the force on a site in the crest of a wave with
+  /// a strain of 1e-5. @param K referential wave vector [1/m]
+  Eigen::Matrix2d wave_stiffness(const Eigen::Matrix2d &F, const Eigen::Vector2d &K) const;
+
+  /// A cut along x between two rows, through bonds that all have one stretch.
+  struct Cut
+  {
+    double energy; ///< taken from the sheet, per area [J/m^2]
+    double tip;    ///< X of the tip that fracture finds, from the end of the cut [m]
+    double period; ///< of the points of the grid along x [m]
+  };
+  Cut cut(double stretch) const;
+
+  /// First Piola stress [Pa] of the held sheet after this many time steps, in which nothing moves and Maxwell branches
+  /// relax. They are unloaded before the deformation to F, which is sudden. @param step [s], a stable one
+  Eigen::Matrix2d relaxed_stress(const lattice::Material &material, const Eigen::Matrix2d &F, double step,
+                                 std::size_t n_steps) const;
+
+  const lattice::TriangularLattice &sheet() const { return sheet_; }
+
+private:
+  lattice::Material material_;
+  std::vector<lattice::HalfBond> half_bonds_;
+  lattice::TriangularLattice sheet_;
+};
 
 } // namespace latcon::claims

@@ -1,10 +1,10 @@
-#include "verification/claims/nonlocal/ring_convergence.h"
+#include "verification/claims/nonlocal/nonlocal_claim.h"
 
 #include <cmath>
 
 #include "support/largest_error.h"
 #include "verification/bridge/anisotropy.h"
-#include "verification/bridge/bloch.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/bridge/nonlocal_continuum.h"
 #include "verification/claims/order_fit.h"
 
@@ -37,15 +37,10 @@ public:
       stress_(bridge::to_lattice(subject.network.first_piola_stress(bridge::to_continuum(F_)))),
       K_(ring_kd / subject.spacing * Eigen::Vector2d(0.8, 0.6))
   {
-    Eigen::MatrixXd matrices(4, bridge::n_lattice_rotations);
-    for (int k = 0; k < bridge::n_lattice_rotations; ++k)
-    {
-      const Eigen::Matrix2d R = bridge::lattice_rotation(k);
-      matrices.col(k) =
-        bridge::bloch_matrices(subject.sheet(), lattice::without_dashpots(subject.material), R, R.transpose() * K_)
-          .stiffness.reshaped();
-    }
-    waves_ = bridge::rotation_mean(matrices).mean;
+    waves_ = bridge::rotation_mean(bridge::rotated_bloch_stiffness(subject.sheet(),
+                                                                   lattice::without_dashpots(subject.material),
+                                                                   Eigen::Matrix2d::Identity(), K_))
+               .mean;
   }
 
   RingErrors errors(const std::vector<lattice::HalfBond> &stencil, const lattice::Grid &grid) const

@@ -1,4 +1,4 @@
-#include "verification/claims/nonlocal/stencil_sheet.h"
+#include "verification/claims/nonlocal/nonlocal_claim.h"
 
 #include <cmath>
 #include <utility>
@@ -67,12 +67,7 @@ StencilSheet::Cut StencilSheet::cut(double stretch) const
 Eigen::Matrix2d StencilSheet::relaxed_stress(const lattice::Material &material, const Eigen::Matrix2d &F, double step,
                                              std::size_t n_steps) const
 {
-  lattice::State unloaded =
-    lattice::homogeneous_state(sheet_, material, Eigen::Matrix2d::Identity(), lattice::Edges::held);
-  lattice::relax_memory(unloaded, sheet_, material);
-  lattice::State state = lattice::homogeneous_state(sheet_, material, F, lattice::Edges::held);
-  state.history = std::move(unloaded.history);
-  lattice::Simulation held(sheet_, material, std::move(state), lattice::TimeStepping(step));
+  lattice::Simulation held(sheet_, material, suddenly_strained(sheet_, material, F), lattice::TimeStepping(step));
   for (std::size_t i = 0; i < n_steps; ++i)
     held.step();
   return bridge::edge_stress(sheet_, material,

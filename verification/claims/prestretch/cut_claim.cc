@@ -96,17 +96,17 @@ public:
     for (const CutResult &result : results_)
       if (!result.errors && result.law.rfind("local", 0) == 0 && result.law != "local-nominal")
         rows_.add_not_computed("local law at " + size_text(result.size), result.failure);
-    const std::vector<double> displacement = series("local", &CutErrors::displacement);
+    const std::vector<double> displacement = series(&CutErrors::displacement);
     add_orders(displacement);
     const output::Tolerance allowed = add_expected("displacement, rms at " + judged_sizes(), displacement, place());
     // In a layer of the width d about a rim stresses have an error of order one. About a tip they and the reactions
     // that they leave fall too slowly to be extrapolated by a fit.
     constexpr double of_layer = 0.15;
-    (void)add_expected("stress, rms", series("local", &CutErrors::stress), of_layer / std::sqrt(study_.sizes.back()),
+    (void)add_expected("stress, rms", series(&CutErrors::stress), of_layer / std::sqrt(study_.sizes.back()),
                        is_hole_);
 
     for (const Scalar &scalar : scalars)
-      add(scalar.name, scalar_error("local", scalar), place_allowance(scalar));
+      add(scalar.name, std::abs(at_largest("local", scalar.error)), place_allowance(scalar));
     add_network();
 
     for (const auto &[law, kind] : {std::pair(std::string("lattice"), bridge::Law::lattice_gradient),
@@ -114,14 +114,9 @@ public:
                                     std::pair(std::string("mooney-rivlin"), bridge::Law::mooney_rivlin)})
       if (const CutResult *other = find(law, study_.sizes.back()))
       {
-        const std::string name =
-          law == "mooney-rivlin" ? "plane-stress Mooney-Rivlin" : "with the " + law + " gradient energy";
-        const bool can_judge = kind != bridge::Law::mooney_rivlin && is_hole_;
-        if (other->errors)
-          add(name + ": displacement", other->errors->displacement, can_judge ? allowed : output::Tolerance(),
-              subject_.judges(kind));
-        else
-          add_missing(name, other->failure, can_judge && subject_.judges(kind));
+        const bool is_calibrated = kind == bridge::Law::mooney_rivlin;
+        add_displacement(is_calibrated ? "plane-stress Mooney-Rivlin" : "with the " + law + " gradient energy", *other,
+                         is_calibrated || !is_hole_ ? output::Tolerance() : allowed, subject_.judges(kind));
       }
   }
 
@@ -130,42 +125,24 @@ public:
   {
     for (const CutResult &result : results_)
       if (result.size == study_.sizes.back() && result.law != "local-nominal")
-      {
-        if (result.errors)
-          add(result.law + ": displacement", result.errors->displacement);
-        else
-          add_missing(result.law, result.failure, false);
-      }
+        add_displacement(result.law, result);
   }
 
 private:
-  // Quantities of the whole sheet, and differences of two continua in them.
+  // Quantities of the whole sheet.
   struct Scalar
   {
     const char *name;
     double CutErrors::*error;
-    double CutDistance::*distance;
     double at_notch; // ceiling of the tolerance at a notch, over d/2 of the length
   };
   // The mouth of a notch opens in proportion to its length. Of an edge crack of length a in a sheet of 4 a by 4 a the
   // energy and what follows from it change by 2 (1.12^2 pi / 16) of the change of length at most.
-  static constexpr std::array<Scalar, 4> scalars{{{"stress amplitude: least-squares scale factor minus 1",
-                                                   &CutErrors::stress_scale, &CutDistance::stress_scale, 0.5},
-                                                  {"energy", &CutErrors::energy, &CutDistance::energy, 0.5},
-                                                  {"reactions", &CutErrors::reaction, &CutDistance::reaction, 0.5},
-                                                  {"shape of the cut", &CutErrors::shape, &CutDistance::shape, 1.}}};
-
-  double scalar_error(const std::string &law, const Scalar &scalar) const
-  {
-    const std::optional<CutErrors> found = errors_of(law, study_.sizes.back());
-    return found ? std::abs((*found).*scalar.error) : unknown;
-  }
-
-  double distance_from_local(const std::string &law, double CutDistance::*part) const
-  {
-    const CutResult *found = find(law, study_.sizes.back());
-    return found != nullptr && found->from_local ? (*found->from_local).*part : unknown;
-  }
+  static constexpr std::array<Scalar, 4> scalars{
+    {{"stress amplitude: least-squares scale factor minus 1", &CutErrors::stress_scale, 0.5},
+     {"energy", &CutErrors::energy, 0.5},
+     {"reactions", &CutErrors::reaction, 0.5},
+     {"shape of the cut", &CutErrors::shape, 1.}}};
 
   // Distance to which rim or tip are known, over the size of the cut: of a rim no more than its recession, of a tip
   // half a spacing. No solver has a part in it.
@@ -179,7 +156,7 @@ private:
   // gains where the rim is stretched; half a spacing.
   output::Tolerance place_allowance(const Scalar &scalar) const
   {
-    const double moved = distance_from_local("local-moved", scalar.distance);
+    const double moved = at_largest("local-moved", scalar.error, &CutResult::from_local);
     if (!is_hole_)
       return output::limited(moved, 0.02 * place(), scalar.at_notch * place(),
                              "change of the local law if the tip moves by d/2");
@@ -218,7 +195,7 @@ private:
     };
     add_limit("displacement, rms", displacement);
     for (const Scalar &scalar : scalars)
-      add_limit(scalar.name, series("local", scalar.error));
+      add_limit(scalar.name, series(scalar.error));
   }
 
   // The network is the mean of the local law over rotations of the lattice: to first order of the anisotropy it lies
@@ -231,36 +208,46 @@ private:
     const CutResult *network = find("network", study_.sizes.back());
     if (network == nullptr || !network->errors || !network->from_middle)
       return add_missing("network", failure(network), is_judged);
-    const CutDistance &middle = *network->from_middle;
     // First order: half the distance of the two laws. Second order: its products with the first order in stress, not
     // small where all bonds are alike in length, and reported there.
     const bool is_small = subject_.material.coordination() > 6;
-    const double first_in_stress = 0.5 * distance_from_local("local-turned", &CutDistance::stress);
-    const auto add_middle = [&](const std::string &name, double CutDistance::*part)
+    const auto first_order = [&](double CutErrors::*part)
+    { return 0.5 * at_largest("local-turned", part, &CutResult::from_local); };
+    const double in_stress = first_order(&CutErrors::stress);
+    const auto add_middle = [&](const std::string &name, double CutErrors::*part)
     {
-      const double first = 0.5 * distance_from_local("local-turned", part);
-      const output::Tolerance second = output::limited(4. * first_in_stress * (first + first_in_stress), 2e-4, 8e-3,
+      const output::Tolerance second = output::limited(4. * in_stress * (first_order(part) + in_stress), 2e-4, 8e-3,
                                                        "four times the products of first order in the anisotropy");
-      add("network: " + name + ", against the mean of the local law at 0 and 30 degrees", middle.*part,
+      add("network: " + name + ", against the mean of the local law at 0 and 30 degrees", (*network->from_middle).*part,
           is_small ? second : output::Tolerance(), is_judged);
     };
-    add_middle("displacement", &CutDistance::displacement);
-    add_middle("stress, rms", &CutDistance::stress);
+    add_middle("displacement", &CutErrors::displacement);
+    add_middle("stress, rms", &CutErrors::stress);
     // The shape is that of the rim, where the dependence on direction exceeds its mean over the sheet.
     for (const Scalar &scalar : scalars)
-      if (scalar.distance != &CutDistance::shape)
-        add_middle(scalar.name, scalar.distance);
+      if (scalar.error != &CutErrors::shape)
+        add_middle(scalar.name, scalar.error);
 
     add("network: displacement", network->errors->displacement);
     add("network: stress, rms", network->errors->stress);
     for (const Scalar &scalar : scalars)
-      add(std::string("network: ") + scalar.name, scalar_error("network", scalar));
+      add(std::string("network: ") + scalar.name, std::abs((*network->errors).*scalar.error));
     const CutResult *gradient = find("network-gradient", study_.sizes.back());
     const std::string name = "network with its gradient energy: displacement";
     if (gradient != nullptr && gradient->errors)
       add(name, gradient->errors->displacement);
     else
       add_missing(name, failure(gradient), is_judged);
+  }
+
+  // The displacement under a law, or why the law has no equilibrium.
+  void add_displacement(const std::string &law, const CutResult &result, const output::Tolerance &tolerance = {},
+                        bool is_judged = true) const
+  {
+    if (result.errors)
+      add(law + ": displacement", result.errors->displacement, tolerance, is_judged);
+    else
+      add_missing(law, result.failure, tolerance && is_judged);
   }
 
   void add_missing(const std::string &name, const std::string &failure, bool is_judged) const
@@ -332,21 +319,23 @@ private:
     return nullptr;
   }
 
-  // None also where there is no equilibrium.
-  std::optional<CutErrors> errors_of(const std::string &law, double size) const
+  // An error, or a distance from another continuum; unknown where there is no equilibrium.
+  double value(const std::string &law, double size, double CutErrors::*error,
+               std::optional<CutErrors> CutResult::*of = &CutResult::errors) const
   {
     const CutResult *found = find(law, size);
-    return found != nullptr ? found->errors : std::nullopt;
+    return found != nullptr && found->*of ? (*(found->*of)).*error : unknown;
   }
-
-  std::vector<double> series(const std::string &law, double CutErrors::*error) const
+  double at_largest(const std::string &law, double CutErrors::*error,
+                 std::optional<CutErrors> CutResult::*of = &CutResult::errors) const
+  {
+    return value(law, study_.sizes.back(), error, of);
+  }
+  std::vector<double> series(double CutErrors::*error) const
   {
     std::vector<double> values;
     for (const double size : study_.sizes)
-    {
-      const std::optional<CutErrors> found = errors_of(law, size);
-      values.push_back(found ? (*found).*error : unknown);
-    }
+      values.push_back(value("local", size, error));
     return values;
   }
 
@@ -374,10 +363,7 @@ ClaimOutcome cut_claim(const bridge::Subject &subject, const CutStudy &study)
     {
       if (r.law == "local-moved" || r.law == "local-turned" || r.law == no_lattice)
         continue;
-      CutErrors e{unknown, unknown, unknown, unknown, unknown, unknown,
-                  unknown, unknown, unknown, unknown, unknown, unknown};
-      if (r.errors)
-        e = *r.errors;
+      const CutErrors e = r.errors.value_or(CutErrors());
       table.add({subject.name, F(0, 0), F(1, 1), r.law, r.size, e.displacement, e.stress, std::abs(e.energy),
                  e.reaction_vector, e.shape, e.displacement_all, e.displacement_max, e.cauchy_stress, e.stress_scale,
                  r.residual, e.unknowns, e.fem});

@@ -20,20 +20,15 @@ using Mesh = dealii::parallel::distributed::Triangulation<2>;
 
 void make_mesh(Mesh &mesh, const CutSheet &sheet, const bridge::EquivalentSheet &domain, const CutMesh &settings)
 {
-  if (std::holds_alternative<lattice::Notch>(sheet.cutout))
-  {
-    continuum::make_notched_rectangle(mesh, {domain.length(), domain.height(), domain.cut, settings.refinements});
-    return;
-  }
+  if (!sheet.is_hole())
+    return continuum::make_notched_rectangle(mesh,
+                                             {domain.length(), domain.height(), domain.cut, settings.refinements});
   continuum::make_rectangle_with_hole(mesh, {domain.length(), domain.height(), domain.cut, settings.refinements});
   const dealii::Point<2> centre(0.5 * domain.length(), 0.);
-  for (unsigned int i = 0; i < settings.rim_refinements; ++i)
-  {
-    for (const auto &cell : mesh.active_cell_iterators())
-      if (cell->is_locally_owned() && cell->center().distance(centre) - domain.cut < 0.5 * cell->diameter())
-        cell->set_refine_flag();
-    mesh.execute_coarsening_and_refinement();
-  }
+  for (const auto &cell : mesh.active_cell_iterators())
+    if (cell->is_locally_owned() && cell->center().distance(centre) - domain.cut < 0.5 * cell->diameter())
+      cell->set_refine_flag();
+  mesh.execute_coarsening_and_refinement();
 }
 
 continuum::BoundaryConditions conditions(const CutSheet &sheet)
@@ -52,11 +47,10 @@ continuum::BoundaryConditions conditions(const CutSheet &sheet)
 class Points
 {
 public:
-  Points(const CutLattice &cut, const CutSheet &sheet, const bridge::EquivalentSheet &domain) : origin_(domain.left, 0.)
+  Points(const CutLattice &cut, const bridge::EquivalentSheet &domain) : origin_(domain.left, 0.), F_(cut.sheet.F)
   {
     // A little off the boundary, which a mesh has to the accuracy of its polynomials.
     const double inside = 1e-4 * domain.cut;
-    const bool hole = std::holds_alternative<lattice::RoundHole>(sheet.cutout);
     const Eigen::Vector2d centre(0.5 * domain.length(), 0.);
     for (const CutLattice::Site &site : cut.sites)
     {
@@ -64,30 +58,29 @@ public:
       Eigen::Vector2d Y(std::clamp(X.x(), inside, domain.length() - inside),
                         std::clamp(X.y(), domain.bottom + inside, domain.top - inside));
       const double distance = (Y - centre).norm();
-      if (hole && distance < domain.cut + inside)
+      if (cut.sheet.is_hole() && distance < domain.cut + inside)
         Y = centre + (Y - centre) / distance * (domain.cut + inside);
-      points_.emplace_back(Y.x(), Y.y());
+      points.emplace_back(Y.x(), Y.y());
       offsets_.push_back(X - Y);
     }
   }
 
-  const std::vector<dealii::Point<2>> &points() const { return points_; }
-
   // Displacement [m] at the sites, in the coordinates of the lattice.
-  std::vector<Eigen::Vector2d> displacements(const std::vector<continuum::PointState> &states,
-                                             const Eigen::Matrix2d &F) const
+  std::vector<Eigen::Vector2d> displacements(const std::vector<continuum::PointState> &states) const
   {
     const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
     std::vector<Eigen::Vector2d> u;
     for (std::size_t i = 0; i < states.size(); ++i)
-      u.emplace_back(Eigen::Vector2d(states[i].displacement[0], states[i].displacement[1]) + (F - I) * origin_ +
+      u.emplace_back(Eigen::Vector2d(states[i].displacement[0], states[i].displacement[1]) + (F_ - I) * origin_ +
                      (bridge::to_lattice(states[i].F) - I) * offsets_[i]);
     return u;
   }
 
+  std::vector<dealii::Point<2>> points;
+
 private:
   Eigen::Vector2d origin_; // of the continuum's coordinates in those of the lattice
-  std::vector<dealii::Point<2>> points_;
+  Eigen::Matrix2d F_;
   std::vector<Eigen::Vector2d> offsets_;
 };
 
@@ -102,9 +95,9 @@ double rms_difference(const std::vector<Eigen::Vector2d> &a, const std::vector<E
 // Opening of the cut [m]: of a hole, the factors of n_x and n_y that fit u_x and u_y over the sites at its rim,
 // n pointing from the centre to the site; of a notch, the mean of u_y over the sites next to the mouth, above less
 // below.
-Eigen::Vector2d opening(const CutLattice &cut, const CutSheet &sheet, const std::vector<Eigen::Vector2d> &u)
+Eigen::Vector2d opening(const CutLattice &cut, const std::vector<Eigen::Vector2d> &u)
 {
-  const bool hole = std::holds_alternative<lattice::RoundHole>(sheet.cutout);
+  const bool hole = cut.sheet.is_hole();
   const double d = cut.lattice.spacing();
   const Eigen::Vector2d centre(0.5 * cut.lattice.length(), 0.);
   Eigen::Vector2d sum = Eigen::Vector2d::Zero(), weight = Eigen::Vector2d::Zero();
@@ -117,7 +110,7 @@ Eigen::Vector2d opening(const CutLattice &cut, const CutSheet &sheet, const std:
       sum += n.cwiseProduct(u[i]);
       weight += n.cwiseProduct(n);
     }
-    if (!hole && X.x() < 0.25 * sheet.size && std::abs(X.y()) < 1.1 * d)
+    if (!hole && X.x() < 0.25 * cut.sheet.size && std::abs(X.y()) < 1.1 * d)
     {
       sum.y() += X.y() > 0. ? u[i].y() : -u[i].y();
       weight.y() += 0.5;
@@ -138,32 +131,28 @@ double displacement_scale(const CutSheet &sheet)
   return sheet.size * (sheet.F - Eigen::Matrix2d::Identity()).norm();
 }
 
-CutSolution solution(const CutLattice &cut, const CutSheet &sheet, const bridge::EquivalentSheet &domain,
+CutSolution solution(const CutLattice &cut, const bridge::EquivalentSheet &domain,
                      const continuum::StaticSolver &solver, const std::vector<continuum::PointState> &states,
                      const std::vector<Eigen::Vector2d> &of_continuum)
 {
-  CutSolution found{{}, of_continuum, {}, {}, opening(cut, sheet, of_continuum)};
+  CutSolution found{{}, of_continuum, {}, opening(cut, of_continuum)};
   CutErrors &e = found.errors;
-  for (const continuum::PointState &state : states)
-  {
-    found.F.push_back(bridge::to_lattice(state.F));
-    found.P.push_back(bridge::to_lattice(state.P));
-  }
   support::LargestError displacement_max;
-  const double scale = displacement_scale(sheet);
+  const double scale = displacement_scale(cut.sheet);
   std::vector<Eigen::Vector2d> of_lattice;
   double stress = 0., stress_norm = 0., cauchy = 0., cauchy_norm = 0., product = 0., inside = 0., n_inside = 0.;
   for (std::size_t i = 0; i < cut.sites.size(); ++i)
   {
     const std::size_t place = cut.sites[i].place;
     const Eigen::Vector2d X = cut.lattice.reference(place);
+    const Eigen::Matrix2d F = bridge::to_lattice(states[i].F), P = bridge::to_lattice(states[i].P);
+    found.P.push_back(P);
     of_lattice.emplace_back(cut.state.x[place] - X.x(), cut.state.y[place] - X.y());
     displacement_max.add((of_lattice.back() - of_continuum[i]).norm() / scale);
     if (!cut.sites[i].has_all_bonds)
       continue;
     inside += (of_lattice.back() - of_continuum[i]).squaredNorm();
     ++n_inside;
-    const Eigen::Matrix2d &P = found.P[i], &F = found.F[i];
     const Eigen::Matrix2d sigma = P * F.transpose() / F.determinant();
     stress += (cut.fields.first_piola_stress[place] - P).squaredNorm();
     product += cut.fields.first_piola_stress[place].cwiseProduct(P).sum();
@@ -178,8 +167,9 @@ CutSolution solution(const CutLattice &cut, const CutSheet &sheet, const bridge:
   e.stress_scale = product / stress_norm - 1.;
   e.cauchy_stress = std::sqrt(cauchy / cauchy_norm);
 
-  const double width_of_energy = domain.right - (sheet.held.left ? domain.left : cut.left_of_energy);
-  const double width_of_force = domain.right - (sheet.held.left ? domain.left : cut.left_of_force);
+  const bool left_is_held = cut.sheet.held.left;
+  const double width_of_energy = domain.right - (left_is_held ? domain.left : cut.left_of_energy);
+  const double width_of_force = domain.right - (left_is_held ? domain.left : cut.left_of_force);
   const double energy = cut.energy_change + cut.homogeneous_energy * width_of_energy * domain.height();
   e.energy = energy / solver.total_energy() - 1.;
 
@@ -189,7 +179,7 @@ CutSolution solution(const CutLattice &cut, const CutSheet &sheet, const bridge:
   const Eigen::Vector2d on_continuum(forces.at(continuum::edge::right)[0], forces.at(continuum::edge::top)[1]);
   e.reaction = (on_lattice - on_continuum).dot(on_continuum) / on_continuum.squaredNorm();
   e.reaction_vector = relative(on_lattice, on_continuum);
-  e.shape = relative(opening(cut, sheet, of_lattice), found.opening);
+  e.shape = relative(opening(cut, of_lattice), found.opening);
   e.unknowns = static_cast<double>(solver.sheet().dof_handler().n_dofs());
   return found;
 }
@@ -217,7 +207,7 @@ std::string no_equilibrium(const std::function<void()> &compute)
   return {};
 }
 
-CutDistance distance(const CutLattice &lattice, const CutSheet &sheet, const CutSolution &a, const CutSolution &b)
+CutErrors distance(const CutLattice &lattice, const CutSolution &a, const CutSolution &b)
 {
   double u = 0., P = 0., norm = 0., n = 0.;
   for (std::size_t i = 0; i < lattice.sites.size(); ++i)
@@ -228,33 +218,34 @@ CutDistance distance(const CutLattice &lattice, const CutSheet &sheet, const Cut
       norm += b.P[i].squaredNorm();
       ++n;
     }
-  return {std::sqrt(u / n) / displacement_scale(sheet),
-          std::sqrt(P / norm),
-          std::abs(a.errors.stress_scale - b.errors.stress_scale),
-          std::abs(a.errors.energy - b.errors.energy),
-          std::abs(a.errors.reaction - b.errors.reaction),
-          relative(a.opening, b.opening)};
+  CutErrors found;
+  found.displacement = std::sqrt(u / n) / displacement_scale(lattice.sheet);
+  found.stress = std::sqrt(P / norm);
+  for (double CutErrors::*part : {&CutErrors::stress_scale, &CutErrors::energy, &CutErrors::reaction})
+    found.*part = std::abs(a.errors.*part - b.errors.*part);
+  found.shape = relative(a.opening, b.opening);
+  return found;
 }
 
-std::optional<CutSolution> compare(const CutLattice &cut, const CutSheet &sheet, const bridge::EquivalentSheet &domain,
+std::optional<CutSolution> compare(const CutLattice &cut, const bridge::EquivalentSheet &domain,
                                    const continuum::Constitution &law, const CutMesh &mesh_settings,
                                    std::string &failure)
 {
   Mesh mesh(MPI_COMM_WORLD);
-  make_mesh(mesh, sheet, domain, mesh_settings);
+  make_mesh(mesh, cut.sheet, domain, mesh_settings);
   continuum::StaticSettings settings;
   settings.degree = mesh_settings.degree;
   settings.relative_tolerance = 1e-9;
   settings.smallest_load_step = 1. / 16.;
-  const Points points(cut, sheet, domain);
+  const Points points(cut, domain);
   std::optional<CutSolution> found;
   failure = no_equilibrium(
     [&]
     {
-      continuum::StaticSolver solver(mesh, law, conditions(sheet), settings);
+      continuum::StaticSolver solver(mesh, law, conditions(cut.sheet), settings);
       solver.solve();
-      std::vector<continuum::PointState> states = solver.evaluate(points.points());
-      std::vector<Eigen::Vector2d> u = points.displacements(states, sheet.F), coarser = u;
+      std::vector<continuum::PointState> states = solver.evaluate(points.points);
+      std::vector<Eigen::Vector2d> u = points.displacements(states), coarser = u;
       for (unsigned int cycle = 0; cycle < mesh_settings.cycles; ++cycle)
       {
         solver.refine(mesh, mesh_settings.fraction);
@@ -262,11 +253,11 @@ std::optional<CutSolution> compare(const CutLattice &cut, const CutSheet &sheet,
         if (cycle + 2 < mesh_settings.cycles)
           continue;
         coarser = std::move(u);
-        states = solver.evaluate(points.points());
-        u = points.displacements(states, sheet.F);
+        states = solver.evaluate(points.points);
+        u = points.displacements(states);
       }
-      found = solution(cut, sheet, domain, solver, states, u);
-      found->errors.fem = rms_difference(u, coarser) / displacement_scale(sheet);
+      found = solution(cut, domain, solver, states, u);
+      found->errors.fem = rms_difference(u, coarser) / displacement_scale(cut.sheet);
     });
   return found;
 }

@@ -115,10 +115,10 @@ CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet
 {
   const lattice::TriangularLattice lattice(subject.spacing, sheet.length, sheet.height, subject.orientation);
   const lattice::State whole = lattice::homogeneous_state(lattice, subject.material, sheet.F, sheet.held);
-  CutLattice cut{lattice, whole, {}, {}, {}, 0., {}, 0., {}, 0., 0.};
+  CutLattice cut{sheet, lattice, whole, {}, {}, {}, 0., {}, 0., {}, 0., 0.};
   lattice::cut_out(cut.state, lattice, sheet.cutout);
-  cut.relaxation = lattice::relax(cut.state, lattice, subject.material,
-                                  cut_lattice_residual * subject.theory.shear_modulus * subject.spacing);
+  cut.relaxation =
+    lattice::relax(cut.state, lattice, subject.material, 1e-8 * subject.theory.shear_modulus * subject.spacing);
   cut.fields = lattice::site_fields(cut.state, lattice, subject.material);
 
   const std::size_t inside = lattice.index(lattice.rows() / 2, lattice.columns() / 2);

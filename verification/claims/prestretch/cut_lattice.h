@@ -19,6 +19,8 @@ struct CutSheet
   double height;       ///< likewise [m]
   lattice::Edges held; ///< the other edges are free
   Eigen::Matrix2d F;   ///< of the held edges [-]
+
+  bool is_hole() const { return std::holds_alternative<lattice::RoundHole>(cutout); }
 };
 
 /// Sheet of about 5 R by 4 R with a hole in its middle, all edges held. The middle is a site, so that the staircase of
@@ -33,6 +35,7 @@ CutSheet sheet_with_notch(const bridge::Subject &subject, double a, const Eigen:
 /// Lattice of a CutSheet in equilibrium, and the quantities that are compared.
 struct CutLattice
 {
+  CutSheet sheet;
   lattice::TriangularLattice lattice;
   lattice::State state;
   lattice::SiteFields fields;
@@ -57,10 +60,7 @@ struct CutLattice
   double left_of_energy, left_of_force;
 };
 
-/// Residual to which the lattice is relaxed, over mu d [-]: largest force on a free site.
-inline constexpr double cut_lattice_residual = 1e-8;
-
-/// @throws std::runtime_error if the lattice does not relax
+/// Relaxes the lattice to a largest force on a free site of 1e-8 mu d. @throws std::runtime_error if the lattice does not relax
 CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet);
 
 } // namespace latcon::claims

@@ -37,48 +37,32 @@ CutSolution middle(const CutSolution &a, const CutSolution &b)
   for (std::size_t i = 0; i < mean.u.size(); ++i)
   {
     mean.u[i] = 0.5 * (a.u[i] + b.u[i]);
-    mean.F[i] = 0.5 * (a.F[i] + b.F[i]);
     mean.P[i] = 0.5 * (a.P[i] + b.P[i]);
   }
   mean.opening = 0.5 * (a.opening + b.opening);
-  mean.errors.stress_scale = 0.5 * (a.errors.stress_scale + b.errors.stress_scale);
-  mean.errors.energy = 0.5 * (a.errors.energy + b.errors.energy);
-  mean.errors.reaction = 0.5 * (a.errors.reaction + b.errors.reaction);
+  for (double CutErrors::*part : {&CutErrors::stress_scale, &CutErrors::energy, &CutErrors::reaction})
+    mean.errors.*part = 0.5 * (a.errors.*part + b.errors.*part);
   return mean;
-}
-
-CutMesh hole_mesh(bool quick)
-{
-  CutMesh mesh;
-  mesh.degree = quick ? 4 : 3;
-  mesh.refinements = quick ? 0 : 1;
-  mesh.rim_refinements = 1;
-  mesh.cycles = 1;
-  mesh.fraction = 0.3;
-  return mesh;
 }
 
 } // namespace
 
 CutStudy hole_study(bool quick)
 {
-  CutStudy study;
-  study.name = "hole";
-  study.sheet = sheet_with_hole;
-  study.mesh = hole_mesh(quick);
+  CutStudy study{"hole", sheet_with_hole};
   if (quick)
   {
     study.states = {stretched(1.3, 1.1)};
     study.sizes = {6., 8., 12., 16., 24.};
     study.other_sizes = {24.};
+    study.mesh.degree = 4;
+    return study;
   }
-  else
-  {
-    study.states = {stretched(1.1, 1.1), stretched(1.3, 1.1), stretched(1.5, 1.5)};
-    study.sizes = {8., 10., 12., 14., 16., 20., 24., 28., 32., 64.};
-    study.other_sizes = {8., 16., 32., 64.};
-    study.n_judged = 3;
-  }
+  study.states = {stretched(1.1, 1.1), stretched(1.3, 1.1), stretched(1.5, 1.5)};
+  study.sizes = {8., 10., 12., 14., 16., 20., 24., 28., 32., 64.};
+  study.other_sizes = {8., 16., 32., 64.};
+  study.n_judged = 3;
+  study.mesh.refinements = 1;
   return study;
 }
 
@@ -93,18 +77,13 @@ CutStudy nearest_hole_study(bool quick)
 
 CutStudy notch_study(bool quick)
 {
-  CutMesh mesh;
-  mesh.refinements = 2;
-  mesh.cycles = quick ? 3 : 6;
-  mesh.fraction = 0.15;
-  CutStudy study;
-  study.name = "notch";
-  study.sheet = sheet_with_notch;
-  study.states = {stretched(1., 1.1)};
-  study.sizes =
-    quick ? std::vector<double>{4., 6., 8., 10., 12.} : std::vector<double>{8., 10., 12., 16., 20., 24., 32.};
-  study.other_sizes = quick ? std::vector<double>{} : std::vector<double>{8., 16., 32.};
-  study.mesh = mesh;
+  CutStudy study{"notch", sheet_with_notch, {stretched(1., 1.1)}, {4., 6., 8., 10., 12.}, {}, {3, 2, 3, 0.15}};
+  if (!quick)
+  {
+    study.sizes = {8., 10., 12., 16., 20., 24., 32.};
+    study.other_sizes = {8., 16., 32.};
+    study.mesh.cycles = 6;
+  }
   return study;
 }
 
@@ -142,8 +121,7 @@ std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutSt
       continue;
     }
     CutLattice &lattice = *relaxed;
-    if (study.spoil)
-      study.spoil(lattice);
+    study.spoil(lattice);
     const bridge::EquivalentSheet domain =
       bridge::equivalent_sheet(lattice.lattice, subject.material, lattice.state, sheet.held, sheet.cutout);
     std::optional<CutSolution> of_local, of_turned;
@@ -151,13 +129,13 @@ std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutSt
       [&](const std::string &law, const continuum::Constitution &constitution, const bridge::EquivalentSheet &at)
     {
       CutResult result{size, law, {}, {}, lattice.relaxation.residual / (subject.theory.shear_modulus * d), {}, {}};
-      std::optional<CutSolution> found = compare(lattice, sheet, at, constitution, study.mesh, result.failure);
+      std::optional<CutSolution> found = compare(lattice, at, constitution, study.mesh, result.failure);
       if (found)
         result.errors = found->errors;
       if (found && of_local)
-        result.from_local = distance(lattice, sheet, *found, *of_local);
+        result.from_local = distance(lattice, *found, *of_local);
       if (found && law == "network" && of_local && of_turned)
-        result.from_middle = distance(lattice, sheet, *found, middle(*of_local, *of_turned));
+        result.from_middle = distance(lattice, *found, middle(*of_local, *of_turned));
       results.push_back(result);
       return found;
     };
@@ -169,8 +147,7 @@ std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutSt
     if (is_largest && !study.is_reported)
     {
       bridge::EquivalentSheet moved = domain;
-      const bool is_hole = std::holds_alternative<lattice::RoundHole>(sheet.cutout);
-      moved.cut -= is_hole                          ? bridge::rim_recession(lattice.lattice, subject.material)
+      moved.cut -= sheet.is_hole()                  ? bridge::rim_recession(lattice.lattice, subject.material)
                    : subject.material.third_nearest ? subject.lengths.lattice
                                                     : 0.5 * d;
       add("local-moved", local, moved);

@@ -17,16 +17,16 @@ struct CutStudy
   std::string name; ///< "hole" or "notch", also of the table
   /// The sheet for a size of the cut [m] and F of the held edges.
   std::function<CutSheet(const bridge::Subject &, double size, const Eigen::Matrix2d &F)> sheet;
-  std::vector<Eigen::Matrix2d> states; ///< F of the held edges, not I; several biaxial ones
-  std::vector<double> sizes;           ///< R/d or length/d of the local law, ascending, at least four
-  std::vector<double> other_sizes;     ///< those of them at which the other laws are solved
-  CutMesh mesh;
+  std::vector<Eigen::Matrix2d> states = {}; ///< F of the held edges, not I; several biaxial ones
+  std::vector<double> sizes = {};           ///< R/d or length/d of the local law, ascending, at least four
+  std::vector<double> other_sizes = {};     ///< those of them at which the other laws are solved
+  CutMesh mesh = {};
   /// Largest sizes whose errors are judged together, in the geometric mean, by what the smaller ones let one expect.
   std::size_t n_judged = 1;
   /// Report without judging, since not every law need have an equilibrium.
   bool is_reported = false;
   /// Fault that a test introduces into a lattice before the comparison; none otherwise.
-  std::function<void(CutLattice &)> spoil;
+  std::function<void(CutLattice &)> spoil = [](CutLattice &) {};
 };
 
 /// Sheets with a round hole.
@@ -47,11 +47,11 @@ struct CutResult
 {
   double size; ///< over d [-]
   std::string law;
-  std::optional<CutErrors> errors;        ///< none: no equilibrium was found
-  std::string failure;                    ///< why
-  double residual;                        ///< of the lattice, over mu d [-]
-  std::optional<CutDistance> from_local;  ///< from the local law at the same size
-  std::optional<CutDistance> from_middle; ///< of "network": from the mean of "local" and "local-turned"
+  std::optional<CutErrors> errors;      ///< none: no equilibrium was found
+  std::string failure;                  ///< why
+  double residual;                      ///< of the lattice, over mu d [-]
+  std::optional<CutErrors> from_local;  ///< from the local law at the same size
+  std::optional<CutErrors> from_middle; ///< of "network": from the mean of "local" and "local-turned"
 };
 
 /// All comparisons in one state, laws in the order in which tables have them: "local", "local-nominal" (the

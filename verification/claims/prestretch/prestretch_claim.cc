@@ -12,7 +12,6 @@
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/network_comparison.h"
-#include "verification/claims/claim_input.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/prestretch/cut_comparison.h"
 #include "verification/claims/prestretch/cut_study.h"

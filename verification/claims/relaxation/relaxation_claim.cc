@@ -11,11 +11,8 @@
 #include "support/dense.h"
 #include "support/largest_error.h"
 #include "verification/bridge/homogeneous_response.h"
-#include "verification/claims/claim_input.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/lattice_waves.h"
-#include "verification/claims/relaxation/branch_theory.h"
-#include "verification/claims/relaxation/held_elements.h"
 #include "verification/claims/rows.h"
 
 namespace latcon::claims
@@ -44,24 +41,18 @@ Eigen::Matrix2d strained(const bridge::Subject &subject, const lattice::Triangul
   return is_stretched ? F : 1.2 * Eigen::Matrix2d::Identity();
 }
 
-std::vector<BranchTheory> theory(const lattice::TriangularLattice &sheet, const lattice::Material &material,
-                                 const lattice::State &state, const Eigen::Matrix2d &F)
-{
-  std::array<double, lattice::n_bond_kinds> n_bonds{};
-  lattice::for_each_bond(state, sheet, [&](const lattice::Bond &bond) { n_bonds[bond.kind] += 1.; });
-  return relaxing_branches(sheet, material, n_bonds, F);
-}
-
 // A relaxing sheet beside its closed form.
 class HeldSheet
 {
 public:
   HeldSheet(const bridge::Subject &subject, const lattice::TriangularLattice &sheet, const lattice::Material &material,
             const lattice::Material &planted, const Eigen::Matrix2d &F, const lattice::TimeStepping &stepping)
-    : sheet_(sheet), rows_(sheet), simulation_(rows_, planted, start(planted, F), stepping),
-      branches_(theory(sheet, material, simulation_.state(), F)),
+    : sheet_(sheet), rows_(sheet), simulation_(rows_, planted, suddenly_strained(rows_, planted, F), stepping),
       relaxed_(bridge::to_lattice(subject.cauchy_born.first_piola_stress(bridge::to_continuum(F))))
   {
+    std::array<double, lattice::n_bond_kinds> n_bonds{};
+    lattice::for_each_bond(simulation_.state(), sheet, [&](const lattice::Bond &bond) { n_bonds[bond.kind] += 1.; });
+    branches_ = relaxing_branches(sheet, material, n_bonds, F);
     for (const BranchTheory &branch : branches_)
     {
       stored_ += branch.stored;
@@ -160,17 +151,6 @@ public:
   }
 
 private:
-  // Memories at rest at F = I, sites at x = F X.
-  lattice::State start(const lattice::Material &material, const Eigen::Matrix2d &F) const
-  {
-    lattice::State at_rest =
-      lattice::homogeneous_state(rows_, material, Eigen::Matrix2d::Identity(), lattice::Edges::held);
-    lattice::relax_memory(at_rest, rows_, material);
-    lattice::State state = lattice::homogeneous_state(rows_, material, F, lattice::Edges::held);
-    state.history = std::move(at_rest.history);
-    return state;
-  }
-
   const lattice::TriangularLattice &sheet_;
   lattice::RowPartition rows_;
   lattice::Simulation simulation_;
@@ -221,7 +201,7 @@ ClaimOutcome relaxation_claim(const bridge::Subject &subject, const RelaxationOp
         times.push_back(steps * stepping().step);
       material = with_branches(material, ratios, times);
     }
-    const lattice::Material planted = options.planted ? options.planted(material) : material;
+    const lattice::Material planted = options.planted(material);
     HeldSheet held(subject, sheet, material, planted, F, stepping());
     support::Extremes times;
     for (const double time : relaxation_times(material))

@@ -48,7 +48,7 @@ void make_mesh(Mesh &mesh, const CrackDrive &drive, const HalfSheet &half, const
   for (unsigned int level = 0; level < levels; ++level)
   {
     size *= 0.5;
-    const double distance = resolution.zone * size;
+    const double distance = 4. * size;
     for (const auto &cell : mesh.active_cell_iterators())
     {
       const auto box = cell->bounding_box().get_boundary_points();
@@ -173,7 +173,7 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
   Mesh mesh(MPI_COMM_SELF);
   make_mesh(mesh, drive, half, resolution);
   continuum::DynamicSettings settings;
-  settings.time_step = drive.stride_time() / resolution.steps_per_stride;
+  settings.time_step = drive.stride_time();
   settings.degree = resolution.degree;
   settings.relative_tolerance = 1e-6;
   settings.linear.direct_limit = 1000000;
@@ -182,7 +182,7 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
                                   medium.inertia, settings, medium.viscosity);
   solver.start(std::make_shared<bridge::AffineDisplacement>(F));
 
-  TipRun run{TipField(drive, reach), {}};
+  TipRun run{TipField(drive), {}};
   continuum::EnergyLedger middle;
   double near = 0.;
   const double cell = resolution.finest * drive.stride(), start = drive.start + half.tip;
@@ -192,17 +192,13 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
   {
     if (stride == n_half + 1)
       middle = solver.ledger();
-    for (unsigned int k = 0; k < resolution.steps_per_stride; ++k)
+    if ((stride - 1) * drive.stride() > (n_open - 1e-6) * cell)
     {
-      const double advance = (stride - 1 + static_cast<double>(k) / resolution.steps_per_stride) * drive.stride();
-      if (advance > (n_open - 1e-6) * cell)
-      {
-        open(mesh, start + n_open * cell, start + (n_open + 1) * cell);
-        solver.release(cell / drive.speed);
-        ++n_open;
-      }
-      solver.step();
+      open(mesh, start + n_open * cell, start + (n_open + 1) * cell);
+      solver.release(cell / drive.speed);
+      ++n_open;
     }
+    solver.step();
     if (stride + CrackDrive::n_samples > drive.n_strides)
       near += add_sample(drive, sheet, medium, F, solver, drive.tip(stride), reach, run.field) / CrackDrive::n_samples;
   }

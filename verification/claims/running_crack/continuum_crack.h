@@ -17,13 +17,11 @@ struct CrackContinuum
   const continuum::Material *bonds = nullptr;      ///< Cauchy-Born law of the lattice, for TipValues::anisotropy
 };
 
-/// Elements and time steps.
+/// Elements. The finest ones are four cells high over the crack; a time step is that of a stride.
 struct CrackMesh
 {
-  double finest;                     ///< cells along the path, in strides of the tip: a power of two [-]
-  unsigned int degree = 3;           ///< of the elements
-  double zone = 4.;                  ///< height of the finest cells over the crack, in cells
-  unsigned int steps_per_stride = 1; ///< time steps between samples
+  double finest;           ///< cells along the path, in strides of the tip: a power of two [-]
+  unsigned int degree = 3; ///< of the elements
 };
 
 /// The upper half of the sheet in the coordinates of the lattice, its lower edge on the line of the crack,

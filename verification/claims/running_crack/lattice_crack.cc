@@ -86,7 +86,7 @@ TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &mat
                                  lattice::Fracture(sheet, material, lattice::unbreakable, lattice::NoToughening(), F));
   const lattice::SiteEvaluator evaluator(sheet, material);
 
-  TipRun run{TipField(drive, reach), {}};
+  TipRun run{TipField(drive), {}};
   auto next = schedule.begin();
   lattice::EnergyBalance middle{};
   double near = 0.;

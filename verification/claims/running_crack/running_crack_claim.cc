@@ -7,7 +7,6 @@
 #include "support/fits.h"
 #include "support/largest_error.h"
 #include "verification/bridge/equivalent_sheet.h"
-#include "verification/claims/claim_input.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/continuum_waves.h"
 #include "verification/claims/rows.h"
@@ -113,8 +112,7 @@ public:
       lattice_(drive_lattice_crack(sides.drive, lattice::without_memory(subject.material), subject.deformation, reach_,
                                    frame("lattice"))) // the continuum has no memories
   {
-    add_frame("lattice");
-    add_fields("lattice", lattice_);
+    add_side("lattice", lattice_);
   }
 
   void compare(const std::string &name, const CrackContinuum &medium)
@@ -125,8 +123,7 @@ public:
                                    mesh_of(sides_.drive, size, options_.degree), reach_, frame);
     };
     const TipRun coarse = drive(2. * options_.finest, {}), fine = drive(options_.finest, frame(name));
-    add_frame(name);
-    add_fields(name, fine);
+    add_side(name, fine);
     report(name, coarse, fine, judge(name, coarse.field, fine.field));
   }
 
@@ -226,30 +223,21 @@ private:
          lattice_.energy.taken + lattice_.energy.near, fine.energy.taken + fine.energy.near);
   }
 
-  std::string frame_name(const std::string &side) const
-  {
-    std::string name = "crack-";
-    for (const char c : subject_.name)
-      name += std::isalnum(static_cast<unsigned char>(c)) != 0
-                ? static_cast<char>(std::tolower(static_cast<unsigned char>(c)))
-                : '-';
-    return name + "-" + side;
-  }
-
   std::optional<CrackFrame> frame(const std::string &side) const
   {
-    return options_.frames.empty() ? std::nullopt : std::optional(CrackFrame{options_.frames, frame_name(side)});
+    if (options_.frames.empty())
+      return {};
+    std::string name = "crack-";
+    for (const unsigned char c : subject_.name)
+      name += std::isalnum(c) != 0 ? static_cast<char>(std::tolower(c)) : '-';
+    return CrackFrame{options_.frames, name + "-" + side};
   }
 
-  void add_frame(const std::string &side)
+  void add_side(const std::string &side, const TipRun &run)
   {
-    if (!options_.frames.empty())
+    if (const std::optional<CrackFrame> drawn = frame(side))
       outcome.table("running_crack_frames", {"shells", "side", "file", "X_tip [m]", "Y_tip [m]"})
-        .add({subject_.name, side, frame_name(side) + ".pvd", sides_.drive.end(), sides_.drive.axis()});
-  }
-
-  void add_fields(const std::string &side, const TipRun &run)
-  {
+        .add({subject_.name, side, drawn->name + ".pvd", sides_.drive.end(), sides_.drive.axis()});
     output::Table &table = outcome.table("running_crack", {"shells", "side", "X/d", "Y/d", "v_x [m/s]", "v_y [m/s]",
                                                            "opening_stress [Pa]", "excess_y [m]"});
     for (const TipField::Point &point : run.field.points())

@@ -40,59 +40,38 @@ std::vector<TipSite> tip_sites(const CrackDrive &drive, const lattice::Triangula
   return sites;
 }
 
-TipField::TipField(const CrackDrive &drive, double reach)
-  : drive_(drive), columns_(static_cast<int>(std::ceil(reach / drive.stride())) + 1),
-    rows_(static_cast<int>(std::ceil(reach / drive.pitch())) + 1),
-    sums_(static_cast<std::size_t>(2 * columns_ + 1) * static_cast<std::size_t>(rows_))
-{
-}
-
 void TipField::add(const TipSite &site, const TipValues &values)
 {
-  const auto i = static_cast<int>(std::lround(site.xi / drive_.stride() + CrackDrive::first_phase));
-  const auto j = static_cast<int>(std::lround(site.eta / drive_.pitch() + 0.5));
-  if (const Sum *sum = find(i, j))
-  {
-    Sum &mine = sums_[static_cast<std::size_t>(sum - sums_.data())];
-    mine.values += values;
-    ++mine.n;
-  }
-}
-
-const TipField::Sum *TipField::find(int i, int j) const
-{
-  if (j <= 0)
-    j = 1 - j;
-  if (std::abs(i) > columns_ || j > rows_)
-    return nullptr;
-  return &sums_[static_cast<std::size_t>(j - 1) * static_cast<std::size_t>(2 * columns_ + 1) +
-                static_cast<std::size_t>(i + columns_)];
+  Sum &sum = sums_[{std::lround(site.eta / drive_.pitch() + 0.5),
+                    std::lround(site.xi / drive_.stride() + CrackDrive::first_phase)}];
+  sum.values += values;
+  ++sum.n;
 }
 
 std::vector<TipField::Point> TipField::points() const
 {
   std::vector<Point> list;
-  for (int j = 1; j <= rows_; ++j)
-    for (int i = -columns_; i <= columns_; ++i)
-      if (const Sum *sum = find(i, j); sum->n > 0)
-        list.push_back(
-          {(i - CrackDrive::first_phase) * drive_.stride(), (j - 0.5) * drive_.pitch(), sum->values * (1. / sum->n)});
+  for (const auto &[at, sum] : sums_)
+    list.push_back({(static_cast<double>(at.second) - CrackDrive::first_phase) * drive_.stride(),
+                    (static_cast<double>(at.first) - 0.5) * drive_.pitch(), sum.values * (1. / sum.n)});
   return list;
 }
 
 TipValues TipField::at(double xi, double eta) const
 {
   const double x = xi / drive_.stride() + CrackDrive::first_phase, y = eta / drive_.pitch() + 0.5;
-  const auto i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
+  const auto i = static_cast<long>(std::floor(x)), j = static_cast<long>(std::floor(y));
   TipValues mean;
   for (int di = 0; di < 2; ++di)
     for (int dj = 0; dj < 2; ++dj)
     {
-      const double weight = (di == 0 ? i + 1 - x : x - i) * (dj == 0 ? j + 1 - y : y - j);
-      const Sum *sum = find(i + di, j + dj);
-      TipValues values = sum != nullptr && sum->n > 0 ? sum->values * (1. / sum->n)
-                                                      : TipValues() * std::numeric_limits<double>::quiet_NaN();
-      if (j + dj <= 0)
+      const double weight = (di == 0 ? static_cast<double>(i + 1) - x : x - static_cast<double>(i)) *
+                            (dj == 0 ? static_cast<double>(j + 1) - y : y - static_cast<double>(j));
+      const bool is_below = j + dj <= 0; // the lower half is the mirror image
+      const auto sum = sums_.find({is_below ? 1 - (j + dj) : j + dj, i + di});
+      TipValues values = sum != sums_.end() ? sum->second.values * (1. / sum->second.n)
+                                            : TipValues() * std::numeric_limits<double>::quiet_NaN();
+      if (is_below)
       {
         values.velocity.y() *= -1.;
         values.excess.y() *= -1.;

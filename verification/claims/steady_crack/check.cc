@@ -1,4 +1,3 @@
-#include "verification/claims/claim_input.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/steady_crack/steady_crack_claim.h"
 

@@ -12,10 +12,6 @@
 
 #include "support/largest_error.h"
 #include "verification/claims/rows.h"
-#include "verification/claims/steady_crack/crack_run.h"
-#include "verification/claims/steady_crack/static_crack.h"
-#include "verification/claims/steady_crack/steady_crack.h"
-#include "verification/claims/steady_crack/steady_fields.h"
 
 namespace latcon::claims
 {
@@ -47,8 +43,7 @@ struct TheoryComparison
 
   static CrackRunOptions spoiled(CrackRunOptions options, const std::function<void(CrackRunOptions &)> &planted)
   {
-    if (planted)
-      planted(options);
+    planted(options);
     return options;
   }
 
@@ -72,23 +67,18 @@ std::array<double, 3> tolerances(const CrackRunOptions &options, const TheoryCom
 {
   std::array<double, 3> sum;
   sum.fill(options.breaking_strain);
-  const auto add = [&](const CrackRunOptions &refined)
+  CrackRunOptions short_step = options, small_strain = options, long_strip = options;
+  short_step.time_step *= 0.5;
+  small_strain.breaking_strain *= 0.5;
+  long_strip.length += 100.;
+  long_strip.window_begin += 50.;
+  long_strip.window_end += 50.;
+  for (const CrackRunOptions &refined : {short_step, small_strain, long_strip})
   {
     const TheoryComparison comparison(refined, planted);
     for (std::size_t i = 0; i < sum.size(); ++i)
       sum[i] += 2. * std::abs(comparison.errors[i] - reference.errors[i]);
-  };
-  CrackRunOptions refined = options;
-  refined.time_step *= 0.5;
-  add(refined);
-  refined = options;
-  refined.breaking_strain *= 0.5;
-  add(refined);
-  refined = options;
-  refined.length += 100.;
-  refined.window_begin += 50.;
-  refined.window_end += 50.;
-  add(refined);
+  }
   return sum;
 }
 

@@ -1,4 +1,4 @@
-#include "verification/claims/steady_crack/steady_fields.h"
+#include "verification/claims/steady_crack/steady_crack.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,6 @@
 #include <unsupported/Eigen/FFT>
 
 #include "support/largest_error.h"
-#include "verification/claims/steady_crack/steady_crack.h"
 
 namespace latcon::claims
 {
@@ -16,7 +15,7 @@ namespace
 using Complex = HalfStrip::Complex;
 using Spectrum = std::vector<Complex>;
 
-const double two_pi = 2. * std::acos(-1.);
+constexpr double two_pi = 2. * M_PI;
 
 // Even samples of a time record and of its transform, f(omega) = integral f(s) exp(-i omega s) ds; the first half of
 // either is s or omega >= 0.
@@ -93,7 +92,7 @@ Spectrum factor_before(const HalfStrip &half, Record &record)
   for (std::size_t i = 0; i <= n / 2; ++i)
   {
     const double omega = std::abs(record.omega(i));
-    const Complex phi = 1. + half.stiffness(omega) * half.compliance(omega);
+    const Complex phi = half.phi(omega);
     argument += std::remainder(std::arg(phi) - argument, two_pi);
     logarithm[i] = {std::log(std::abs(phi)), argument};
   }

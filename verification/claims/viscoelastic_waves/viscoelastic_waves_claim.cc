@@ -5,11 +5,8 @@
 #include <sstream>
 
 #include "support/largest_error.h"
-#include "verification/bridge/bloch.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/bridge/homogenisation.h"
-#include "verification/bridge/homogenised_memory.h"
-#include "verification/bridge/memory_waves.h"
-#include "verification/claims/claim_input.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/continuum_waves.h"
 #include "verification/claims/lattice_waves.h"
@@ -92,7 +89,7 @@ public:
     rows.attempt(where.str(),
                  [&]
                  {
-                   const lattice::Material planted = options_.planted ? options_.planted(material) : material;
+                   const lattice::Material planted = options_.planted(material);
                    if (has_elements_)
                      run = element_wave(Medium(subject_, cell, planted).waves, F_, cell.K, wave, element_mesh);
                    else

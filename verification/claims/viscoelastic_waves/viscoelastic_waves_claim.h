@@ -18,7 +18,7 @@ struct ViscoelasticWavesOptions
   /// The same for the finite elements; three or more, or none: no finite elements.
   std::vector<double> element_frequencies{0.3, 1., 3.};
   std::size_t element_states = 1; ///< number of states, from the first, with finite elements
-  PlantedBranches planted = {};   ///< for tests
+  PlantedBranches planted = [](const lattice::Material &material) { return material; }; ///< for tests
 };
 
 /// Claim `viscoelastic-waves`: free waves in lattices whose bonds have Maxwell branches have the frequency and the

@@ -1,4 +1,4 @@
-#include "verification/claims/wave_speeds/absorbing_end.h"
+#include "verification/claims/wave_speeds/wave_speeds_claim.h"
 
 #include <cmath>
 

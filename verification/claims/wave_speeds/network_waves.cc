@@ -1,10 +1,10 @@
-#include "verification/claims/wave_speeds/network_waves.h"
+#include "verification/claims/wave_speeds/wave_speeds_claim.h"
 
 #include <cmath>
 
 #include "support/largest_error.h"
 #include "verification/bridge/anisotropy.h"
-#include "verification/bridge/bloch.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/claims/order_fit.h"
 #include "verification/claims/states.h"
 
@@ -27,17 +27,8 @@ void network_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, con
   const lattice::TriangularLattice sheet = subject.sheet();
   const SubjectContinua media(subject);
   const WaveContinuum &gradient = media.network_gradient;
-  // The matrix of a lattice turned by R is that of the lattice at F R, for the wave R^T K.
   const auto on_lattice = [&](const Eigen::Vector2d &K)
-  {
-    Eigen::MatrixXd matrices(4, bridge::n_lattice_rotations);
-    for (int k = 0; k < bridge::n_lattice_rotations; ++k)
-    {
-      const Eigen::Matrix2d R = bridge::lattice_rotation(k);
-      matrices.col(k) = bridge::bloch_matrices(sheet, material, F * R, R.transpose() * K).stiffness.reshaped();
-    }
-    return matrices;
-  };
+  { return bridge::rotated_bloch_stiffness(sheet, material, F, K); };
 
   support::LargestError from_mean, share, elements_error;
   CommonOrder local_order, gradient_order;

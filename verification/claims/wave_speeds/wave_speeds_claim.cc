@@ -5,15 +5,12 @@
 #include <stdexcept>
 
 #include "support/largest_error.h"
-#include "verification/bridge/bloch.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/claims/absolute_modulus.h"
-#include "verification/claims/claim_input.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/lattice_waves.h"
 #include "verification/claims/order_fit.h"
 #include "verification/claims/states.h"
-#include "verification/claims/wave_speeds/absorbing_end.h"
-#include "verification/claims/wave_speeds/network_waves.h"
 
 namespace latcon::claims
 {
@@ -39,7 +36,7 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
 {
   const double d = subject.spacing;
   const lattice::Material material = lattice::without_dashpots(subject.material),
-                          of_runs = options.planted ? options.planted(material) : material;
+                          of_runs = options.planted(material);
   const lattice::TriangularLattice sheet = subject.sheet(); // only its bonds matter
   const SubjectContinua media(subject);
   const auto exact = [&](const Eigen::Vector2d &K) { return frequencies(bridge::bloch_waves(sheet, material, F, K)); };
@@ -239,7 +236,7 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
   std::array<Oscillation, 2> run{{{unknown, unknown, 0.}, {unknown, unknown, 0.}}}, elements = run;
   rows.attempt(
     "lattice run, damped waves",
-    [&] { run = lattice_waves(cell, options.planted ? options.planted(material) : material, F, options.integrator); });
+    [&] { run = lattice_waves(cell, options.planted(material), F, options.integrator); });
   // Waves this long hardly feel the gradient energy: the error in space is below 1e-6.
   rows.attempt("finite elements, damped waves", [&] { elements = finite_element_waves(medium, F, cell.K, {4, 4}); });
 

@@ -2,7 +2,6 @@
 
 #include "tests/verification/claims/faults.h"
 #include "tests/verification/claims/subjects.h"
-#include "verification/claims/claim_input.h"
 #include "verification/claims/claim_list.h"
 
 using namespace latcon;
