@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lattice/material.h"
-#include "verification/claims/claim_outcome.h"
+#include "verification/claims/rows.h"
 #include "verification/claims/spectrum.h"
 
 namespace latcon::claims

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "verification/bridge/subject.h"
-#include "verification/claims/claim_outcome.h"
+#include "verification/claims/rows.h"
 #include "verification/input/case.h"
 
 namespace latcon::claims

@@ -47,6 +47,9 @@ std::vector<bridge::BranchMatrix> branch_matrices(const WaveContinuum &medium, c
 std::array<bridge::MemoryWave, 2> continuum_memory_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
                                                          const Eigen::Vector2d &K);
 
+/// Returns the nodal values of a field, without ghost entries. Collective.
+continuum::Sheet::Vector interpolated(const continuum::Sheet &sheet, const dealii::Function<2> &field);
+
 /// Elements of a periodic sheet as long as the wave, along x and along y (two across where K has no component).
 struct WaveMesh
 {

@@ -4,13 +4,14 @@
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
+#include <deal.II/numerics/vector_tools_interpolate.h>
 
+#include "continuum/rectangle.h"
 #include "support/dense.h"
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogenisation.h"
 #include "verification/claims/continuum_waves.h"
-#include "verification/claims/wave_sheet.h"
 
 namespace latcon::claims
 {
@@ -18,6 +19,52 @@ namespace
 {
 
 using Vector = continuum::Sheet::Vector;
+
+// Displacement p cos(K.X - phase) [m].
+class CosineWave : public dealii::Function<2>
+{
+public:
+  CosineWave(const Eigen::Vector2d &K, const Eigen::Vector2d &p, double phase = 0.)
+    : dealii::Function<2>(2), K_(K), p_(p), phase_(phase)
+  {
+  }
+  double value(const dealii::Point<2> &X, unsigned int i) const override
+  {
+    return p_[i] * std::cos(K_.x() * X[0] + K_.y() * X[1] - phase_);
+  }
+
+private:
+  Eigen::Vector2d K_, p_;
+  double phase_;
+};
+
+// A periodic rectangle with `cells` per wavelength along each direction in which the wave K varies, and two across where
+// it does not.
+continuum::Rectangle one_wavelength(const Eigen::Vector2d &K, unsigned int cells)
+{
+  const bool along_x = std::abs(K.x()) > 1e-9 * K.norm(), along_y = std::abs(K.y()) > 1e-9 * K.norm();
+  const double cell = 2. * M_PI / (K.norm() * cells);
+  continuum::Rectangle rectangle{2. * cell, 2. * cell, 2, 2, true, true};
+  if (along_x)
+  {
+    rectangle.length = 2. * M_PI / std::abs(K.x());
+    rectangle.cells_x = cells;
+  }
+  if (along_y)
+  {
+    rectangle.height = 2. * M_PI / std::abs(K.y());
+    rectangle.cells_y = cells;
+  }
+  return rectangle;
+}
+
+continuum::BoundaryConditions periodic_edges()
+{
+  continuum::BoundaryConditions conditions;
+  conditions.periodic = {{continuum::edge::left, continuum::edge::right, 0},
+                         {continuum::edge::bottom, continuum::edge::top, 1}};
+  return conditions;
+}
 
 // A sheet at a homogeneous state, with its mass matrix.
 struct WaveSheet
@@ -260,6 +307,13 @@ RitzMatrices ritz_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F
 }
 
 } // namespace
+
+Vector interpolated(const continuum::Sheet &sheet, const dealii::Function<2> &field)
+{
+  Vector nodal = sheet.make_owned();
+  dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), field, nodal);
+  return nodal;
+}
 
 std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Eigen::Matrix2d &F,
                                            const Eigen::Vector2d &K, const WaveMesh &resolution)

@@ -1,13 +1,17 @@
-/// Homogeneous states about which claims evaluate waves.
+/// Homogeneous states at which claims compare energies, stresses, moduli and waves.
 #pragma once
 
 #include <cmath>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "support/largest_error.h"
 #include "verification/bridge/subject.h"
+#include "verification/claims/claim_inputs.h"
 #include "verification/output/results.h"
 
 namespace latcon::claims
@@ -67,6 +71,66 @@ inline output::Result stability_row(const bridge::Subject &subject, const std::s
 inline double gradient_remainder(const bridge::Subject &subject)
 {
   return subject.material.third_nearest ? 16. / 9. : 1.;
+}
+
+/// Returns a rotation times stretches between 0.7 and 3.5 times a rotation, the same on every machine.
+inline Eigen::Matrix2d random_deformation(std::mt19937_64 &generator)
+{
+  // The same on every machine, unlike std's distributions.
+  const auto uniform = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53; };
+  const auto rotation = [&] { return Eigen::Rotation2Dd(2. * M_PI * uniform()).toRotationMatrix(); };
+  constexpr double smallest = 0.7, range = 2.8;
+  static_assert(smallest + range <= largest_stretch);
+  const auto stretch = [&] { return smallest + range * uniform(); };
+  const Eigen::Matrix2d outer = rotation(), inner = rotation();
+  const double first = stretch(), second = stretch();
+  return outer * Eigen::Vector2d(first, second).asDiagonal() * inner;
+}
+
+/// Error of stress_derivative().
+inline const output::Tolerance small_strain_tolerance{
+  1e-9, "fourth-order differences with a strain of 1e-3: 1e-12 of higher moduli, round-off over the strain"};
+
+/// Returns dP_iJ / dF_kL at F = I for one (k, L). @param stress first Piola stress as a function of F
+template <class Stress>
+Eigen::Matrix2d stress_derivative(const Stress &stress, int k, int L)
+{
+  constexpr double h = 1e-3;
+  const auto at = [&](double amount)
+  {
+    Eigen::Matrix2d F = Eigen::Matrix2d::Identity();
+    F(k, L) += amount;
+    return Eigen::Matrix2d(stress(F));
+  };
+  return (8. * (at(h) - at(-h)) - (at(2. * h) - at(-2. * h))) / (12. * h);
+}
+
+/// Returns psi''(1) [Pa] of a bond law, as below.
+[[nodiscard]] inline double stiffness_at_rest(const lattice::BondLaw &law)
+{
+  if (const auto *rod = std::get_if<lattice::MooneyRivlinBond>(&law))
+    return 3. * (rod->a + rod->b);
+  if (const auto *spring = std::get_if<lattice::LinearBond>(&law))
+    return spring->modulus;
+  // Fourth order: errors of 1e-12 times higher derivatives, and of round-off over the step.
+  constexpr double h = 1e-3;
+  const auto force = [&](double offset) { return lattice::force(law, 1. + offset); };
+  return (8. * (force(h) - force(-h)) - (force(2. * h) - force(-2. * h))) / (12. * h);
+}
+
+/// Returns the shear modulus mu [Pa] of an undeformed lattice from the constants of its bonds alone: 3/8 of the sum of
+/// s (l / d) psi''(1) over its shells, l = d, sqrt(3) d and 2 d, with psi''(1) = 3 (a + b) for Mooney-Rivlin bonds, the
+/// modulus for linear ones, and differences of the force for user-defined ones (theory-comparison.md, eq. (H.2)).
+/// Nothing of it is shared with the lattice or its homogenisation, so that an error in a cross-section, which both have
+/// in common, shows.
+[[nodiscard]] inline double absolute_shear_modulus(const lattice::Material &material)
+{
+  const double lengths[lattice::n_shells] = {1., std::sqrt(3.), 2.}; // over d
+  double sum = 0.;
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (const lattice::Shell *shell = material.in_shell(number))
+      sum += shell->area_factor * lengths[number] * stiffness_at_rest(shell->law);
+  return 3. / 8. * sum;
 }
 
 } // namespace latcon::claims

@@ -10,7 +10,7 @@
 
 #include "verification/bridge/laws.h"
 #include "verification/claims/claim.h"
-#include "verification/claims/claim_outcome.h"
+#include "verification/claims/rows.h"
 #include "verification/input/case.h"
 #include "verification/output/results.h"
 

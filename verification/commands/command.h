@@ -11,7 +11,7 @@
 #include "support/errors.h"
 #include "support/folder_lock.h"
 #include "verification/bridge/laws.h"
-#include "verification/claims/claim_outcome.h"
+#include "verification/claims/rows.h"
 #include "verification/input/case.h"
 #include "verification/input/options.h"
 #include "verification/output/results.h"

@@ -1,4 +1,4 @@
-#include "verification/bridge/slowest_wave.h"
+#include "verification/bridge/plane_waves.h"
 
 #include <random>
 
@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/subjects.h"
-#include "verification/bridge/plane_waves.h"
 #include "verification/claims/states.h"
 
 namespace slowest_wave_test

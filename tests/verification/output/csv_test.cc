@@ -1,5 +1,5 @@
 // Tables are read back unchanged, and refuse rows with another number of cells.
-#include "verification/claims/claim_outcome.h"
+#include "verification/claims/rows.h"
 
 #include <stdexcept>
 

@@ -4,7 +4,7 @@
 
 #include "lattice/state.h"
 #include "verification/bridge/subject.h"
-#include "verification/claims/claim_outcome.h"
+#include "verification/claims/rows.h"
 
 namespace latcon::claims
 {

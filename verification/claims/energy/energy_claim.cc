@@ -8,12 +8,10 @@
 #include "lattice/simulation.h"
 #include "support/largest_error.h"
 #include "verification/bridge/homogeneous_response.h"
-#include "verification/bridge/network_comparison.h"
-#include "verification/claims/absolute_modulus.h"
-#include "verification/claims/claim_list.h"
-#include "verification/claims/homogeneous_deformations.h"
-#include "verification/claims/rows.h"
+#include "verification/bridge/subject.h"
 #include "verification/claims/states.h"
+#include "verification/claims/claim_list.h"
+#include "verification/claims/rows.h"
 
 namespace latcon::claims
 {

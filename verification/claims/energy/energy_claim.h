@@ -5,7 +5,7 @@
 
 #include "lattice/contact.h"
 #include "verification/bridge/subject.h"
-#include "verification/claims/claim_outcome.h"
+#include "verification/claims/rows.h"
 #include "verification/claims/continuum_waves.h"
 
 namespace latcon::claims

@@ -11,7 +11,6 @@
 #include "verification/bridge/nonlocal_continuum.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/continuum_waves.h"
-#include "verification/claims/homogeneous_deformations.h"
 #include "verification/claims/states.h"
 
 namespace latcon::claims

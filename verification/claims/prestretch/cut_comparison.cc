@@ -1,4 +1,4 @@
-#include "verification/claims/prestretch/cut_comparison.h"
+#include "verification/claims/prestretch/cut_study.h"
 
 #include <algorithm>
 #include <cmath>

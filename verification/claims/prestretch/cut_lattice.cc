@@ -1,4 +1,4 @@
-#include "verification/claims/prestretch/cut_lattice.h"
+#include "verification/claims/prestretch/cut_study.h"
 
 #include <array>
 #include <cmath>

@@ -11,7 +11,7 @@
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogenisation.h"
 #include "verification/claims/rows.h"
-#include "verification/claims/wave_sheet.h"
+#include "verification/claims/continuum_waves.h"
 
 namespace latcon::claims
 {

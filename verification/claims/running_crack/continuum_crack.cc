@@ -1,4 +1,4 @@
-#include "verification/claims/running_crack/continuum_crack.h"
+#include "verification/claims/running_crack/running_crack_claim.h"
 
 #include <algorithm>
 #include <memory>

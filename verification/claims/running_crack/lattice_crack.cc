@@ -1,4 +1,4 @@
-#include "verification/claims/running_crack/lattice_crack.h"
+#include "verification/claims/running_crack/tip_field.h"
 
 #include <algorithm>
 

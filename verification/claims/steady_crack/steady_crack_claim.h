@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "verification/claims/claim_outcome.h"
+#include "verification/claims/rows.h"
 #include "verification/claims/steady_crack/steady_crack.h"
 
 namespace latcon::claims

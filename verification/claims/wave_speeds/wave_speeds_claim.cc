@@ -6,11 +6,10 @@
 
 #include "support/largest_error.h"
 #include "verification/bridge/plane_waves.h"
-#include "verification/claims/absolute_modulus.h"
+#include "verification/claims/states.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/lattice_waves.h"
 #include "verification/claims/order_fit.h"
-#include "verification/claims/states.h"
 
 namespace latcon::claims
 {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "verification/bridge/subject.h"
-#include "verification/claims/claim_outcome.h"
+#include "verification/claims/rows.h"
 #include "verification/claims/continuum_waves.h"
 #include "verification/input/case.h"
 
