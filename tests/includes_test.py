@@ -49,7 +49,7 @@ LIBRARIES = {
 }
 # Headers below the folder of the first column that may include a library: every source that includes them pays for it.
 HEADERS = [
-    ("verification/", "deal.II/", ("verification/bridge/affine_displacement.h", "verification/bridge/field_function.h")),
+    ("verification/", "deal.II/", ("verification/bridge/affine_displacement.h",)),
     ("", "vtk", ("verification/compare/frame.h", "verification/compare/quiet_vtk.h", "verification/output/point_data.h")),
     ("", "nlohmann/json.hpp", ()),
     *[("", f"Eigen/{part}", ()) for part in ("Cholesky", "Dense", "Eigen", "LU", "QR", "SVD")],

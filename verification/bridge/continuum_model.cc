@@ -12,7 +12,6 @@
 #include "continuum/network_gradient.h"
 #include "support/errors.h"
 #include "verification/bridge/affine_displacement.h"
-#include "verification/bridge/field_function.h"
 
 namespace latcon::bridge
 {
@@ -161,8 +160,8 @@ void ContinuumModel::make_conditions(const input::Case &input)
     throw support::InputError("the mesh file " + c.mesh_file +
                               " has none of the edges that the case holds; equilibrium needs a held edge");
   if (!c.body_force.is_zero())
-    conditions_.body_force =
-      continuum::BodyForce{std::make_shared<FieldFunction>(c.body_force, extent_), c.body_force_corrected ? inertia_length_ : 0.};
+    conditions_.body_force = continuum::BodyForce{std::make_shared<FieldFunction>(c.body_force, extent_),
+                                                  c.body_force_corrected ? inertia_length_ : 0.};
 }
 
 continuum::Constitution ContinuumModel::constitution() const

@@ -121,14 +121,13 @@ continuum::IsotropicNetwork isotropic_network(const lattice::TriangularLattice &
 }
 
 std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::TriangularLattice &lattice,
-                                                            const lattice::Material &material,
-                                                            double gradient_length)
+                                                            const lattice::Material &material, double gradient_length)
 {
   std::vector<continuum::FibreDashpot> dashpots;
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
     if (const lattice::Shell *shell = material.shell(kind); shell && shell->viscosity > 0.)
-      dashpots.push_back({direction_of(lattice, kind), bond_weight(lattice, *shell, kind), shell->viscosity,
-                          lattice.rest_length(kind)});
+      dashpots.push_back(
+        {direction_of(lattice, kind), bond_weight(lattice, *shell, kind), shell->viscosity, lattice.rest_length(kind)});
   if (dashpots.empty())
     return nullptr;
   return std::make_unique<continuum::FibreViscosity>(std::move(dashpots), gradient_length);
@@ -146,7 +145,9 @@ std::unique_ptr<continuum::FibreMemory> homogenised_memory(const lattice::Triang
     const auto *memory = std::get_if<lattice::MaxwellMemory>(&shell->memory);
     if (memory == nullptr)
       throw std::invalid_argument("the continuum of bonds with a memory of another program is not supported");
-    continuum::MaxwellFibres fibres{direction_of(lattice, kind), bond_weight(lattice, *shell, kind), {},
+    continuum::MaxwellFibres fibres{direction_of(lattice, kind),
+                                    bond_weight(lattice, *shell, kind),
+                                    {},
                                     material.first_mechanism(lattice::shell_of(kind))};
     for (const auto &[modulus, relaxation_time] : memory->branches())
       fibres.branches.push_back({modulus, relaxation_time});

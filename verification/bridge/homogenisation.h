@@ -32,7 +32,8 @@ std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattic
 
 /// Returns the viscous law of the dashpots of a lattice, with weights as in cauchy_born (theory-comparison.md, eq.
 /// (H.9)); null if there are no dashpots.
-/// @param gradient_length l_d of a gradient energy of the bonds, which the viscosity is to match [m]; 0: local viscosity
+/// @param gradient_length l_d of a gradient energy of the bonds, which the viscosity is to match [m]; 0: local
+/// viscosity
 std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::TriangularLattice &lattice,
                                                             const lattice::Material &material,
                                                             double gradient_length = 0.);

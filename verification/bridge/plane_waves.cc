@@ -165,8 +165,8 @@ std::array<PlaneWave, 2> bloch_waves(const lattice::TriangularLattice &lattice, 
 SlowestWave slowest_wave(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                          const Eigen::Matrix2d &F)
 {
-  // Smaller of the two w^2 / k^2 at a wave vector in polar coordinates; lengths k d beyond the ends of the grid are moved
-  // there.
+  // Smaller of the two w^2 / k^2 at a wave vector in polar coordinates; lengths k d beyond the ends of the grid are
+  // moved there.
   const auto at = [&](double angle, double kd) -> SlowestWave
   {
     const double length = kd < shortest ? shortest : kd > longest ? longest : kd;
@@ -268,7 +268,8 @@ std::array<MemoryWave, 2> memory_waves(const WaveMatrices &relaxed, const std::v
   const auto wave = [&](Eigen::Index i)
   {
     if (!(modes.values[i].imag() > 0.)) // some mode that relaxes
-      return MemoryWave{{not_a_number, not_a_number}, Eigen::Vector2cd::Constant(std::complex<double>(not_a_number, not_a_number))};
+      return MemoryWave{{not_a_number, not_a_number},
+                        Eigen::Vector2cd::Constant(std::complex<double>(not_a_number, not_a_number))};
     const Eigen::Vector2cd p = modes.vectors.col(i).head<2>();
     return MemoryWave{rate * modes.values[i], p / (std::abs(p[0]) > std::abs(p[1]) ? p[0] : p[1])};
   };

@@ -38,8 +38,8 @@ private:
   double phase_;
 };
 
-// A periodic rectangle with `cells` per wavelength along each direction in which the wave K varies, and two across where
-// it does not.
+// A periodic rectangle with `cells` per wavelength along each direction in which the wave K varies, and two across
+// where it does not.
 continuum::Rectangle one_wavelength(const Eigen::Vector2d &K, unsigned int cells)
 {
   const bool along_x = std::abs(K.x()) > 1e-9 * K.norm(), along_y = std::abs(K.y()) > 1e-9 * K.norm();

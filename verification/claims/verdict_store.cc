@@ -76,7 +76,8 @@ std::string stamp(const std::filesystem::path &file)
   return error ? "" : std::to_string(size) + " bytes, " + std::to_string(time.time_since_epoch().count());
 }
 
-// The shared libraries of this process and their stamps. The rest is the program and its module, whose hash is in the key.
+// The shared libraries of this process and their stamps. The rest is the program and its module, whose hash is in the
+// key.
 std::map<std::string, std::string> libraries()
 {
   std::map<std::string, std::string> list;

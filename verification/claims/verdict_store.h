@@ -99,8 +99,8 @@ private:
   std::string folder_;
 };
 
-/// Returns the text of verdicts that were packed with the program, in verdicts/ of its data folder; empty if there are none
-/// for the key, a row of them fails, or a library of the check is not here.
+/// Returns the text of verdicts that were packed with the program, in verdicts/ of its data folder; empty if there are
+/// none for the key, a row of them fails, or a library of the check is not here.
 [[nodiscard]] std::string shipped_verdicts(const VerdictKey &key);
 
 } // namespace latcon::claims

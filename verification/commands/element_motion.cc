@@ -10,7 +10,6 @@
 #include "continuum/errors.h"
 #include "continuum/field_writer.h"
 #include "verification/bridge/affine_displacement.h"
-#include "verification/bridge/field_function.h"
 #include "verification/bridge/homogenisation.h"
 #include "verification/commands/equilibrium.h"
 #include "verification/commands/motion.h"

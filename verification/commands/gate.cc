@@ -24,9 +24,9 @@ constexpr bool quick = true; // a few seconds before every crack
 // Cached verdicts, as found by the root rank.
 struct Stored
 {
-  std::string key;  // inputs that the verdicts depend on; empty: not known
-  std::string text; // content of the stored file; empty: none that can be read
-  std::string note; // message for the user; empty: no problem
+  std::string key;                      // inputs that the verdicts depend on; empty: not known
+  std::string text;                     // content of the stored file; empty: none that can be read
+  std::string note;                     // message for the user; empty: no problem
   std::shared_ptr<void> turn = nullptr; // of the root rank, to check the claims
 };
 
@@ -41,8 +41,7 @@ Stored look_up(const input::Case &input, const std::vector<claims::Claim> &requi
   Stored stored;
   try
   {
-    const claims::VerdictKey key =
-      claims::verdict_key(input, required, laws, quick, support::n_ranks());
+    const claims::VerdictKey key = claims::verdict_key(input, required, laws, quick, support::n_ranks());
     stored.key = key.text;
     stored.text = claims::shipped_verdicts(key);
     if (!stored.text.empty())

@@ -2,8 +2,8 @@
 #include <iostream>
 
 #include "lattice/relaxation.h"
-#include "verification/bridge/plane_waves.h"
 #include "verification/bridge/lattice_sheet.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/bridge/small_strain.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"

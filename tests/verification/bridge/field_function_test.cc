@@ -1,4 +1,4 @@
-#include "verification/bridge/field_function.h"
+#include "verification/bridge/affine_displacement.h"
 
 #include <cmath>
 

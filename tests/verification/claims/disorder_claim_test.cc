@@ -10,7 +10,6 @@
 #include "lattice/bond_factors.h"
 #include "tests/verification/claims/subjects.h"
 #include "verification/claims/disorder/disorder_claim.h"
-#include "verification/claims/disorder/effective_medium.h"
 #include "verification/commands/claim_registry.h"
 
 namespace disorder_claim_test

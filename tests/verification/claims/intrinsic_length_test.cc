@@ -1,10 +1,10 @@
 // The intrinsic length of the bonds, and faults that make its claim fail.
+#include "verification/claims/intrinsic_length/dispersion.h"
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/faults.h"
-#include "verification/claims/intrinsic_length/edge_layer.h"
 
 namespace intrinsic_length_test
 {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "tests/verification/claims/faults.h"
-#include "verification/claims/claim_list.h"
 #include "verification/claims/claim_inputs.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/energy/energy_claim.h"
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 #include "verification/claims/prestretch/cut_study.h"

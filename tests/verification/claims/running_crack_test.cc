@@ -37,7 +37,7 @@ const Subject &rubber()
 
 using Plant = std::function<void(CrackSides &)>;
 
-CrackContinuum &medium(CrackSides &sides, const std::string &name)
+WaveContinuum &medium(CrackSides &sides, const std::string &name)
 {
   for (NamedContinuum &side : sides.continua)
     if (side.name == name)

@@ -9,9 +9,9 @@
 #include "support/largest_error.h"
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/subject.h"
-#include "verification/claims/states.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/rows.h"
+#include "verification/claims/states.h"
 
 namespace latcon::claims
 {

@@ -5,8 +5,8 @@
 
 #include "lattice/contact.h"
 #include "verification/bridge/subject.h"
-#include "verification/claims/rows.h"
 #include "verification/claims/continuum_waves.h"
+#include "verification/claims/rows.h"
 
 namespace latcon::claims
 {

@@ -4,7 +4,7 @@
 
 #include "support/largest_error.h"
 #include "verification/claims/claim_list.h"
-#include "verification/claims/intrinsic_length/edge_layer.h"
+#include "verification/claims/intrinsic_length/dispersion.h"
 #include "verification/claims/rows.h"
 #include "verification/claims/states.h"
 
@@ -177,8 +177,7 @@ void edge_layer(const bridge::Subject &subject, const Rows &rows, ClaimOutcome &
   const lattice::Material material = lattice::without_dashpots(subject.material);
   // Without an equilibrium the rows fail.
   EdgeLayer layer{unknown, std::vector<double>(n_rows, unknown), unknown};
-  rows.attempt("edge layer, relaxed strip",
-               [&] { layer = relaxed_edge(subject.spacing, material, stretch, n_rows); });
+  rows.attempt("edge layer, relaxed strip", [&] { layer = relaxed_edge(subject.spacing, material, stretch, n_rows); });
   const double root = edge_decay(subject.spacing, material, stretch, layer.stretch_across);
   // Linear from the third spacing on, where the deviation is below 1e-3; anchored there.
   constexpr std::size_t anchor = 2;

@@ -6,9 +6,9 @@
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
 #include "verification/bridge/anisotropy.h"
-#include "verification/bridge/plane_waves.h"
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/nonlocal_continuum.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/continuum_waves.h"
 #include "verification/claims/states.h"
@@ -18,8 +18,8 @@ namespace latcon::claims
 namespace
 {
 
-const output::Tolerance equal_sums{
-  1e-10, "a few thousand round-offs of the largest term of sums over at most 127 half-bonds"};
+const output::Tolerance equal_sums{1e-10,
+                                   "a few thousand round-offs of the largest term of sums over at most 127 half-bonds"};
 const output::Tolerance share_of_bound{
   1., "the bound: harmonics of a bond's share from the sixth on, since weights are positive and lower moments exact"};
 
@@ -72,18 +72,18 @@ struct NetworkAt
 // Bound (H.26) on the matrix of waves [1/s^2] of rings without width.
 double wave_bound(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
 {
-  return bound_of_harmonics(
-    subject, 4,
-    [&](const lattice::Shell &shell, const lattice::Ring &ring, const Eigen::Vector2d &N)
-    {
-      const Eigen::Vector2d n = F * N;
-      const double stretch = n.norm(), l = ring.radius;
-      const Eigen::Matrix2d along = n * n.transpose() / (stretch * stretch);
-      const double phase = std::pow(2. * std::sin(0.5 * l * K.dot(N)) / l, 2) / subject.material.density;
-      return Eigen::Matrix2d(phase * (lattice::stiffness(shell.law, stretch) * along +
-                                      lattice::force(shell.law, stretch) / stretch *
-                                        (Eigen::Matrix2d::Identity() - along)));
-    });
+  return bound_of_harmonics(subject, 4,
+                            [&](const lattice::Shell &shell, const lattice::Ring &ring, const Eigen::Vector2d &N)
+                            {
+                              const Eigen::Vector2d n = F * N;
+                              const double stretch = n.norm(), l = ring.radius;
+                              const Eigen::Matrix2d along = n * n.transpose() / (stretch * stretch);
+                              const double phase =
+                                std::pow(2. * std::sin(0.5 * l * K.dot(N)) / l, 2) / subject.material.density;
+                              return Eigen::Matrix2d(phase * (lattice::stiffness(shell.law, stretch) * along +
+                                                              lattice::force(shell.law, stretch) / stretch *
+                                                                (Eigen::Matrix2d::Identity() - along)));
+                            });
 }
 
 // Squared intrinsic length [m^2] in the dispersion of waves about F = I, from the trace of their matrix for two kd. Its
@@ -139,13 +139,15 @@ public:
              {}, energy_, share_of_bound);
     rows.add("first Piola stress, simulator against the network, largest error over the bound of harmonics" + samples,
              "1", {}, stress_, share_of_bound);
-    rows.add("matrix of waves at kd = 0.25, simulator against the lattice's mean over rotations, largest error over the "
-             "bound of harmonics and of the widths of rings, F = I and loaded",
-             "1", {}, waves_, share_of_bound);
+    rows.add(
+      "matrix of waves at kd = 0.25, simulator against the lattice's mean over rotations, largest error over the "
+      "bound of harmonics and of the widths of rings, F = I and loaded",
+      "1", {}, waves_, share_of_bound);
     if (subject_.is_stable())
-      rows.add("squared speeds of long waves in the loaded sheet, simulator against the network, largest error over the "
-               "bound of harmonics, 4 directions",
-               "1", {}, speeds_, share_of_bound);
+      rows.add(
+        "squared speeds of long waves in the loaded sheet, simulator against the network, largest error over the "
+        "bound of harmonics, 4 directions",
+        "1", {}, speeds_, share_of_bound);
     rows.add("energy of a cut along x, simulator against the sum over half-bonds that cross it", "1", {}, cut_,
              equal_sums);
     rows.add("tip of that cut, found by the simulator, behind the cut's end, over the period of the grid", "1", {},
@@ -193,8 +195,7 @@ private:
       return; // neither stress nor energy
     const NetworkAt network(subject_, F);
     const bridge::LatticeResponse found = sheet.response(F),
-                                  on_lattice =
-                                    bridge::homogeneous_response(subject_.sheet(12.), subject_.material, F);
+                                  on_lattice = bridge::homogeneous_response(subject_.sheet(12.), subject_.material, F);
     rows.add("energy density of the loaded sheet; lattice, nonlocal continuum, network", "J/m^3",
              of_both(on_lattice.energy_density, found.energy_density, network.energy),
              support::relative_error(found.energy_density, network.energy),
@@ -255,18 +256,18 @@ private:
   void length(const StencilSheet &sheet, const NonlocalStencil &stencil, const Rows &rows, bool is_known)
   {
     const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
-    const double on_lattice = squared_length_of(
-                   subject_, [&](const Eigen::Vector2d &K) { return of_lattice_waves(subject_, I, K); }),
-                 found = squared_length_of(subject_,
-                                           [&](const Eigen::Vector2d &K) { return sheet.wave_stiffness(I, K); }),
+    const double on_lattice = squared_length_of(subject_, [&](const Eigen::Vector2d &K)
+                                                { return of_lattice_waves(subject_, I, K); }),
+                 found =
+                   squared_length_of(subject_, [&](const Eigen::Vector2d &K) { return sheet.wave_stiffness(I, K); }),
                  gradient = 12. * std::pow(subject_.lengths.isotropic_inertia, 2);
-    const bridge::RingValue rings =
-      bridge::ring_squared_length(subject_.material, subject_.spacing, stencil.grid);
+    const bridge::RingValue rings = bridge::ring_squared_length(subject_.material, subject_.spacing, stencil.grid);
     rows.add("intrinsic length l in the dispersion of long waves at F = I; lattice, nonlocal continuum, gradient "
              "continuum; error: of l^2 against l^2 + h^2/2 of rings as wide as the spacing h of the grid",
              "m", of_both(std::sqrt(on_lattice), std::sqrt(found), std::sqrt(gradient)),
              std::abs(found - gradient - (rings.smooth - rings.limit)) / rings.limit,
-             {rings.scatter / rings.limit, "scatter of the points of the grid in rings, of order (h/l)^(3/2)"}, is_known);
+             {rings.scatter / rings.limit, "scatter of the points of the grid in rings, of order (h/l)^(3/2)"},
+             is_known);
   }
 
   void cut(const StencilSheet &sheet, const NonlocalStencil &stencil, const Rows &rows, bool is_known)
@@ -335,8 +336,8 @@ std::vector<lattice::HalfBond> planted_bonds(const bridge::Subject &subject, con
 std::vector<NonlocalStencil> fixed_stencils(double d, lattice::Orientation orientation)
 {
   std::vector<NonlocalStencil> list;
-  for (const auto &[kind, name] : {std::pair(lattice::Grid::Kind::square, "square"),
-                                   std::pair(lattice::Grid::Kind::triangular, "triangular")})
+  for (const auto &[kind, name] :
+       {std::pair(lattice::Grid::Kind::square, "square"), std::pair(lattice::Grid::Kind::triangular, "triangular")})
     for (const auto &[m, text] : {std::pair(1.5, "1.5"), std::pair(2., "2"), std::pair(3., "3")})
       list.push_back({std::string(name) + " grid, m = " + text, {kind, d / m, 0., orientation}});
   return list;

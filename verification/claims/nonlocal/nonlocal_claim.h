@@ -66,8 +66,8 @@ public:
     return bridge::homogeneous_response(sheet_, material_, F);
   }
 
-  /// Stiffness of plane waves [1/s^2], that of bridge::WaveMatrices, from the force on a site in the crest of a wave with
-  /// a strain of 1e-5. @param K referential wave vector [1/m]
+  /// Stiffness of plane waves [1/s^2], that of bridge::WaveMatrices, from the force on a site in the crest of a wave
+  /// with a strain of 1e-5. @param K referential wave vector [1/m]
   Eigen::Matrix2d wave_stiffness(const Eigen::Matrix2d &F, const Eigen::Vector2d &K) const;
 
   /// A cut along x between two rows, through bonds that all have one stretch.

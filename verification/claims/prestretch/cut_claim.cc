@@ -102,8 +102,7 @@ public:
     // In a layer of the width d about a rim stresses have an error of order one. About a tip they and the reactions
     // that they leave fall too slowly to be extrapolated by a fit.
     constexpr double of_layer = 0.15;
-    (void)add_expected("stress, rms", series(&CutErrors::stress), of_layer / std::sqrt(study_.sizes.back()),
-                       is_hole_);
+    (void)add_expected("stress, rms", series(&CutErrors::stress), of_layer / std::sqrt(study_.sizes.back()), is_hole_);
 
     for (const Scalar &scalar : scalars)
       add(scalar.name, std::abs(at_largest("local", scalar.error)), place_allowance(scalar));
@@ -327,7 +326,7 @@ private:
     return found != nullptr && found->*of ? (*(found->*of)).*error : unknown;
   }
   double at_largest(const std::string &law, double CutErrors::*error,
-                 std::optional<CutErrors> CutResult::*of = &CutResult::errors) const
+                    std::optional<CutErrors> CutResult::*of = &CutResult::errors) const
   {
     return value(law, study_.sizes.back(), error, of);
   }

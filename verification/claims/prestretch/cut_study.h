@@ -66,7 +66,8 @@ struct CutLattice
   double left_of_energy, left_of_force;
 };
 
-/// Relaxes the lattice to a largest force on a free site of 1e-8 mu d. @throws std::runtime_error if the lattice does not relax
+/// Relaxes the lattice to a largest force on a free site of 1e-8 mu d. @throws std::runtime_error if the lattice does
+/// not relax
 CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet);
 
 /// Mesh and refinement of the finite element sheet.
@@ -82,17 +83,19 @@ struct CutMesh
 /// has more, if they have a sign. Energy and reaction are compared as theory-comparison.md, eq. (H.12), has them.
 struct CutErrors
 {
-  double displacement = unknown;     ///< rms over the sites with all their bonds, over |F - I| times the size of the cut
-  double displacement_all = unknown; ///< rms over all free sites: at a rim, one that few bonds hold is far off by itself
+  double displacement = unknown; ///< rms over the sites with all their bonds, over |F - I| times the size of the cut
+  double displacement_all =
+    unknown; ///< rms over all free sites: at a rim, one that few bonds hold is far off by itself
   double displacement_max = unknown; ///< largest of all
-  double stress = unknown;           ///< first Piola, rms over the sites with all their bonds, over the rms of the continuum's
-  double cauchy_stress = unknown;    ///< likewise
-  double stress_scale = unknown;     ///< of all these stresses at once: sum P_lattice : P / sum P : P - 1
-  double energy = unknown;           ///< total
-  double reaction = unknown; ///< force on the right edge along x and on the top edge along y, as a vector, along the continuum's
+  double stress = unknown; ///< first Piola, rms over the sites with all their bonds, over the rms of the continuum's
+  double cauchy_stress = unknown; ///< likewise
+  double stress_scale = unknown;  ///< of all these stresses at once: sum P_lattice : P / sum P : P - 1
+  double energy = unknown;        ///< total
+  double reaction =
+    unknown; ///< force on the right edge along x and on the top edge along y, as a vector, along the continuum's
   double reaction_vector = unknown; ///< length of the difference of both
-  double shape = unknown;           ///< opening of the hole along x and y, or of the mouth of the notch, likewise as a vector
-  double fem = unknown;             ///< change of the displacement in the last cycle, as `displacement`
+  double shape = unknown; ///< opening of the hole along x and y, or of the mouth of the notch, likewise as a vector
+  double fem = unknown;   ///< change of the displacement in the last cycle, as `displacement`
   double unknowns = unknown;
 };
 

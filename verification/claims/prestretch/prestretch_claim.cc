@@ -169,24 +169,6 @@ void network_rows(const bridge::Subject &subject, const lattice::TriangularLatti
   }
 }
 
-// Comparison with the law fitted along the loading path, for information: the law is not the lattice's, and need not
-// have an equilibrium.
-void mooney_rivlin_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
-                        const LatticeSide &side, const PrestretchOptions &options, const Rows &rows)
-{
-  if (!subject.mooney_rivlin)
-    return;
-  const std::string failure = no_equilibrium(
-    [&]
-    {
-      for (const auto &[quantity, unit, sides, error] :
-           compare(subject, sheet, side, continuum::MooneyRivlin(subject.mooney_rivlin->law), options))
-        rows.add(quantity + ", plane-stress Mooney-Rivlin", unit, sides, error);
-    });
-  if (!failure.empty())
-    rows.add("no equilibrium: " + failure + ", plane-stress Mooney-Rivlin", "1", {});
-}
-
 } // namespace
 
 output::Results prestretch_claim(const bridge::Subject &subject, const PrestretchOptions &options)
@@ -207,16 +189,25 @@ output::Results prestretch_claim(const bridge::Subject &subject, const Prestretc
                     }))
     return results;
 
-  rows.attempt("equilibrium, Cauchy-Born",
+  const auto add = [&](const continuum::Material &law, const std::string &name, const output::Tolerance &tolerance)
+  {
+    for (const auto &[quantity, unit, sides, error] : compare(subject, *sheet, side, law, options))
+      rows.add(quantity + ", " + name, unit, sides, error, tolerance);
+  };
+  rows.attempt("equilibrium, Cauchy-Born", [&] { add(subject.cauchy_born, "Cauchy-Born", solver_tolerance); });
+  rows.attempt("equilibrium, network", [&] { network_rows(subject, *sheet, side, options, rows); });
+  if (!subject.mooney_rivlin)
+    return results;
+  // For information: the law is not the lattice's, and need not have an equilibrium.
+  const std::string fitted = "plane-stress Mooney-Rivlin";
+  rows.attempt("equilibrium, " + fitted,
                [&]
                {
-                 for (const auto &[quantity, unit, sides, error] :
-                      compare(subject, *sheet, side, subject.cauchy_born, options))
-                   rows.add(quantity + ", Cauchy-Born", unit, sides, error, solver_tolerance);
+                 const std::string failure =
+                   no_equilibrium([&] { add(continuum::MooneyRivlin(subject.mooney_rivlin->law), fitted, {}); });
+                 if (!failure.empty())
+                   rows.add("no equilibrium: " + failure + ", " + fitted, "1", {});
                });
-  rows.attempt("equilibrium, network", [&] { network_rows(subject, *sheet, side, options, rows); });
-  rows.attempt("equilibrium, plane-stress Mooney-Rivlin",
-               [&] { mooney_rivlin_rows(subject, *sheet, side, options, rows); });
   return results;
 }
 

@@ -108,9 +108,9 @@ continuum::FieldDerivatives derivatives(const continuum::PointState &state, doub
 
 // Adds the fields of the continuum at the sites of a sample. @return power dissipated near the tip, of the whole sheet
 // [W/m]
-double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &sheet, const CrackContinuum &medium,
-                  const Eigen::Matrix2d &F, const continuum::DynamicSolver &solver, double X_tip, double reach,
-                  TipField &field)
+double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &sheet, const WaveContinuum &medium,
+                  const continuum::Material &bonds, const Eigen::Matrix2d &F, const continuum::DynamicSolver &solver,
+                  double X_tip, double reach, TipField &field)
 {
   const std::vector<TipSite> sites = tip_sites(drive, sheet, X_tip, reach);
   std::vector<dealii::Point<2>> points;
@@ -137,8 +137,7 @@ double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &she
     values.opening_stress = states[n].P[1][1];
     const dealii::Tensor<2, 2> P = medium.constitution.local->first_piola_stress(states[n].F);
     values.excess_stress = (P - medium.constitution.local->first_piola_stress(bridge::to_continuum(F))).norm();
-    if (medium.bonds != nullptr)
-      values.anisotropy = anisotropy(*medium.bonds, states[n].F);
+    values.anisotropy = anisotropy(bonds, states[n].F);
     if (medium.viscosity != nullptr)
     {
       dealii::Tensor<2, 2> Fdot = rates[n].F;
@@ -165,9 +164,9 @@ double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &she
 
 } // namespace
 
-TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, const CrackContinuum &medium,
-                             const Eigen::Matrix2d &F, const CrackMesh &resolution, double reach,
-                             const std::optional<CrackFrame> &frame)
+TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, const WaveContinuum &medium,
+                             const continuum::Material &bonds, const Eigen::Matrix2d &F, const CrackMesh &resolution,
+                             double reach, const std::optional<CrackFrame> &frame)
 {
   const lattice::TriangularLattice sheet(drive.spacing, drive.length, drive.height, drive.orientation);
   Mesh mesh(MPI_COMM_SELF);
@@ -200,7 +199,8 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
     }
     solver.step();
     if (stride + CrackDrive::n_samples > drive.n_strides)
-      near += add_sample(drive, sheet, medium, F, solver, drive.tip(stride), reach, run.field) / CrackDrive::n_samples;
+      near +=
+        add_sample(drive, sheet, medium, bonds, F, solver, drive.tip(stride), reach, run.field) / CrackDrive::n_samples;
   }
   if (frame)
   {

@@ -115,11 +115,11 @@ public:
     add_side("lattice", lattice_);
   }
 
-  void compare(const std::string &name, const CrackContinuum &medium)
+  void compare(const std::string &name, const WaveContinuum &medium)
   {
     const auto drive = [&](double size, const std::optional<CrackFrame> &frame)
     {
-      return drive_continuum_crack(sides_.drive, sides_.half, medium, subject_.deformation,
+      return drive_continuum_crack(sides_.drive, sides_.half, medium, subject_.cauchy_born, subject_.deformation,
                                    mesh_of(sides_.drive, size, options_.degree), reach_, frame);
     };
     const TipRun coarse = drive(2. * options_.finest, {}), fine = drive(options_.finest, frame(name));
@@ -270,7 +270,8 @@ CrackSides crack_sides(const bridge::Subject &subject, const RunningCrackOptions
   const lattice::TriangularLattice sheet(d, drive.length, drive.height, drive.orientation);
   const double end_depth = bridge::held_depth(sheet, subject.material, {1., 0.});
   const std::shared_ptr<const continuum::Viscosity> local = bridge::homogenised_viscosity(sheet, subject.material),
-    gradient = bridge::homogenised_viscosity(sheet, subject.material, subject.lengths.lattice);
+                                                    gradient = bridge::homogenised_viscosity(sheet, subject.material,
+                                                                                             subject.lengths.lattice);
   CrackSides sides{drive,
                    {end_depth, sheet.length() - end_depth,
                     0.5 * sheet.height() - bridge::held_depth(sheet, subject.material, {0., 1.})},
@@ -281,10 +282,9 @@ CrackSides crack_sides(const bridge::Subject &subject, const RunningCrackOptions
     const double density = subject.material.density;
     const continuum::Inertia micro{density, subject.lengths.lattice};
     const continuum::Constitution with_gradient(law, energy);
-    const continuum::Material *bonds = &subject.cauchy_born;
-    sides.continua.push_back({prefix + "local", {{law}, {density}, local.get(), bonds}});
-    sides.continua.push_back({prefix + "gradient", {with_gradient, micro, local.get(), bonds}});
-    sides.continua.push_back({prefix + "viscous-gradient", {with_gradient, micro, gradient.get(), bonds}});
+    sides.continua.push_back({prefix + "local", {{law}, {density}, local.get()}});
+    sides.continua.push_back({prefix + "gradient", {with_gradient, micro, local.get()}});
+    sides.continua.push_back({prefix + "viscous-gradient", {with_gradient, micro, gradient.get()}});
   };
   add("", subject.network, *subject.network_gradient);
   if (options.anisotropic)

@@ -4,24 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "continuum/constitution.h"
-#include "continuum/dynamic_solver.h"
-#include "continuum/viscosity.h"
 #include "verification/bridge/subject.h"
+#include "verification/claims/continuum_waves.h"
 #include "verification/claims/rows.h"
 #include "verification/claims/running_crack/tip_field.h"
 
 namespace latcon::claims
 {
-
-/// A continuum through which a crack is driven. The laws must outlive it.
-struct CrackContinuum
-{
-  continuum::Constitution constitution;
-  continuum::Inertia inertia;
-  const continuum::Viscosity *viscosity = nullptr; ///< none: elastic
-  const continuum::Material *bonds = nullptr;      ///< Cauchy-Born law of the lattice, for TipValues::anisotropy
-};
 
 /// Elements. The finest ones are four cells high over the crack; a time step is that of a stride.
 struct CrackMesh
@@ -39,27 +28,28 @@ struct HalfSheet
   double tip = 0.;    ///< how far the tip is ahead of where the drive has it [m]
 };
 
-/// Drives the crack through the half sheet. Ahead of the tip the lower edge is on the plane of symmetry: no
-/// displacement across it, no shear, and with a gradient energy no normal gradient of the displacement along it. Behind
-/// the tip it is free. The edge is opened cell by cell: while the tip passes a cell, the forces that held that cell's
-/// nodes fall linearly to zero.
+/// Drives the crack through the half sheet of a continuum without memory. Ahead of the tip the lower edge is on the
+/// plane of symmetry: no displacement across it, no shear, and with a gradient energy no normal gradient of the
+/// displacement along it. Behind the tip it is free. The edge is opened cell by cell: while the tip passes a cell, the
+/// forces that held that cell's nodes fall linearly to zero.
+/// @param bonds Cauchy-Born law of the lattice, for TipValues::anisotropy
 /// @param reach as for the lattice, at whose sites the fields are evaluated
 /// @param frame none is written if empty
 /// @throws continuum::SolverFailed, continuum::InvalidInput, continuum::OutputFailed
-TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, const CrackContinuum &medium,
-                             const Eigen::Matrix2d &F, const CrackMesh &resolution, double reach,
-                             const std::optional<CrackFrame> &frame = {});
+TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, const WaveContinuum &medium,
+                             const continuum::Material &bonds, const Eigen::Matrix2d &F, const CrackMesh &resolution,
+                             double reach, const std::optional<CrackFrame> &frame = {});
 
 /// Sizes in spacings d, and resolutions. The default is the quick version.
 struct RunningCrackOptions
 {
   double length = 46.;
-  double height = 30.;  ///< of the whole sheet
-  double start = 12.;   ///< distance of the start from the left edge
-  double advance = 21.; ///< of the tip
-  double far = 9.;      ///< outer radius of the far field, whose inner radius is 5
-  double finest = 1.;   ///< approximate size of cells along the path; a second mesh has cells twice as large
-  unsigned degree = 2;  ///< of the elements
+  double height = 30.;      ///< of the whole sheet
+  double start = 12.;       ///< distance of the start from the left edge
+  double advance = 21.;     ///< of the tip
+  double far = 9.;          ///< outer radius of the far field, whose inner radius is 5
+  double finest = 1.;       ///< approximate size of cells along the path; a second mesh has cells twice as large
+  unsigned degree = 2;      ///< of the elements
   bool anisotropic = false; ///< also the continua of the lattice's own laws
   std::string frames;       ///< folder for a frame of each side at the end of the drive; empty: none
 };
@@ -74,7 +64,7 @@ inline RunningCrackOptions full_running_crack()
 struct NamedContinuum
 {
   std::string name;
-  CrackContinuum medium;
+  WaveContinuum medium;
 };
 
 /// Both sides of the comparison: one lattice and several continua. The subject must outlive it.

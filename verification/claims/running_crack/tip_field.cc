@@ -1,11 +1,80 @@
 #include "verification/claims/running_crack/tip_field.h"
 
+#include <algorithm>
 #include <limits>
 
+#include "lattice/simulation.h"
+#include "lattice/site_fields.h"
+#include "lattice/time_step.h"
 #include "support/largest_error.h"
+#include "verification/output/field_writer.h"
 
 namespace latcon::claims
 {
+namespace
+{
+
+// Bond that crosses the line of the crack, and its position.
+struct Crossing
+{
+  double X; // [m]
+  std::pair<std::size_t, std::size_t> bond;
+};
+
+// In the order in which the tip passes them; bonds behind the start remain.
+std::vector<Crossing> crossings(const CrackDrive &drive, const lattice::TriangularLattice &sheet,
+                                const lattice::State &state)
+{
+  std::vector<Crossing> list;
+  lattice::for_each_bond(state, sheet,
+                         [&](const lattice::Bond &bond)
+                         {
+                           const Eigen::Vector2d from = sheet.reference(bond.near),
+                                                 along = sheet.bond_vector(bond.kind);
+                           const double share = (drive.axis() - from.y()) / along.y();
+                           const double X = from.x() + share * along.x();
+                           if (share > 0. && share < 1. && X > drive.start)
+                             list.push_back({X, {bond.near, bond.kind}});
+                         });
+  std::stable_sort(list.begin(), list.end(), [](const Crossing &a, const Crossing &b) { return a.X < b.X; });
+  return list;
+}
+
+// Steps of equal length that divide the time between samples.
+lattice::TimeStepping time_stepping(const CrackDrive &drive, const lattice::TriangularLattice &sheet,
+                                    const lattice::Material &material)
+{
+  constexpr double shortest_bond = 0.5; // at the flanks; the integrator divides steps for shorter ones
+  constexpr double safety = 0.8;
+  const lattice::TimeStepLimits limits = lattice::time_step_limits(sheet, material, shortest_bond);
+  const double chebyshev = safety * lattice::chebyshev_step(sheet, material, shortest_bond);
+  const double longest = support::largest_of({chebyshev, safety * limits.combined});
+  const double step =
+    drive.stride_time() / std::ceil(drive.stride_time() / support::smallest_of({longest, drive.stride_time() / 4.}));
+  return chebyshev > safety * limits.combined ? lattice::chebyshev_time_stepping(step, limits, 0)
+                                              : lattice::TimeStepping(step);
+}
+
+// Power of the dashpots around a site, half of each bond's, per reference area [W/m^3].
+double dissipation(const lattice::State &state, const lattice::TriangularLattice &sheet,
+                   const lattice::Material &material, std::size_t place)
+{
+  double power = 0.;
+  lattice::for_each_bond_of_site(state, sheet, place,
+                                 [&](const lattice::Bond &bond)
+                                 {
+                                   const auto [near, kind, far] = bond;
+                                   const Eigen::Vector2d r(state.x[far] - state.x[near], state.y[far] - state.y[near]);
+                                   const Eigen::Vector2d rate(state.vx[far] - state.vx[near],
+                                                              state.vy[far] - state.vy[near]);
+                                   const lattice::Shell &shell = *material.shell(kind);
+                                   power += 0.5 * lattice::cross_section(shell, sheet) * shell.viscosity /
+                                            sheet.rest_length(kind) * std::pow(rate.dot(r.normalized()), 2);
+                                 });
+  return power / sheet.site_area();
+}
+
+} // namespace
 
 TipValues &TipValues::operator+=(const TipValues &other)
 {
@@ -114,6 +183,70 @@ StressLobes stress_lobes(const TipField &field, double radius)
     }
   lobes.ratio = largest / lobes.ahead;
   return lobes;
+}
+
+TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &material, const Eigen::Matrix2d &F,
+                           double reach, const std::optional<CrackFrame> &frame)
+{
+  const lattice::TriangularLattice sheet(drive.spacing, drive.length, drive.height, drive.orientation);
+  lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::held);
+  const std::vector<Crossing> schedule = crossings(drive, sheet, state);
+  const lattice::TimeStepping stepping = time_stepping(drive, sheet, material);
+  lattice::Simulation simulation(sheet, material, std::move(state), stepping,
+                                 lattice::Fracture(sheet, material, lattice::unbreakable, lattice::NoToughening(), F));
+  const lattice::SiteEvaluator evaluator(sheet, material);
+
+  TipRun run{TipField(drive), {}};
+  auto next = schedule.begin();
+  lattice::EnergyBalance middle{};
+  double near = 0.;
+  const auto steps = static_cast<unsigned int>(std::lround(drive.stride_time() / stepping.step));
+  const unsigned int n_half = drive.n_strides / 2;
+  for (unsigned int stride = 1; stride <= drive.n_strides; ++stride)
+  {
+    if (stride == n_half + 1)
+      middle = simulation.energies();
+    for (unsigned int k = 0; k < steps; ++k)
+    {
+      // Each bond at the end of the step that is nearest to its time.
+      const double X_tip = drive.tip(stride - 1) + (k + 0.5) / steps * drive.stride();
+      std::vector<std::pair<std::size_t, std::size_t>> bonds;
+      for (; next != schedule.end() && next->X < X_tip; ++next)
+        bonds.push_back(next->bond);
+      if (!bonds.empty())
+        simulation.cut_bonds(bonds);
+      simulation.step();
+    }
+    if (stride + CrackDrive::n_samples <= drive.n_strides)
+      continue;
+    const lattice::State &now = simulation.state();
+    double power = 0.;
+    for (const TipSite &site : tip_sites(drive, sheet, drive.tip(stride), reach))
+    {
+      const Eigen::Vector2d X = sheet.reference(site.place);
+      const double sign = site.is_above ? 1. : -1.; // the lower half is the mirror image
+      TipValues values;
+      values.velocity = {now.vx[site.place], sign * now.vy[site.place]};
+      values.excess = Eigen::Vector2d(now.x[site.place], now.y[site.place]) - F * X;
+      values.excess.y() *= sign;
+      values.opening_stress = evaluator.at(now, site.place).first_piola_stress(1, 1);
+      values.dissipation = dissipation(now, sheet, material, site.place);
+      if (std::hypot(site.xi, site.eta) <= near_tip * drive.spacing)
+        power += values.dissipation * sheet.site_area();
+      run.field.add(site, values);
+    }
+    near += power / CrackDrive::n_samples;
+  }
+  if (frame)
+  {
+    output::FieldWriter writer(sheet, material, frame->folder, frame->name);
+    writer.add_frame(simulation.state());
+  }
+  const lattice::EnergyBalance end = simulation.energies();
+  const double advance = (drive.n_strides - n_half) * drive.stride();
+  run.energy = {(middle.elastic + middle.kinetic - end.elastic - end.kinetic) / advance,
+                (end.viscous - middle.viscous) / advance, (end.broken - middle.broken) / advance, near / drive.speed};
+  return run;
 }
 
 } // namespace latcon::claims

@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
 
 namespace latcon::claims
 {
@@ -44,6 +46,34 @@ double logarithm_of_driving(const HalfStrip &half, std::size_t points)
   if (std::abs(argument) > 1.)
     throw std::runtime_error("the response of the strip turns around the origin: there is no steady crack");
   return sum * dx / M_PI;
+}
+
+struct Bond
+{
+  std::size_t row, column, far_row, far_column;
+  Eigen::Vector2d direction;
+
+  // Position along the crack, in halves of a spacing: the order in which the bonds across it break.
+  std::size_t halves() const { return column + far_column; }
+};
+
+// Bonds between sites (row, column) at x = column + row/2: a sheared patch of the lattice, whose bonds have the same
+// steps in every row.
+std::vector<Bond> patch(std::size_t rows, std::size_t columns)
+{
+  const Eigen::Vector2d along(1., 0.), right(0.5, std::sqrt(3.) / 2.), left(-0.5, std::sqrt(3.) / 2.);
+  std::vector<Bond> bonds;
+  for (std::size_t row = 0; row < rows; ++row)
+    for (std::size_t column = 0; column < columns; ++column)
+    {
+      if (column + 1 < columns)
+        bonds.push_back({row, column, row, column + 1, along});
+      if (row + 1 < rows)
+        bonds.push_back({row, column, row + 1, column, right});
+      if (row + 1 < rows && column > 0)
+        bonds.push_back({row, column, row + 1, column - 1, left});
+    }
+  return bonds;
 }
 
 } // namespace
@@ -168,6 +198,64 @@ double steady_speed(const CrackStrip &strip, double driving, double fastest)
     (excess(middle) > 0. ? high : low) = middle;
   }
   return 0.5 * (low + high);
+}
+
+TrappingWindow trapping_window(const CrackStrip &strip, std::size_t columns)
+{
+  const std::size_t n = strip.free_rows, rows = 2 * n + 2;
+  const std::vector<Bond> bonds = patch(rows, columns);
+  const auto is_held = [&](std::size_t row) { return row == 0 || row == rows - 1; };
+  const auto crosses_crack = [&](const Bond &bond) { return bond.row == n && bond.far_row == n + 1; };
+  const auto unknown = [&](std::size_t row, std::size_t column) // first of the two of a free site
+  { return static_cast<Eigen::Index>(2 * ((row - 1) * columns + column)); };
+  const auto n_unknowns = static_cast<Eigen::Index>(4 * n * columns);
+  const std::size_t first_whole = columns;                // of halves(): the middle of the row
+  const double top = static_cast<double>(strip.layers()); // u_y of the upper row; the lower one rests
+
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(n_unknowns);
+  for (const Bond &bond : bonds)
+  {
+    if (crosses_crack(bond) && bond.halves() < first_whole)
+      continue;
+    const Eigen::Matrix2d stiffness = bond.direction * bond.direction.transpose();
+    const auto add = [&](std::size_t row, std::size_t column, std::size_t other_row, std::size_t other_column, int sign)
+    {
+      if (is_held(row))
+        return;
+      const Eigen::Index i = unknown(row, column);
+      if (!is_held(other_row))
+        for (Eigen::Index a = 0; a < 2; ++a)
+          for (Eigen::Index b = 0; b < 2; ++b)
+            entries.emplace_back(i + a, unknown(other_row, other_column) + b, sign * stiffness(a, b));
+      else if (other_row != 0)
+        load.segment<2>(i) -= sign * stiffness.col(1) * top;
+    };
+    add(bond.row, bond.column, bond.row, bond.column, 1);
+    add(bond.far_row, bond.far_column, bond.far_row, bond.far_column, 1);
+    add(bond.row, bond.column, bond.far_row, bond.far_column, -1);
+    add(bond.far_row, bond.far_column, bond.row, bond.column, -1);
+  }
+  Eigen::SparseMatrix<double> matrix(n_unknowns, n_unknowns);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+  if (solver.info() != Eigen::Success)
+    throw std::runtime_error("the strip with a crack at rest has no equilibrium");
+  const Eigen::VectorXd u = solver.solve(load);
+
+  double next = 0., last = 0.;
+  for (const Bond &bond : bonds)
+    if (crosses_crack(bond) && bond.halves() <= first_whole && bond.halves() + 1 >= first_whole)
+    {
+      const Eigen::Vector2d opening =
+        u.segment<2>(unknown(bond.far_row, bond.far_column)) - u.segment<2>(unknown(bond.row, bond.column));
+      (bond.halves() == first_whole ? next : last) = bond.direction.dot(opening);
+    }
+  // Bonds of the strip ahead are elongated by sin 60 degrees for each unit of height; at Griffith's threshold by
+  // 1 / sqrt(layers) of the breaking elongation.
+  const double ahead = std::sqrt(3.) / 2. * top / static_cast<double>(strip.layers());
+  const double threshold = 1. / std::sqrt(static_cast<double>(strip.layers()));
+  return {ahead / last / threshold, ahead / next / threshold};
 }
 
 } // namespace latcon::claims

@@ -18,7 +18,7 @@ struct CrackRunOptions
   double driving;                ///< Delta / Delta_G of the held rows
   double breaking_strain = 1e-4; ///< lam_f - 1 [-]
   double time_step = 0.025;
-  double length = 260.; ///< of the strip; its left end is free, the right one held
+  double length = 260.;       ///< of the strip; its left end is free, the right one held
   double window_begin = 110.; ///< what the tip does from here on is measured ...
   double window_end = 210.;   ///< ... up to here
 };

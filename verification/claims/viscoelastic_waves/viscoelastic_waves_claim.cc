@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "support/largest_error.h"
-#include "verification/bridge/plane_waves.h"
 #include "verification/bridge/homogenisation.h"
+#include "verification/bridge/plane_waves.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/continuum_waves.h"
 #include "verification/claims/lattice_waves.h"

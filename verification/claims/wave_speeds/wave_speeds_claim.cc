@@ -6,10 +6,10 @@
 
 #include "support/largest_error.h"
 #include "verification/bridge/plane_waves.h"
-#include "verification/claims/states.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/lattice_waves.h"
 #include "verification/claims/order_fit.h"
+#include "verification/claims/states.h"
 
 namespace latcon::claims
 {
@@ -34,8 +34,7 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
                ClaimOutcome &outcome)
 {
   const double d = subject.spacing;
-  const lattice::Material material = lattice::without_dashpots(subject.material),
-                          of_runs = options.planted(material);
+  const lattice::Material material = lattice::without_dashpots(subject.material), of_runs = options.planted(material);
   const lattice::TriangularLattice sheet = subject.sheet(); // only its bonds matter
   const SubjectContinua media(subject);
   const auto exact = [&](const Eigen::Vector2d &K) { return frequencies(bridge::bloch_waves(sheet, material, F, K)); };
@@ -233,9 +232,8 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
   const Rows rows(outcome.results, "wave-speeds", where.str());
   // If a wave does not oscillate, its rows fail.
   std::array<Oscillation, 2> run{{{unknown, unknown, 0.}, {unknown, unknown, 0.}}}, elements = run;
-  rows.attempt(
-    "lattice run, damped waves",
-    [&] { run = lattice_waves(cell, options.planted(material), F, options.integrator); });
+  rows.attempt("lattice run, damped waves",
+               [&] { run = lattice_waves(cell, options.planted(material), F, options.integrator); });
   // Waves this long hardly feel the gradient energy: the error in space is below 1e-6.
   rows.attempt("finite elements, damped waves", [&] { elements = finite_element_waves(medium, F, cell.K, {4, 4}); });
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "verification/bridge/subject.h"
-#include "verification/claims/rows.h"
 #include "verification/claims/continuum_waves.h"
+#include "verification/claims/rows.h"
 #include "verification/input/case.h"
 
 namespace latcon::claims
