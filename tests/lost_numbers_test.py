@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 # All sources that contribute to a row with a verdict.
 SOURCES = ("support/largest_error.*",
            *(f"verification/{path}" for path in (
-             "bridge/anisotropy.*", "bridge/equivalent_sheet.*", "bridge/homogenisation.*", "bridge/plane_waves.*",
+             "bridge/equivalent_sheet.*", "bridge/homogeneous_response.*", "bridge/homogenisation.*", "bridge/plane_waves.*",
              "bridge/subject.*", "claims/*", "claims/*/*", "commands/verify.cc", "compare/comparison.*",
              "output/continuum_record.*", "output/crack_record.*")))
 INTEGER = r"<(?:std::size_t|unsigned int|int|long|std::ptrdiff_t)>"

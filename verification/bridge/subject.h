@@ -5,7 +5,7 @@
 #include <string>
 
 #include "continuum/gradient_law.h"
-#include "verification/bridge/anisotropy.h"
+#include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/homogenisation.h"
 #include "verification/bridge/laws.h"
 #include "verification/bridge/plane_waves.h"

@@ -1,5 +1,5 @@
 // Means over rotations of a lattice, and bounds of the anisotropy that they omit.
-#include "verification/bridge/anisotropy.h"
+#include "verification/bridge/homogeneous_response.h"
 
 #include <cmath>
 #include <functional>

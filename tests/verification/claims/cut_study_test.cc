@@ -1,5 +1,5 @@
 // Sheets with a hole or a notch: where their edges are, and that the comparison holds, and fails for what is wrong.
-#include "verification/claims/prestretch/cut_study.h"
+#include "verification/claims/prestretch/prestretch_claim.h"
 
 #include <algorithm>
 #include <cmath>

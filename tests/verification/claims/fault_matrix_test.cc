@@ -10,7 +10,7 @@
 #include "tests/verification/claims/small_sheet.h"
 #include "verification/claims/energy/energy_claim.h"
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
-#include "verification/claims/prestretch/cut_study.h"
+#include "verification/claims/prestretch/prestretch_claim.h"
 #include "verification/claims/wave_speeds/wave_speeds_claim.h"
 
 namespace fault_matrix_test

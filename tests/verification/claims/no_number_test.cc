@@ -16,7 +16,6 @@
 #include "verification/claims/claim_list.h"
 #include "verification/claims/energy/energy_claim.h"
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
-#include "verification/claims/prestretch/cut_study.h"
 #include "verification/claims/prestretch/prestretch_claim.h"
 #include "verification/claims/run_claims.h"
 #include "verification/claims/steady_crack/steady_crack_claim.h"

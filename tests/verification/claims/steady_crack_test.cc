@@ -1,5 +1,5 @@
 // The exact solution of a steady crack in a linear lattice, and the simulator against it.
-#include "verification/claims/steady_crack/steady_crack.h"
+#include "verification/claims/steady_crack/steady_crack_claim.h"
 
 #include <cmath>
 #include <functional>
@@ -10,7 +10,6 @@
 
 #include "tests/verification/claims/faults.h"
 #include "verification/claims/order_fit.h"
-#include "verification/claims/steady_crack/steady_crack_claim.h"
 
 namespace steady_crack_test
 {

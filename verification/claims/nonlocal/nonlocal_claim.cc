@@ -5,7 +5,6 @@
 
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
-#include "verification/bridge/anisotropy.h"
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/nonlocal_continuum.h"
 #include "verification/bridge/plane_waves.h"

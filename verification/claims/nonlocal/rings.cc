@@ -7,7 +7,7 @@
 #include "lattice/seed.h"
 #include "lattice/simulation.h"
 #include "support/largest_error.h"
-#include "verification/bridge/anisotropy.h"
+#include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/nonlocal_continuum.h"
 #include "verification/bridge/plane_waves.h"
 #include "verification/claims/order_fit.h"

@@ -8,7 +8,7 @@
 #include "support/dense.h"
 #include "support/largest_error.h"
 #include "verification/bridge/equivalent_sheet.h"
-#include "verification/claims/prestretch/cut_study.h"
+#include "verification/claims/prestretch/prestretch_claim.h"
 #include "verification/claims/rows.h"
 
 namespace latcon::claims

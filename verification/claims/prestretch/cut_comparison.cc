@@ -1,4 +1,4 @@
-#include "verification/claims/prestretch/cut_study.h"
+#include "verification/claims/prestretch/prestretch_claim.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "verification/claims/prestretch/cut_study.h"
+#include "verification/claims/prestretch/prestretch_claim.h"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,8 @@
 #include "lattice/energy.h"
 #include "lattice/forces.h"
 #include "support/largest_error.h"
-#include "verification/bridge/anisotropy.h"
 #include "verification/bridge/equivalent_sheet.h"
+#include "verification/bridge/homogeneous_response.h"
 
 namespace latcon::claims
 {

@@ -13,7 +13,6 @@
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/subject.h"
 #include "verification/claims/claim_list.h"
-#include "verification/claims/prestretch/cut_study.h"
 #include "verification/claims/rows.h"
 #include "verification/claims/states.h"
 

@@ -8,7 +8,7 @@
 #include "continuum/field_writer.h"
 #include "continuum/gradient_viscosity.h"
 #include "verification/bridge/affine_displacement.h"
-#include "verification/bridge/anisotropy.h"
+#include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/homogenisation.h"
 
 namespace latcon::claims

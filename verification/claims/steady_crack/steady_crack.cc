@@ -1,4 +1,4 @@
-#include "verification/claims/steady_crack/steady_crack.h"
+#include "verification/claims/steady_crack/steady_crack_claim.h"
 
 #include <cmath>
 #include <stdexcept>
