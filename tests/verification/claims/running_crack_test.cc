@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/verification/claims/faults.h"
@@ -146,8 +147,12 @@ TEST(RunningCrack, ReportsAGradientContinuumThatCannotBeComputed)
   const faults::Combination wrong(-1., rubber().network_gradient, 0., rubber().network_gradient);
   const Results results = with([&](CrackSides &sides) { medium(sides, "gradient").constitution.gradient = &wrong; });
   EXPECT_TRUE(results.all_hold()) << results.verdict_text(10);
-  EXPECT_NE(results.rows().back().quantity.find("gradient continuum: not computed"), std::string::npos);
-  EXPECT_EQ(results.rows().back().verdict(), Verdict::reported);
+  EXPECT_TRUE(std::any_of(results.rows().begin(), results.rows().end(),
+                          [](const Result &row)
+                          {
+                            return row.quantity.find(": gradient continuum: not computed") != std::string::npos &&
+                                   row.verdict() == Verdict::reported;
+                          }));
 }
 
 // A side that is no number fails, whatever it is compared with.
