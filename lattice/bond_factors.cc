@@ -26,9 +26,10 @@ BondFactors bond_factors(const RowPartition &band, const Material &material, Bon
   const bool is_strength = property == BondProperty::strength;
   const Distribution &distribution = is_strength ? material.disorder.strength : material.disorder.stiffness;
   BondFactors factors;
-  if (distribution.is_none())
-    return factors;
   const TriangularLattice &lattice = band.lattice();
+  const ScatteredBonds *const scattered = is_strength ? nullptr : lattice.scattered();
+  if (distribution.is_none() && scattered == nullptr)
+    return factors;
   const std::uint64_t stream = splitmix64(splitmix64(material.disorder.seed) + (is_strength ? 1 : 2));
   // Further shells of the lattice do not change the factors of others.
   const std::uint64_t most_kinds = lattice.is_triangular() ? 16 : TriangularLattice::most_kinds;
@@ -44,7 +45,12 @@ BondFactors bond_factors(const RowPartition &band, const Material &material, Bon
     of_kind = Field(lattice.n_places());
     for (const std::size_t row : rows)
       for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
-        of_kind[lattice.index(row, column)] = distribution.factor(stream + most_kinds * number(row, column) + kind);
+      {
+        const std::size_t place = lattice.index(row, column);
+        of_kind[place] = distribution.factor(stream + most_kinds * number(row, column) + kind);
+        if (scattered != nullptr)
+          of_kind[place] *= scattered->weights[kind][place] / scattered->bounding_weights[kind];
+      }
   }
   return factors;
 }

@@ -28,7 +28,7 @@ struct BondFactors
   void gather(const RowPartition &band, Rows rows);
 };
 
-/// Property of a bond that disorder multiplies.
+/// Property of a bond that disorder multiplies; the stiffness also contains the weights of scattered points.
 enum class BondProperty
 {
   strength,

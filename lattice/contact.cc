@@ -190,7 +190,7 @@ bool Contact::may_touch(const State &state, std::size_t first, std::size_t secon
     return false;
   for (const auto &[near, far] : {std::pair(first, second), std::pair(second, first)})
     for (std::size_t kind = 0; kind < state.bonds.n_kinds(); ++kind)
-      if (lattice_.bond(near, kind).far == far)
+      if (lattice_.bond(near, kind).far == far && lattice_.has_bond(near, kind))
         return !state.bonds.present(near, kind);
   return lattice_.is_triangular() || (lattice_.reference(second) - lattice_.reference(first)).norm() >= law_.distance;
 }

@@ -15,4 +15,10 @@ inline std::uint64_t splitmix64(std::uint64_t counter)
   return z ^ (z >> 31);
 }
 
+/// Uniform in [-1, 1), from the upper 53 bits.
+inline double symmetric_uniform(std::uint64_t bits)
+{
+  return static_cast<double>(bits >> 11) * 0x1p-52 - 1.;
+}
+
 } // namespace latcon::lattice

@@ -60,7 +60,7 @@ void cut_out(State &state, const TriangularLattice &lattice, const Cutout &cutou
                 [&](const Bond &bond)
                 {
                   if (state.removed[bond.near] != 0 || state.removed[bond.far] != 0 ||
-                      shape.crosses(lattice.reference(bond.near), lattice.bond_vector(bond.kind)))
+                      shape.crosses(lattice.reference(bond.near), lattice.bond_vector(bond)))
                     state.bonds.remove(bond.near, bond.kind);
                 });
 }

@@ -181,8 +181,8 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
       for (const Field *field : *work.fields)
         scratch.ahead.push_back(&(*field)[lattice_.index(index + lattice_.reach() + 1, 0)]);
     const Motion &of_row = row < end - reach_ ? updating : motion;
-    const kernels::RowSums sums =
-      lattice_.is_triangular() ? bonds_of_row(of_row, index, row, scratch) : scatter_row(of_row, index, begin, scratch);
+    const kernels::RowSums sums = lattice_.is_triangular() ? bonds_of_row(of_row, index, row, scratch)
+                                                           : scatter_row(of_row, index, row, begin, scratch);
     row_viscous_power_[index] = sums.viscous_power;
     for (std::size_t m = 0; m < row_mechanism_power_.size(); ++m)
       row_mechanism_power_[m][index] = scratch.mechanism_power[m];
@@ -194,6 +194,15 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
       work.post_force(index, scratch.fx.data(), scratch.fy.data());
       continue;
     }
+    // What bonds across a periodic edge do to images of sites is done to the sites.
+    const auto columns = static_cast<std::ptrdiff_t>(lattice_.columns());
+    if (columns_repeat_)
+      for (double *const sum : {scratch.sums.at(row, 0), scratch.sums.at(row, 1)})
+        for (std::ptrdiff_t c = 0; c < static_cast<std::ptrdiff_t>(lattice_.column_reach()); ++c)
+        {
+          sum[c] += sum[columns + c];
+          sum[columns - 1 - c] += sum[-1 - c];
+        }
     work.post_force(index, scratch.sums.at(row, 0), scratch.sums.at(row, 1));
     scratch.sums.clear(row);
   }
@@ -205,7 +214,7 @@ void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, std::ptr
   if (!lattice_.is_triangular())
   {
     if (from)
-      scatter_row(motion, *from, begin, scratch);
+      scatter_row(motion, *from, row, begin, scratch);
   }
   else if (from)
     bonds_of_row(motion, *from, row, scratch);
@@ -233,6 +242,7 @@ void Forces::bonds_of_kinds(const State &state, std::size_t row, std::vector<ker
     bonds.lengths = {};
     bonds.stiffness = from(state.stiffness, kind);
     bonds.strength = from(state.strength, kind);
+    bonds.length_ratio = lattice_.scattered() != nullptr ? &lattice_.scattered()->length_ratios[kind][near] : nullptr;
   }
 }
 
@@ -304,15 +314,14 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   return sums;
 }
 
-// The bonds that start in row `from`, added to the sums of rows from `begin` on.
-kernels::RowSums Forces::scatter_row(const Motion &motion, std::size_t from, std::ptrdiff_t begin,
+// The bonds of row `from` as those of `row`, added to the sums of rows from `begin` on.
+kernels::RowSums Forces::scatter_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, std::ptrdiff_t begin,
                                      Scratch &scratch) const
 {
   bonds_of_kinds(motion.state, from, scratch.kinds);
   scratch.mechanism_power.assign(row_mechanism_power_.size(), 0.);
   kernels::RowOfBonds sites = sites_of_row(motion, from);
   sites.n_kinds = 1;
-  const auto row = static_cast<std::ptrdiff_t>(from);
   kernels::RowSums sums;
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {

@@ -180,7 +180,8 @@ private:
   kernels::RowOfBonds sites_of_row(const Motion &motion, std::size_t row) const;
   bool has_shell(std::size_t shell) const { return has_shell_[shell]; }
   void bonds_from_below(const Motion &motion, std::ptrdiff_t row, std::ptrdiff_t begin, Scratch &scratch) const;
-  kernels::RowSums scatter_row(const Motion &motion, std::size_t from, std::ptrdiff_t begin, Scratch &scratch) const;
+  kernels::RowSums scatter_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, std::ptrdiff_t begin,
+                               Scratch &scratch) const;
   kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, Scratch &scratch) const;
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
   void add_overstress(const Motion &motion, std::size_t from, const kernels::RowOfBonds &row,

@@ -35,9 +35,9 @@ kernels::BondForce Forces::single_bond(const Motion &motion, const Bond &bond) c
   const State &state = motion.state;
   const Field &vx = motion.vx, &vy = motion.vy;
   const auto [near, kind, far] = bond;
-  kernels::BondForce force = kernels::bond_force(laws_[lattice_.shell(kind)], constants_[kind],
-                                                 state.stiffness.of(near, kind), state.x[far] - state.x[near],
-                                                 state.y[far] - state.y[near], vx[far] - vx[near], vy[far] - vy[near]);
+  kernels::BondForce force = kernels::bond_force(
+    laws_[lattice_.shell(kind)], constants_[kind], state.stiffness.of(near, kind), state.x[far] - state.x[near],
+    state.y[far] - state.y[near], vx[far] - vx[near], vy[far] - vy[near], lattice_.length_ratio(near, kind));
   if (state.history.remembers(kind))
   {
     const kernels::Overstress over = overstress(state, bond, force.stretch);

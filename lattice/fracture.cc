@@ -50,8 +50,7 @@ Fracture::Fracture(const RowPartition &band, const Material &material, std::shar
                    Toughening toughening, const Eigen::Matrix2d &deformation)
   : band_(band), lattice_(band.lattice()), material_(material), rule_(std::move(rule)), toughening_(toughening),
     toughening_factor_(std::visit([](const auto &how) { return factor(how); }, toughening)),
-    breaking_stretch_(rule_->smallest_limit(1.)), toughened_stretch_(rule_->smallest_limit(toughening_factor_)),
-    tip_losses_((material.coordination(lattice_) + 3) / 4)
+    breaking_stretch_(rule_->smallest_limit(1.)), toughened_stretch_(rule_->smallest_limit(toughening_factor_))
 {
   require(lattice_.images().empty(), "a periodic sheet does not break: a crack has no tip there");
   if (const auto *given = std::get_if<GivenToughening>(&toughening_))
@@ -102,9 +101,10 @@ double Fracture::limit(const State &state, const Bond &bond, double rate) const
 Fracture::Event Fracture::event(const State &state, const Bond &bond, const Field &vx, const Field &vy) const
 {
   const auto [near, kind, far] = bond;
+  const double ratio = lattice_.length_ratio(near, kind);
   const Eigen::Vector2d along(state.x[far] - state.x[near], state.y[far] - state.y[near]);
-  const double rate =
-    along.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near])) / (along.norm() * lattice_.rest_length(kind));
+  const double rate = ratio * along.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near])) /
+                      (along.norm() * lattice_.rest_length(kind));
   const double longest = limit(state, bond, rate);
   const double shortest =
     retraction_stretch_.empty() || state.bonds.toughened(near, kind) ? 0. : retraction_stretch_[kind];
@@ -114,8 +114,9 @@ Fracture::Event Fracture::event(const State &state, const Bond &bond, const Fiel
   if (!(lookahead_ > 0.))
     return among(stretch(state, lattice_, bond), shortest, longest);
   const double l = lattice_.rest_length(kind);
-  return among(squared_length_after(lookahead_, state.x[far] - state.x[near], state.y[far] - state.y[near],
-                                    state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]),
+  return among(squared_length_after(lookahead_, ratio * (state.x[far] - state.x[near]),
+                                    ratio * (state.y[far] - state.y[near]), ratio * (state.vx[far] - state.vx[near]),
+                                    ratio * (state.vy[far] - state.vy[near])),
                squared_length(shortest, l), squared_length(longest, l));
 }
 
@@ -150,7 +151,7 @@ std::vector<BrokenBond> Fracture::lose_bonds(State &state, const std::vector<Los
     ++state.lost_bonds[bond.near];
     ++state.lost_bonds[bond.far];
     lost.push_back(
-      {bond, state.time, lattice_.reference(bond.near) + 0.5 * lattice_.bond_vector(bond.kind), stretch, energy});
+      {bond, state.time, lattice_.reference(bond.near) + 0.5 * lattice_.bond_vector(bond), stretch, energy});
   }
   return lost;
 }
@@ -240,7 +241,8 @@ void Fracture::locate_tip(State &state)
 
 void Fracture::consider_tip(const State &state, std::size_t place)
 {
-  if (state.lost_bonds[place] < tip_losses_ || state.held[place] != 0 || state.removed[place] != 0)
+  if (state.lost_bonds[place] < (material_.coordination(lattice_, place) + 3) / 4 || state.held[place] != 0 ||
+      state.removed[place] != 0)
     return;
   tip_.consider(place, lattice_.reference(place));
 }
@@ -259,7 +261,7 @@ void Fracture::toughen_behind_tip(State &state)
       const std::size_t place = lattice_.index(row, column);
       for (std::size_t kind = 0; kind < state.bonds.n_kinds(); ++kind)
         if (state.bonds.present(place, kind) &&
-            lattice_.reference(place).x() + 0.5 * lattice_.bond_vector(kind).x() < boundary)
+            lattice_.reference(place).x() + 0.5 * lattice_.bond_vector(lattice_.bond(place, kind)).x() < boundary)
           state.bonds.toughen(place, kind);
     }
   toughened_to_ = boundary;
@@ -271,9 +273,10 @@ std::pair<Rows, Rows> Fracture::strip_around(double from, double to) const
   const bool along = lattice_.orientation() == Orientation::rows_along_crack;
   const Rows own = band_.rows(), columns{0, lattice_.columns()};
   const double pitch = along ? lattice_.spacing() : lattice_.site_area() / lattice_.spacing();
-  double reach = 0.; // of midpoints from near ends, along X
+  double reach = 0.; // of midpoints from the grid points of near ends, along X
   for (std::size_t kind = 0; kind < lattice_.n_kinds(); ++kind)
     reach = std::max(reach, 0.5 * std::abs(lattice_.bond_vector(kind).x()));
+  reach += lattice_.scatter() * lattice_.spacing();
   // Columns of odd rows are half a pitch further; the rest of a pitch is for rounding.
   const auto clamped = [&](double x, const Rows &range)
   {

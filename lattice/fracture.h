@@ -186,7 +186,6 @@ private:
   double breaking_stretch_, toughened_stretch_; // smallest limits
   std::vector<double> retraction_stretch_;      // by kind; none: not watched
   double lookahead_ = 0.;                       // [s]
-  unsigned int tip_losses_;
   CrackTip tip_;
   double toughened_to_ = -std::numeric_limits<double>::infinity(); // X [m] behind which all bonds are toughened
   std::vector<BrokenBond> broken_;

@@ -40,6 +40,18 @@ unsigned int Material::coordination(const TriangularLattice &lattice) const
   return bonds;
 }
 
+unsigned int Material::coordination(const TriangularLattice &lattice, std::size_t place) const
+{
+  if (lattice.scattered() == nullptr)
+    return coordination(lattice);
+  unsigned int bonds = 0;
+  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+    if (shell(lattice, kind) != nullptr)
+      for (const Bond &bond : {lattice.bond(place, kind), lattice.bond_into(place, kind)})
+        bonds += lattice.has_bond(bond.near, kind) ? 1 : 0;
+  return bonds;
+}
+
 Material without_memory(Material material)
 {
   for (std::size_t number = 0; number < n_shells; ++number)

@@ -64,8 +64,15 @@ struct Material
 
   /// Bonds of a site inside the triangular lattice: 6 for each shell.
   unsigned int coordination() const;
-  /// Bonds of a site inside a sheet.
+  /// Bonds of a site inside a sheet, the most that scattered points may have.
   unsigned int coordination(const TriangularLattice &lattice) const;
+  /// Bonds of one site, those beyond the edges included.
+  unsigned int coordination(const TriangularLattice &lattice, std::size_t place) const;
+  /// Mean number of bonds of a site inside a sheet.
+  double mean_coordination(const TriangularLattice &lattice) const
+  {
+    return lattice.scattered() != nullptr ? lattice.scattered()->bonds_of_point : coordination(lattice);
+  }
 };
 
 /// Returns the bonds with their dashpots, but without memories.

@@ -30,7 +30,9 @@ struct Directions
   HWY_INLINE Directions(const RowOfBonds &row, const BondsOfKind &bonds, std::size_t site)
   {
     const std::size_t far = site + static_cast<std::size_t>(bonds.shift);
-    const Lanes dx = load(row.x + far) - load(row.x + site), dy = load(row.y + far) - load(row.y + site);
+    const Lanes ratio = load_factors(bonds.length_ratio, site);
+    const Lanes dx = ratio * (load(row.x + far) - load(row.x + site)),
+                dy = ratio * (load(row.y + far) - load(row.y + site));
     present = hn::VecFromMask(D(), mask_of_bit(load_states(bonds.states + site), bonds.present));
     Lanes length, inverse;
     if (bonds.lengths[0] != nullptr)
@@ -44,8 +46,8 @@ struct Directions
       length = where_present(distance);
       inverse = where_present(reciprocal(distance));
     }
-    nx = dx * inverse;
-    ny = dy * inverse;
+    nx = ratio * (dx * inverse);
+    ny = ratio * (dy * inverse);
     stretch = (1. / bonds.constants.rest_length) * length;
   }
   HWY_INLINE Lanes where_present(Lanes value) const { return {hn::IfThenElseZero(hn::MaskFromVec(present), value.v)}; }

@@ -47,6 +47,9 @@ struct BondsOfKind
   BondStates::Word present, toughened;                    ///< its bits in these words
   double retraction_stretch = 0.;                         ///< see Forces::set_retraction_threshold; 0: not watched
   const double *stiffness = nullptr, *strength = nullptr; ///< factors by site, as in State; null: all 1
+  /// Rest length of the kind over that of a bond, by site; null: all 1. The length of a bond times this ratio is that
+  /// of a bond of the kind with the same stretch, and its gradient is what rates and forces are projected on.
+  const double *length_ratio = nullptr;
   std::array<double *, 2> force{};                        ///< on the near ends, x (0) and y (1) [N/m]: what is computed
   /// Lengths [m] and inverse lengths that bonds_of_row() keeps for add_overstress(), 0 for absent bonds; null: not
   /// kept.

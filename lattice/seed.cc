@@ -130,7 +130,9 @@ std::vector<std::pair<std::size_t, std::size_t>> bonds_across(const TriangularLa
       for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
       {
         const Bond bond = lattice.bond(lattice.index(row, column), kind);
-        const Eigen::Vector2d X = lattice.reference(bond.near), &R = lattice.bond_vector(kind);
+        if (!lattice.has_bond(bond.near, kind))
+          continue;
+        const Eigen::Vector2d X = lattice.reference(bond.near), R = lattice.bond_vector(bond);
         const double share = (Y - X.y()) / R.y(), at = X.x() + share * R.x();
         if (share > 0. && share <= 1. && at >= from && at <= to && lattice.is_site(bond.far))
           bonds.emplace_back(bond.near, kind);

@@ -49,7 +49,7 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
   if (material_.has_memory() && state_.history.empty())
     relax_memory(state_, band_, material_);
   require_history(state_, lattice_, material_);
-  if (state_.stiffness.empty() != material_.disorder.stiffness.is_none())
+  if (state_.stiffness.empty() != (material_.disorder.stiffness.is_none() && lattice_.scattered() == nullptr))
     throw std::invalid_argument("the stiffness of the bonds does not have the disorder of the material");
   if (fracture_)
     fracture_->configure(state_, forces_);
@@ -85,8 +85,10 @@ int Simulation::needed_parts() const
   const auto divide_for = [&](const Bond &short_bond, int &parts)
   {
     const auto [near, kind, far] = short_bond;
-    const Eigen::Vector2d bond(state_.x[far] - state_.x[near], state_.y[far] - state_.y[near]);
-    const double product = bond.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near]));
+    const double ratio = lattice_.length_ratio(near, kind);
+    const Eigen::Vector2d bond =
+      ratio * Eigen::Vector2d(state_.x[far] - state_.x[near], state_.y[far] - state_.y[near]);
+    const double product = bond.dot(ratio * Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near]));
     // Most bonds will not be short after the whole step, length + h min(product, 0) / length > the short length, which
     // needs neither root nor quotient.
     const double square = bond.squaredNorm(), then_by_now = square + h * std::min(product, 0.);

@@ -36,9 +36,7 @@ SiteEvaluator::SiteEvaluator(const TriangularLattice &lattice, const Material &m
   for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
   {
     const Shell *shell = material.shell(lattice, kind);
-    const Eigen::Vector2d R = lattice.bond_vector(kind);
-    kinds_.push_back({R, R * R.transpose(), lattice.rest_length(kind),
-                      shell != nullptr ? cross_section(*shell, lattice, kind) : 0.,
+    kinds_.push_back({lattice.rest_length(kind), shell != nullptr ? cross_section(*shell, lattice, kind) : 0.,
                       memory_step(shell != nullptr ? shell->memory : NoMemory(), 0.)});
   }
 }
@@ -57,19 +55,19 @@ SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
                           const Shell &shell = *material_.shell(lattice_, number);
                           const Eigen::Vector2d r(state.x[far] - state.x[near], state.y[far] - state.y[near]);
                           const Eigen::Vector2d rate(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
-                          const double length = r.norm();
-                          const Eigen::Vector2d direction = r / length;
-                          const double stretch = length / kind.rest_length;
-                          const double section = state.stiffness.of(near, number) * kind.section;
-                          double axial = section * (force(shell.law, stretch) +
-                                                    shell.viscosity * rate.dot(direction) / kind.rest_length);
+                          const double length = r.norm(), ratio = lattice_.length_ratio(near, number);
+                          const Eigen::Vector2d direction = r / length, R = lattice_.bond_vector(bond);
+                          const double rest_length = kind.rest_length / ratio, stretch = length / rest_length;
+                          const double section = state.stiffness.of(near, number) * ratio * kind.section;
+                          double axial =
+                            section * (force(shell.law, stretch) + shell.viscosity * rate.dot(direction) / rest_length);
                           if (state.history.remembers(number))
                             axial += section * overstress(kind.at_rest, state.history, near, number);
                           ++values.bonds;
-                          values.strain_energy_density += 0.5 * section * kind.rest_length * energy(shell.law, stretch);
-                          values.first_piola_stress += 0.5 * axial * direction * kind.reference.transpose();
-                          reference_moment += kind.reference_moment;
-                          mixed_moment += r * kind.reference.transpose();
+                          values.strain_energy_density += 0.5 * section * rest_length * energy(shell.law, stretch);
+                          values.first_piola_stress += 0.5 * axial * direction * R.transpose();
+                          reference_moment += R * R.transpose();
+                          mixed_moment += r * R.transpose();
                         });
 
   const double area = lattice_.site_area();

@@ -44,8 +44,6 @@ public:
 private:
   struct Kind
   {
-    Eigen::Vector2d reference;
-    Eigen::Matrix2d reference_moment;
     double rest_length, section;
     MemoryStep at_rest; // update of the memory over no time
   };

@@ -9,21 +9,17 @@ namespace latcon::lattice
 namespace
 {
 
-// Uniform in [-1, 1), from the upper 53 bits.
-double symmetric_uniform(std::uint64_t bits)
-{
-  return static_cast<double>(bits >> 11) * 0x1p-52 - 1.;
-}
-
 // Returns whether a bond of a site, in either sense, would end beyond one of the edges held by `edges`.
 bool reaches_beyond(const TriangularLattice &lattice, const Material &material, std::size_t place, const Edges &edges)
 {
-  const Eigen::Vector2d X = lattice.reference(place);
+  const Eigen::Vector2d X = lattice.grid_point(place);
   const double margin = 0.1 * lattice.spacing(); // sites are either on the sheet or half a spacing off
   for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
     if (material.shell(lattice, kind) != nullptr)
       for (const double sense : {1., -1.})
       {
+        if (!lattice.has_bond(sense > 0. ? place : lattice.bond_into(place, kind).near, kind))
+          continue;
         const Eigen::Vector2d end = X + sense * lattice.bond_vector(kind);
         if ((edges.left && !lattice.periodic().x && end.x() < -margin) ||
             (edges.right && !lattice.periodic().x && end.x() > lattice.length() + margin) ||
@@ -38,7 +34,8 @@ bool reaches_beyond(const TriangularLattice &lattice, const Material &material, 
 void add_bonds(State &state, const TriangularLattice &lattice, const Material &material, std::size_t place)
 {
   for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
-    if (material.shell(lattice, kind) != nullptr && lattice.is_occupied(lattice.bond(place, kind).far))
+    if (material.shell(lattice, kind) != nullptr && lattice.has_bond(place, kind) &&
+        lattice.is_occupied(lattice.bond(place, kind).far))
       state.bonds.add(place, kind);
 }
 
@@ -174,7 +171,8 @@ double stretch(const State &state, const TriangularLattice &lattice, const Bond 
   const double dx = state.x[bond.far] - state.x[bond.near];
   const double dy = state.y[bond.far] - state.y[bond.near];
   // The operations of the force loop, so that both agree to the last bit on whether a bond is past its limit.
-  return std::sqrt(dx * dx + dy * dy) * (1. / lattice.rest_length(bond.kind));
+  const double ratio = lattice.length_ratio(bond.near, bond.kind), scaled_x = ratio * dx, scaled_y = ratio * dy;
+  return std::sqrt(scaled_x * scaled_x + scaled_y * scaled_y) * (1. / lattice.rest_length(bond.kind));
 }
 
 } // namespace latcon::lattice

@@ -40,7 +40,7 @@ struct State
   Field ax, ay;                           ///< acceleration [m/s^2]; 0 at held sites and in the margin
   BondStates bonds;                       ///< by the place where they start
   BondHistory history;                    ///< of bonds with a memory; see relax_memory()
-  BondFactors stiffness;                  ///< of cross-sections, hence of all forces of bonds; from homogeneous_state()
+  BondFactors stiffness;                  ///< of volumes, hence of energies of bonds; from homogeneous_state()
   double breaking_stretch = unbreakable;  ///< [-], below which no bond breaks; set by Fracture::configure()
   double toughened_stretch = unbreakable; ///< that of toughened bonds [-]; set likewise
   BondFactors strength;                   ///< of both, bond by bond; set likewise

@@ -27,7 +27,7 @@ namespace latcon::lattice::kernels::HWY_NAMESPACE
 namespace latcon::lattice::kernels::HWY_NAMESPACE
 {
 
-template <std::size_t n_kinds, class Law>
+template <std::size_t n_kinds, bool own_lengths, class Law>
 // cppcheck-suppress passedByValue ; copies, which no store can change
 void bonds_of_law(const Law law, const RowOfBonds row, RowSums &sums)
 {
@@ -49,11 +49,21 @@ void bonds_of_law(const Law law, const RowOfBonds row, RowSums &sums)
       const BondConstants &bond = bonds.constants;
       const std::size_t far = site + static_cast<std::size_t>(bonds.shift);
       const auto present = mask_of_bit(load_states(bonds.states + site), bonds.present);
-      const Lanes dx = load(row.x + far) - x, dy = load(row.y + far) - y;
+      Lanes dx = load(row.x + far) - x, dy = load(row.y + far) - y;
+      if constexpr (own_lengths)
+      {
+        dx = load(bonds.length_ratio + site) * dx;
+        dy = load(bonds.length_ratio + site) * dy;
+      }
       const Lanes distance = square_root(dx * dx + dy * dy);
       const Lanes length{hn::IfThenElseZero(present, distance.v)};
       const Lanes inverse{hn::IfThenElseZero(present, reciprocal(distance).v)};
-      const Lanes nx = dx * inverse, ny = dy * inverse;
+      Lanes nx = dx * inverse, ny = dy * inverse;
+      if constexpr (own_lengths)
+      {
+        nx = load(bonds.length_ratio + site) * nx;
+        ny = load(bonds.length_ratio + site) * ny;
+      }
       const Lanes rate = (load(row.vx + far) - vx) * nx + (load(row.vy + far) - vy) * ny;
       const Lanes stretch = (1. / bond.rest_length) * length;
       const Lanes viscous = bond.damping * rate;
@@ -82,9 +92,11 @@ void BondsOfStencil(const BondLaw &law, const RowOfBonds &row, RowSums &sums)
   const auto of_kinds = [&](const auto &of_law)
   {
     if (row.n_kinds == n_kinds_per_shell)
-      bonds_of_law<n_kinds_per_shell>(of_law, row, sums);
+      bonds_of_law<n_kinds_per_shell, false>(of_law, row, sums);
+    else if (row.kinds->length_ratio != nullptr)
+      bonds_of_law<1, true>(of_law, row, sums);
     else
-      bonds_of_law<1>(of_law, row, sums);
+      bonds_of_law<1, false>(of_law, row, sums);
   };
   std::visit(of_kinds, law);
 }
@@ -115,8 +127,9 @@ bool AnyEventAhead(const RowOfBonds &row, double ahead)
     {
       const BondsOfKind &bonds = row.kinds[kind];
       const std::size_t far = site + static_cast<std::size_t>(bonds.shift);
-      const Lanes square = squared_length_after(ahead, load(row.x + far) - x, load(row.y + far) - y,
-                                                load(row.vx + far) - vx, load(row.vy + far) - vy);
+      const Lanes ratio = load_factors(bonds.length_ratio, site);
+      const Lanes square = squared_length_after(ahead, ratio * (load(row.x + far) - x), ratio * (load(row.y + far) - y),
+                                                ratio * (load(row.vx + far) - vx), ratio * (load(row.vy + far) - vy));
       const auto squared = [l = bonds.constants.rest_length](Lanes stretch) { return (l * stretch) * (l * stretch); };
       events = hn::Or(events, are_events(row, bonds, site, square, squared));
     }
@@ -151,11 +164,13 @@ bool any_event_ahead(const RowOfBonds &row, double ahead)
 }
 
 BondForce bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx, double dy, double dvx,
-                     double dvy)
+                     double dvy, double length_ratio)
 {
+  dx *= length_ratio;
+  dy *= length_ratio;
   const double distance = std::sqrt(dx * dx + dy * dy);
   const double inverse = 1. / distance;
-  const double nx = dx * inverse, ny = dy * inverse;
+  const double nx = length_ratio * (dx * inverse), ny = length_ratio * (dy * inverse);
   const double rate = dvx * nx + dvy * ny;
   const double stretch = (1. / bond.rest_length) * distance;
   const double viscous = bond.damping * rate;

@@ -25,13 +25,13 @@ bool any_event_ahead(const RowOfBonds &row, double ahead);
 struct BondForce
 {
   double x, y;   ///< on the near end [N/m], the opposite on the far end
-  double nx, ny; ///< direction from the near to the far end
+  double nx, ny; ///< direction from the near to the far end, times the ratio of lengths
   double stretch;
   double viscous_power; ///< [W/m]
 };
 /// Returns the force of a bond whose ends are at a distance (dx, dy) [m] and move apart with (dvx, dvy) [m/s].
-/// @param factor of its cross-section
+/// @param factor,length_ratio of the bond, see BondsOfKind
 BondForce bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx, double dy, double dvx,
-                     double dvy);
+                     double dvy, double length_ratio = 1.);
 
 } // namespace latcon::lattice::kernels

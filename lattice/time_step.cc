@@ -72,14 +72,6 @@ Rates bound_of_bonds(const TriangularLattice &lattice, const Material &material,
   return rates;
 }
 
-double shortest_bond(const TriangularLattice &lattice)
-{
-  double shortest = lattice.rest_length(0);
-  for (std::size_t kind = 1; kind < lattice.n_kinds(); ++kind)
-    shortest = std::min(shortest, lattice.rest_length(kind));
-  return shortest;
-}
-
 // 1 / kappa.
 double damped_step(const TriangularLattice &lattice, const Material &material, const SmallestStretch &smallest_stretch)
 {
@@ -187,7 +179,7 @@ double largest_stretch_rate(const TriangularLattice &lattice, const Material &ma
     }
   // Stiff bonds may pull on one whose dashpot is the weakest.
   of_forces *= stiffest(material) / material.disorder.stiffness.smallest();
-  const double of_energy = std::sqrt(8. * site_energy / site_mass(material, lattice)) / shortest_bond(lattice);
+  const double of_energy = std::sqrt(8. * site_energy / site_mass(material, lattice)) / lattice.shortest_bond();
   return std::min(of_energy, of_forces);
 }
 

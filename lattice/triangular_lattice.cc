@@ -48,14 +48,8 @@ TriangularLattice::TriangularLattice(double spacing, double length, double heigh
 }
 
 TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBond> &stencil, double d, double length,
-                                     double height)
-  : TriangularLattice(grid, stencil, d, length, height, Periodic())
-{
-}
-
-TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBond> &stencil, double d, double length,
-                                     double height, Periodic periodic)
-  : grid_(grid), stencil_(stencil), d_(d), is_triangular_(has_triangular_kinds(grid, stencil))
+                                     double height, Periodic periodic, const Scatter &scatter)
+  : grid_(grid), stencil_(stencil), d_(d), is_triangular_(has_triangular_kinds(grid, stencil)), scatter_(scatter)
 {
   const double spacing = grid.spacing;
   if (!(spacing > 0.) || !(length > 0.) || !(height > 0.) || !(d > 0.))
@@ -65,7 +59,6 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
   int columns_reach = 0;
   for (const HalfBond &bond : stencil_)
   {
-    section_lengths_.push_back(d * (bond.rest_length / bond.radius) / (3. * bond.weight));
     reach_ = std::max(reach_, static_cast<std::size_t>(bond.rows));
     for (const int odd : {0, 1})
       columns_reach = std::max(columns_reach, std::abs(bond.columns + (rows_shift() ? (bond.rows + odd) / 2 : 0)));
@@ -92,6 +85,14 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
   first_column_ = aligned(column_reach_);
   stride_ = first_column_ + aligned(columns_ + column_reach_);
   find_images();
+  if (scatter_.amplitude > 0.)
+  {
+    scattered_ = std::make_shared<const ScatteredBonds>(*this);
+    for (std::size_t kind = 0; kind < n_kinds(); ++kind)
+      stencil_[kind].weight = scattered_->bounding_weights[kind];
+  }
+  for (const HalfBond &bond : stencil_)
+    section_lengths_.push_back(d * (bond.rest_length / bond.radius) / (3. * bond.weight));
 }
 
 Periodic TriangularLattice::periodic() const
@@ -177,7 +178,33 @@ std::optional<std::size_t> TriangularLattice::row(std::ptrdiff_t number) const
   return number >= 0 && number < n ? std::optional(static_cast<std::size_t>(number)) : std::nullopt;
 }
 
+double TriangularLattice::shortest_bond() const
+{
+  if (scattered_)
+    return scattered_->shortest;
+  double shortest = rest_length(0);
+  for (std::size_t kind = 1; kind < n_kinds(); ++kind)
+    shortest = std::min(shortest, rest_length(kind));
+  return shortest;
+}
+
 Eigen::Vector2d TriangularLattice::reference(std::size_t place) const
+{
+  const Eigen::Vector2d X = grid_point(place);
+  if (scatter_.amplitude == 0.)
+    return X;
+  auto row = static_cast<std::ptrdiff_t>(place / stride()) - static_cast<std::ptrdiff_t>(reach_);
+  auto column = static_cast<std::ptrdiff_t>(place % stride()) - static_cast<std::ptrdiff_t>(first_column_);
+  const auto wrapped = [](std::ptrdiff_t number, std::size_t n)
+  { return (number + 8 * static_cast<std::ptrdiff_t>(n)) % static_cast<std::ptrdiff_t>(n); };
+  if (periodic_across_)
+    row = wrapped(row, rows_);
+  if (periodic_along_)
+    column = wrapped(column, columns_);
+  return X + grid_.spacing * scatter_.displacement(row, column);
+}
+
+Eigen::Vector2d TriangularLattice::grid_point(std::size_t place) const
 {
   const auto row = static_cast<std::ptrdiff_t>(place / stride()) - static_cast<std::ptrdiff_t>(reach_);
   const auto column = static_cast<std::ptrdiff_t>(place % stride()) - static_cast<std::ptrdiff_t>(first_column_);

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "lattice/scatter.h"
 #include "lattice/stencil.h"
 
 namespace latcon::lattice
@@ -71,8 +73,10 @@ public:
   /// A sheet of a nonlocal continuum.
   /// @param grid without rotation @param stencil of it, by increasing shell; see ring_stencil()
   /// @param d spacing of the lattice whose shells the rings are [m], > 0
+  /// @param scatter of the points, for which the stencil is scattered_stencil()
   /// @throws std::invalid_argument also for a grid that is rotated, or more half-bonds than `most_kinds`
-  TriangularLattice(const Grid &grid, const std::vector<HalfBond> &stencil, double d, double length, double height);
+  TriangularLattice(const Grid &grid, const std::vector<HalfBond> &stencil, double d, double length, double height,
+                    Periodic periodic = {}, const Scatter &scatter = {});
   static constexpr std::size_t most_kinds = 127; ///< half-bonds: those that a site has lost are counted in a byte
 
   double spacing() const { return grid_.spacing; } ///< h [m], distance of nearest sites; d of the triangular lattice
@@ -127,6 +131,9 @@ public:
 
   /// Reference position (X, Y) [m] of a place; X from 0 to length(), Y centred on 0. Valid in the margin as well.
   Eigen::Vector2d reference(std::size_t place) const;
+  /// The same before points are scattered.
+  Eigen::Vector2d grid_point(std::size_t place) const;
+  double scatter() const { return scatter_.amplitude; } ///< see Scatter
 
   /// Returns the bond of a kind that starts at a place; its far end need not be a site.
   Bond bond(std::size_t near, std::size_t kind) const { return {near, kind, near + shift(kind, row_of(near))}; }
@@ -151,22 +158,37 @@ public:
     return rows * stride() + static_cast<std::size_t>(columns);
   }
 
-  /// Reference bond vector R = X_neighbour - X_site of kind k [m].
+  /// Reference bond vector R = X_neighbour - X_site of kind k [m]; that of the grid where points are scattered.
   const Eigen::Vector2d &bond_vector(std::size_t kind) const { return stencil_[kind].vector; }
-  /// Rest length |R| [m].
+  /// Rest length |R| [m], likewise.
   double rest_length(std::size_t kind) const { return stencil_[kind].rest_length; }
+  double ring_radius(std::size_t kind) const { return stencil_[kind].radius; } ///< of its ring [m]
+
+  /// Bonds of scattered points; nullptr on a grid, where all bonds of a kind are alike.
+  const ScatteredBonds *scattered() const { return scattered_.get(); }
+  /// Returns whether the bond of a kind that starts at a place is one of its ring.
+  bool has_bond(std::size_t near, std::size_t kind) const { return length_ratio(near, kind) > 0.; }
+  /// Rest length of the kind over that of a bond [-]; 0: no bond.
+  double length_ratio(std::size_t near, std::size_t kind) const
+  {
+    return scattered_ ? scattered_->length_ratios[kind][near] : 1.;
+  }
+  /// Reference vector of a bond [m].
+  Eigen::Vector2d bond_vector(const Bond &bond) const
+  {
+    return scattered_ ? Eigen::Vector2d(reference(bond.far) - reference(bond.near)) : bond_vector(bond.kind);
+  }
+  /// Rest length of the shortest bond [m].
+  double shortest_bond() const;
   /// D [m]: a bond of cross-section s V / D per sheet thickness, s being the area factor of its shell, has its share of
   /// the energy of the shell. The spacing d on the triangular lattice; d |R| / (3 q l) for a weight q in a ring of
-  /// radius l.
+  /// radius l. Where points are scattered it is that of a bound, and bonds have factors; see State::stiffness.
   double section_length(std::size_t kind) const { return section_lengths_[kind]; }
   static bool is_nearest(std::size_t kind) { return kind < n_nearest_kinds; }
   std::size_t reach() const { return reach_; }               ///< of bonds, in rows
   std::size_t column_reach() const { return column_reach_; } ///< of bonds, in places along a row
 
 private:
-  TriangularLattice(const Grid &grid, const std::vector<HalfBond> &stencil, double d, double length, double height,
-                    Periodic periodic);
-
   bool rows_shift() const { return grid_.kind == Grid::Kind::triangular; }
   bool rows_alternate() const { return rows_shift() && !periodic_along_; } // in length
   double pitch() const { return rows_shift() ? half_sqrt3 : 1.; }          // of rows, in spacings
@@ -186,6 +208,8 @@ private:
   std::size_t columns_;
   std::size_t stride_;
   std::vector<Image> images_;
+  Scatter scatter_;
+  std::shared_ptr<const ScatteredBonds> scattered_;
 };
 
 } // namespace latcon::lattice

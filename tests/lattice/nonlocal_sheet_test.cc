@@ -90,20 +90,23 @@ struct Stencil
   Grid::Kind kind;
   double m, half_width;
   Orientation orientation = Orientation::rows_along_crack;
+  double scatter = 0.;
 };
 const Stencil stencils[] = {{Grid::Kind::triangular, 2., 30.},
                             {Grid::Kind::square, 2., 30.},
                             {Grid::Kind::square, 2., 30., Orientation::rows_across_crack},
                             {Grid::Kind::triangular, 1.5, 15., Orientation::rows_across_crack},
-                            {Grid::Kind::triangular, 4., 30.}}; // of 78 half-bonds
+                            {Grid::Kind::triangular, 4., 30.}, // of 78 half-bonds
+                            {Grid::Kind::square, 1.5, 30., Orientation::rows_along_crack, 0.5},
+                            {Grid::Kind::triangular, 2., 30., Orientation::rows_across_crack, 0.5}};
 
 class NonlocalSheet : public testing::TestWithParam<Stencil>
 {
 protected:
   static TriangularLattice of(double length, double height)
   {
-    const auto [kind, m, half_width, orientation] = GetParam();
-    return sheet(kind, m, length, height, half_width, orientation);
+    const auto [kind, m, half_width, orientation, scatter] = GetParam();
+    return sheet(kind, m, length, height, half_width, orientation, scatter);
   }
 };
 INSTANTIATE_TEST_SUITE_P(Stencils, NonlocalSheet, testing::ValuesIn(stencils));
@@ -123,7 +126,8 @@ TEST_P(NonlocalSheet, RestsWhereItIsStretchedHomogeneously)
                 [&](const Bond &bond)
                 {
                   n_free += at_rest.state().held[bond.near] == 0 ? 1 : 0;
-                  EXPECT_LT((at_rest.position(bond.near) - F * lattice.reference(bond.near)).norm(), 1e-11 * d);
+                  EXPECT_LT((at_rest.position(bond.near) - F * lattice.reference(bond.near)).norm(),
+                            (GetParam().scatter > 0. ? 0.1 : 1e-11) * d);
                 });
   EXPECT_GT(n_free, 500u);
 }
@@ -184,7 +188,7 @@ TEST_P(NonlocalSheet, CutsTheBondsThatCrossASegment)
   for_each_bond(whole, lattice,
                 [&](const Bond &bond)
                 {
-                  const Eigen::Vector2d X = lattice.reference(bond.near), far = X + lattice.bond_vector(bond.kind);
+                  const Eigen::Vector2d X = lattice.reference(bond.near), far = X + lattice.bond_vector(bond);
                   const bool crosses = side(a, b, X) != side(a, b, far) && side(X, far, a) != side(X, far, b);
                   EXPECT_EQ(slit.state().bonds.present(bond.near, bond.kind), !crosses);
                   n += crosses ? 1 : 0;
@@ -215,7 +219,7 @@ std::size_t n_turned(const TriangularLattice &lattice, double contact_distance)
   {
     const Bond bond = lattice.bond(near, kind);
     const double now = (closing.position(bond.far) - closing.position(bond.near)).y();
-    const double Y = lattice.bond_vector(kind).y();
+    const double Y = lattice.bond_vector(bond).y();
     n += Y > 0.8 * d && now < 0. ? 1 : 0;
   }
   return n;
@@ -224,8 +228,10 @@ std::size_t n_turned(const TriangularLattice &lattice, double contact_distance)
 TEST_P(NonlocalSheet, HasFlanksThatDoNotPassEachOther)
 {
   const TriangularLattice lattice = of(24., 16.);
-  EXPECT_EQ(n_turned(lattice, 0.9 * d), 0u);
-  EXPECT_GT(n_turned(lattice, 1e-3 * d), 0u);
+  const std::size_t without_contact = n_turned(lattice, 1e-3 * d);
+  EXPECT_GT(without_contact, 0u);
+  // Single points fit into gaps between scattered ones.
+  EXPECT_LE(n_turned(lattice, 0.9 * d), lattice.scatter() > 0. ? without_contact / 10 : 0);
 }
 
 // Neither do sites of an unloaded flank touch, however close they are.
@@ -242,7 +248,7 @@ TEST_P(NonlocalSheet, HasNoContactInAnUnloadedSlit)
   // Only bonds of the rings that are shorter than the distance may be in contact, across the slit.
   std::size_t n_short = 0;
   for (const auto &[near, kind] : bonds_across(lattice, 6. * d, 18. * d, 0.1 * d))
-    n_short += lattice.rest_length(kind) < 0.9 * d ? 1 : 0;
+    n_short += lattice.rest_length(kind) / lattice.length_ratio(near, kind) < 0.9 * d ? 1 : 0;
   EXPECT_LE(unloaded.contact()->n_touching(), n_short);
   EXPECT_GT(unloaded.contact()->n_candidates(), 0u);
 }
@@ -256,18 +262,23 @@ TEST(NonlocalCrack, HasTheSameBitsOnAllThreadsAndInstructionSets)
     omp_set_num_threads(n);
     kernels::use_instruction_set(set);
     EXPECT_GE(lattice.rows() * lattice.stride(), min_places_for_threads);
-    Crack crack(lattice, sheets::disordered_rubber(), RetractionToughening{0.8, 2.});
+    Crack crack(lattice, sheets::disordered_rubber(),
+                lattice.scatter() > 0. ? Toughening(BehindTipToughening{8. * d, 1.6}) : RetractionToughening{0.8, 2.});
     for (int step = 0; step < 15; ++step)
       crack.simulation.step();
     EXPECT_GT(crack.simulation.n_broken(), 0u);
     return crack.values();
   };
-  const TriangularLattice lattice = sheet(Grid::Kind::square, 2., 40., 24.);
-  const std::vector<double> expected = run(1, best, lattice);
-  for (const int n : {2, 3})
-    EXPECT_EQ(run(n, best, lattice), expected) << n << " threads";
-  for (const std::string &set : kernels::instruction_sets())
-    EXPECT_EQ(run(1, set, lattice), expected) << set;
+  for (const TriangularLattice &lattice :
+       {sheet(Grid::Kind::square, 2., 40., 24.),
+        sheet(Grid::Kind::square, 2., 40., 24., 30., Orientation::rows_along_crack, 0.5)})
+  {
+    const std::vector<double> expected = run(1, best, lattice);
+    for (const int n : {2, 3})
+      EXPECT_EQ(run(n, best, lattice), expected) << n << " threads";
+    for (const std::string &set : kernels::instruction_sets())
+      EXPECT_EQ(run(1, set, lattice), expected) << set;
+  }
   omp_set_num_threads(threads);
   kernels::use_instruction_set(best);
 }

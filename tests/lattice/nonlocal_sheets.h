@@ -7,15 +7,20 @@ namespace nonlocal_sheets
 {
 
 /// @param m spacing of the lattice over that of the grid @param length,height in spacings of the lattice
-/// @param half_width of the arcs about the lattice's directions [degrees]
+/// @param half_width of the arcs about the lattice's directions [degrees] @param scatter of the points, see Scatter
 inline latcon::lattice::TriangularLattice
 sheet(latcon::lattice::Grid::Kind kind, double m, double length, double height, double half_width = 30.,
-      latcon::lattice::Orientation orientation = latcon::lattice::Orientation::rows_along_crack)
+      latcon::lattice::Orientation orientation = latcon::lattice::Orientation::rows_along_crack, double scatter = 0.)
 {
   using namespace latcon::lattice;
   const double d = sheets::spacing;
   const Grid grid{kind, d / m, 0., orientation};
-  return {grid, ring_stencil(grid, lattice_rings(d, orientation, half_width * M_PI / 180.)), d, length * d, height * d};
+  const std::vector<Ring> rings = lattice_rings(d, orientation, half_width * M_PI / 180.);
+  const Scatter points{scatter, 5};
+  return {grid,       scatter > 0. ? scattered_stencil(grid, rings, points) : ring_stencil(grid, rings),
+          d,          length * d,
+          height * d, {},
+          points};
 }
 
 } // namespace nonlocal_sheets

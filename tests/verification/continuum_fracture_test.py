@@ -17,6 +17,7 @@ SHEET = {"Sheet/spacing": "1 mm", "Sheet/length": "30 mm", "Sheet/height": "16 m
          "Time/integrator": "runge-kutta-chebyshev", "Fracture/stop position": 0.7, "Output/frame interval": "0.2 ms",
          "Output/energy interval": 20, "Checkpoints/steps": 20}
 THE_LATTICE = {"Nonlocal/grid": "triangular", "Nonlocal/refinement": 1, "Nonlocal/half width": "0 rad"}
+SCATTERED = {"Nonlocal/scatter": 0.5}
 BAD_INPUT, INTERRUPTED = 2, 130
 
 
@@ -81,9 +82,17 @@ def test_files(whole, out):
         assert (out / picture).exists(), picture
 
 
-def test_stop_and_resume(whole, out):
-    expected = files(whole)
-    with subprocess.Popen([LATCON, *command(out, "--no-report")], stdout=subprocess.DEVNULL,
+@pytest.fixture(scope="module")
+def scattered(module_path):
+    """The undisturbed crack between scattered points."""
+    run_to_end(module_path / "scattered", "--no-report", "--threads", "2", entries=SCATTERED)
+    return module_path / "scattered"
+
+
+@pytest.mark.parametrize("points, entries", [("whole", None), ("scattered", SCATTERED)])
+def test_stop_and_resume(points, entries, request, out):
+    expected = files(request.getfixturevalue(points))
+    with subprocess.Popen([LATCON, *command(out, "--no-report", entries=entries)], stdout=subprocess.DEVNULL,
                           stderr=subprocess.DEVNULL) as run:
         while not list(out.glob("checkpoints/*.h5")):
             assert run.poll() is None, "it ended too soon"
@@ -91,14 +100,28 @@ def test_stop_and_resume(whole, out):
         os.kill(run.pid, signal.SIGTERM)
         assert run.wait(timeout=600) == INTERRUPTED
     assert files(out)["crack.csv"] != expected["crack.csv"]
-    assert "step" in run_to_end(out, "--no-report", "--resume", "--threads", "1").stdout
+    assert "step" in run_to_end(out, "--no-report", "--resume", "--threads", "1", entries=entries).stdout
     expect_same(out, expected)
 
 
-def test_three_ranks_leave_the_files_of_one(whole, out):
-    run = latcon_on_ranks(3, *command(out, "--no-report", "--threads", "1"))
+@pytest.mark.parametrize("points, entries", [("whole", None), ("scattered", SCATTERED)])
+def test_three_ranks_leave_the_files_of_one(points, entries, request, out):
+    run = latcon_on_ranks(3, *command(out, "--no-report", "--threads", "1", entries=entries))
     assert run.returncode == 0, run.stderr
-    expect_same(out, files(whole))
+    expect_same(out, files(request.getfixturevalue(points)))
+
+
+def test_frames_and_bonds_are_where_scattered_points_are(scattered):
+    first = read(vtkXMLPolyDataReader(), frames(scattered / "lattice.pvd")[0][1])
+    h, points = 0.5e-3, first.GetNumberOfPoints()
+    offsets = [[first.GetPoint(i)[axis] / h % 1 for i in range(points)] for axis in (0, 1)]
+    for of_axis in offsets:  # uniform between grid points
+        assert abs(sum(of_axis) / points - 0.5) < 5 * (1 / 12 / points) ** 0.5
+        assert sum(value < 0.25 for value in of_axis) / points == pytest.approx(0.25, abs=0.05)
+    for bond in read_csv(scattered / "broken_bonds.csv"):
+        ends = [first.GetPoint(int(bond[name])) for name in ("site", "other_site")]
+        middle = [sum(X) / 2 for X in zip(*ends)]
+        assert [float(bond[name]) for name in "XY"] == pytest.approx(middle[:2], abs=1e-8)  # frames are in single precision
 
 
 def test_checkpoint_of_the_other_side_is_refused(on_lattice, out):
@@ -120,6 +143,12 @@ SIX = {"Nonlocal/grid": "triangular", "Nonlocal/half width": "0 rad"}
     ({"Nonlocal/half width": "31 deg"}, "Nonlocal/half width", "0.5236"),
     ({"Nonlocal/grid": "hexagonal"}, "Nonlocal/grid", "one of square, triangular"),
     ({"Fracture/right end": "absorbing"}, "Fracture/right end", "does not absorb"),
+    ({"Nonlocal/scatter": 0.6}, "Nonlocal/scatter", "<= 0.5"),
+    ({**SCATTERED, "Nonlocal/half width": "20 deg"}, "Nonlocal/half width", "scattered points do not support this"),
+    ({**SCATTERED, "Fracture/left end": "free"}, "Fracture/left end", "scattered points do not support this"),
+    ({**SCATTERED, "Fracture/toughening": "retraction"}, "Fracture/toughening", "scattered points do not support this"),
+    ({**SCATTERED, "Fracture/rule": "bond-energy"}, "Fracture/rule", "scattered points do not support this"),
+    ({**SCATTERED, "Nonlocal/refinement": 5}, "Nonlocal/refinement", "1 to 127 half-bonds"),
     ({"Fracture/seed shape": "slit", "Fracture/seed length": "5 mm", "Fracture/seed height": "2 mm"}, "Fracture/seed height",
      "a cut without height"),
     ({"Fracture/seed offset": "7 mm"}, "Fracture/seed sites", "within two spacings"),

@@ -294,7 +294,7 @@ NearTipSample NearTipSampler::look(const lattice::State &state, const Axis &axis
     if (offset.x() < -(grid_.behind + 0.75) * grid_.pitch_X || offset.x() > (grid_.ahead + 0.75) * grid_.pitch_X ||
         std::abs(offset.y()) > (grid_.half_height + 0.75) * grid_.pitch_Y)
       return;
-    if (state.removed[place] != 0 || 2u * state.lost_bonds[place] > material_.coordination(lattice_))
+    if (state.removed[place] != 0 || 2u * state.lost_bonds[place] > material_.coordination(lattice_, place))
       return;
     const Eigen::Vector2d position(state.x[place], state.y[place]);
     const Eigen::Vector2d displacement = position - axis.current - offset;

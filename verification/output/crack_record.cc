@@ -148,8 +148,8 @@ analysis::CrackMeasurement CrackRecord::measure(double seed_tip_X) const
   const lattice::Material &material = simulation_.material();
   const double d = options.lattice_spacing;
   options.position_error *= sheet.spacing() / d;
-  options.branch_rule.bonds_per_spacing *= lattice::half_sqrt3 * d * d / sheet.site_area() *
-                                           material.coordination(sheet) / material.coordination();
+  options.branch_rule.bonds_per_spacing *=
+    lattice::half_sqrt3 * d * d / sheet.site_area() * material.mean_coordination(sheet) / material.coordination();
   options.end_time = simulation_.state().time;
   options.seed_tip_X = seed_tip_X;
   return analysis::measure_crack(tip_.records(), breaks, options);
@@ -195,7 +195,7 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   if (const auto bond = simulation_.nearest_to_breaking())
   {
     const lattice::TriangularLattice &sheet = simulation_.lattice();
-    const Eigen::Vector2d X = sheet.reference(bond->near) + 0.5 * sheet.bond_vector(bond->kind);
+    const Eigen::Vector2d X = sheet.reference(bond->near) + 0.5 * sheet.bond_vector(*bond);
     json["nearest_to_breaking"] = {{"site", sheet.site_number(bond->near)},
                                    {"other_site", sheet.site_number(bond->far)},
                                    {"X", X.x()},

@@ -64,6 +64,7 @@ const std::set<std::string> no_claim_reads{
   "Nonlocal/grid",
   "Nonlocal/refinement",
   "Nonlocal/half width",
+  "Nonlocal/scatter",
   "Contact/present",
   "Contact/distance",
   "Contact/stiffness",

@@ -118,6 +118,32 @@ const Fault planted[] = {
      };
    },
    {"while Maxwell branches relax"}},
+  {"weights of scattered bonds 1 % off",
+   [](NonlocalOptions &o)
+   {
+     o.planted_factors = [](lattice::BondFactors &factors, const lattice::TriangularLattice &sheet)
+     {
+       for (std::size_t kind = 0; kind < factors.kinds.size(); ++kind)
+         for (double &factor : factors.kinds[kind])
+           factor *= sheet.shell(kind) == 1 ? 1.01 : 1.;
+     };
+   },
+   {moduli, "(2, 2)", sampled, "points of a square grid, m = 1.5, energy density of the loaded sheet",
+    "matrix of waves"}},
+  {"scattered bonds whose weights fall linearly",
+   [](NonlocalOptions &o)
+   {
+     o.planted_factors = [](lattice::BondFactors &factors, const lattice::TriangularLattice &sheet)
+     {
+       for (std::size_t kind = 0; kind < factors.kinds.size(); ++kind)
+         for (std::size_t place = 0; place < factors.kinds[kind].size(); ++place)
+           if (factors.kinds[kind][place] > 0.)
+             factors.kinds[kind][place] =
+               1. - std::abs(sheet.rest_length(kind) / sheet.length_ratio(place, kind) - sheet.ring_radius(kind)) /
+                      sheet.spacing();
+     };
+   },
+   {moduli, "force on a point"}},
 };
 
 class NonlocalFault : public testing::TestWithParam<Fault>

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lattice/state.h"
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/subject.h"
 #include "verification/claims/rows.h"
@@ -18,12 +19,14 @@ struct NonlocalStencil
   std::string name; ///< in rows: "square grid, m = 2"
   lattice::Grid grid;
   double half_width = M_PI / 6.; ///< of the arcs of its rings [rad]
+  double scatter = 0.;           ///< of its points; see lattice::Scatter
 };
 
 /// What the claim is checked for.
 struct NonlocalOptions
 {
-  std::vector<NonlocalStencil> stencils; ///< each has the rows of homogeneous deformations, waves, length and cut
+  /// Each has the rows of homogeneous deformations and waves, grids also of length and cut.
+  std::vector<NonlocalStencil> stencils;
   unsigned int samples = 20;             ///< random F
   double breaking_stretch = 3.;          ///< lam_f [-]
   /// Changes of rings and of half-bonds by which tests plant faults; none by default.
@@ -31,9 +34,13 @@ struct NonlocalOptions
   std::function<void(std::vector<lattice::HalfBond> &)> planted_bonds = [](auto &) {};
   double planted_tip = 0.; ///< added to the tip of the cut [m], as of a rule that finds another one
   PlantedBranches planted_branches = [](const lattice::Material &material) { return material; };
+  /// Changes of the factors of bonds between scattered points, likewise.
+  std::function<void(lattice::BondFactors &, const lattice::TriangularLattice &)> planted_factors = [](auto &, auto &) {
+  };
 };
 
-/// Square and triangular grids of a lattice with spacing `d` [m] for m = 1.5, 2 and 3, bonds in all directions.
+/// Square and triangular grids of a lattice with spacing `d` [m] for m = 1.5, 2 and 3, and scattered points for m = 1.5
+/// and 2, bonds in all directions.
 std::vector<NonlocalStencil> fixed_stencils(double d, lattice::Orientation orientation);
 
 /// Claim `nonlocal`: the nonlocal continuum, bonds of the lattice's lengths in all directions on a grid, has the moduli
@@ -46,28 +53,34 @@ output::Results nonlocal_claim(const bridge::Subject &subject, const NonlocalOpt
 
 /// Returns the half-bonds of rings on a grid, with the faults that tests plant.
 std::vector<lattice::HalfBond> planted_bonds(const bridge::Subject &subject, const lattice::Grid &grid,
-                                             const NonlocalOptions &options, double half_width = M_PI / 6.);
+                                             const NonlocalOptions &options, double half_width = M_PI / 6.,
+                                             double scatter = 0.);
 
 /// Rows of the claim `nonlocal` on the orders in 1/m with which rings in all directions converge to the network and to
 /// the lattice's mean over rotations.
 void ring_convergence(const bridge::Subject &subject, const NonlocalOptions &options, const Rows &rows);
 
 /// The simulator on a sheet of 12 by 12 spacings of the lattice with the half-bonds of a nonlocal continuum, without
-/// dashpots.
+/// dashpots. Scattered points have one of 24 by 24 spacings without edges, and means over all points.
 class StencilSheet
 {
 public:
-  StencilSheet(const bridge::Subject &subject, const lattice::Grid &grid, std::vector<lattice::HalfBond> half_bonds);
+  using Planted = std::function<void(lattice::BondFactors &, const lattice::TriangularLattice &)>;
+
+  /// @param planted changes of the factors of bonds between scattered points
+  StencilSheet(const bridge::Subject &subject, const lattice::Grid &grid, std::vector<lattice::HalfBond> half_bonds,
+               double scatter, Planted planted);
 
   const std::vector<lattice::HalfBond> &half_bonds() const { return half_bonds_; }
 
-  bridge::LatticeResponse response(const Eigen::Matrix2d &F) const
-  {
-    return bridge::homogeneous_response(sheet_, material_, F);
-  }
+  bridge::LatticeResponse response(const Eigen::Matrix2d &F) const;
+
+  /// Returns K, or the nearest vector of a wave [1/m] that a sheet without edges can have.
+  Eigen::Vector2d wave_vector(const Eigen::Vector2d &K) const;
 
   /// Stiffness of plane waves [1/s^2], that of bridge::WaveMatrices, from the force on a site in the crest of a wave
-  /// with a strain of 1e-5. @param K referential wave vector [1/m]
+  /// with a strain of 1e-5; from the work of all forces in the mean over phases where points are scattered. @param K
+  /// referential wave vector [1/m]
   Eigen::Matrix2d wave_stiffness(const Eigen::Matrix2d &F, const Eigen::Vector2d &K) const;
 
   /// A cut along x between two rows, through bonds that all have one stretch.
@@ -86,10 +99,17 @@ public:
 
   const lattice::TriangularLattice &sheet() const { return sheet_; }
 
+  /// Root mean square of the forces on scattered points in homogeneous deformation over the mean sum of the tensions of
+  /// the bonds of a point [-].
+  double imbalance(const Eigen::Matrix2d &F) const;
+
 private:
+  lattice::State state(const Eigen::Matrix2d &F) const;
+
   lattice::Material material_;
   std::vector<lattice::HalfBond> half_bonds_;
   lattice::TriangularLattice sheet_;
+  Planted planted_;
 };
 
 } // namespace latcon::claims

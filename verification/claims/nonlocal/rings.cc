@@ -6,6 +6,7 @@
 #include "lattice/forces.h"
 #include "lattice/seed.h"
 #include "lattice/simulation.h"
+#include "lattice/site_fields.h"
 #include "support/largest_error.h"
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/nonlocal_continuum.h"
@@ -31,6 +32,16 @@ enum RingQuantity
   n_ring_quantities
 };
 using RingErrors = std::array<double, n_ring_quantities>;
+
+constexpr double side = 12., scattered_side = 24.; // of sheets, in spacings of the lattice
+
+template <class Visit>
+void for_each_site(const lattice::TriangularLattice &sheet, const Visit &visit)
+{
+  for (std::size_t row = 0; row < sheet.rows(); ++row)
+    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+      visit(sheet.index(row, column));
+}
 
 // The exact values, and the errors that a stencil makes in them.
 class RingLimit
@@ -113,38 +124,105 @@ void ring_convergence(const bridge::Subject &subject, const NonlocalOptions &opt
 }
 
 StencilSheet::StencilSheet(const bridge::Subject &subject, const lattice::Grid &grid,
-                           std::vector<lattice::HalfBond> half_bonds)
+                           std::vector<lattice::HalfBond> half_bonds, double scatter, Planted planted)
   : material_(lattice::without_dashpots(subject.material)), half_bonds_(std::move(half_bonds)),
-    sheet_(grid, half_bonds_, subject.spacing, 12. * subject.spacing, 12. * subject.spacing)
+    sheet_(grid, half_bonds_, subject.spacing, (scatter > 0. ? scattered_side : side) * subject.spacing,
+           (scatter > 0. ? scattered_side : side) * subject.spacing, {scatter > 0., scatter > 0.}, {scatter, 1}),
+    planted_(std::move(planted))
 {
+}
+
+lattice::State StencilSheet::state(const Eigen::Matrix2d &F) const
+{
+  lattice::State state = lattice::homogeneous_state(sheet_, material_, F, lattice::Edges::free);
+  planted_(state.stiffness, sheet_);
+  return state;
+}
+
+bridge::LatticeResponse StencilSheet::response(const Eigen::Matrix2d &F) const
+{
+  if (sheet_.scattered() == nullptr)
+    return bridge::homogeneous_response(sheet_, material_, F);
+  const lattice::SiteFields fields = lattice::site_fields(state(F), sheet_, material_);
+  bridge::LatticeResponse mean{0., Eigen::Matrix2d::Zero()};
+  for_each_site(sheet_,
+                [&](std::size_t place)
+                {
+                  mean.energy_density += fields.strain_energy_density[place] / static_cast<double>(sheet_.n_sites());
+                  mean.first_piola_stress += fields.first_piola_stress[place] / static_cast<double>(sheet_.n_sites());
+                });
+  return mean;
+}
+
+Eigen::Vector2d StencilSheet::wave_vector(const Eigen::Vector2d &K) const
+{
+  if (sheet_.scattered() == nullptr)
+    return K;
+  const Eigen::Array2d smallest = 2. * M_PI / Eigen::Array2d(sheet_.length(), sheet_.height());
+  return (K.array() / smallest).round() * smallest;
+}
+
+double StencilSheet::imbalance(const Eigen::Matrix2d &F) const
+{
+  const lattice::State at_rest = state(F);
+  lattice::Forces forces(sheet_, material_);
+  forces.evaluate(at_rest, at_rest.vx, at_rest.vy);
+  double square = 0., tension = 0.;
+  for_each_site(sheet_, [&](std::size_t place)
+                { square += std::pow(forces.fx()[place], 2) + std::pow(forces.fy()[place], 2); });
+  lattice::for_each_bond(at_rest, sheet_,
+                         [&](const lattice::Bond &bond)
+                         {
+                           const lattice::Shell &shell = *material_.shell(sheet_, bond.kind);
+                           tension += 2. * at_rest.stiffness.of(bond.near, bond.kind) *
+                                      lattice::cross_section(shell, sheet_, bond.kind) *
+                                      sheet_.length_ratio(bond.near, bond.kind) *
+                                      std::abs(lattice::force(shell.law, lattice::stretch(at_rest, sheet_, bond)));
+                         });
+  const auto n = static_cast<double>(sheet_.n_sites());
+  return std::sqrt(square / n) / (tension / n);
 }
 
 Eigen::Matrix2d StencilSheet::wave_stiffness(const Eigen::Matrix2d &F, const Eigen::Vector2d &K) const
 {
-  const lattice::State at_rest = lattice::homogeneous_state(sheet_, material_, F, lattice::Edges::free);
+  const lattice::State at_rest = state(F);
   const std::size_t crest = sheet_.index(2 * (sheet_.rows() / 4), sheet_.columns() / 2);
   const double amplitude = 1e-5 / K.norm();
   lattice::Forces forces(sheet_, material_);
-  const auto force = [&](const Eigen::Vector2d &displacement)
+  // Force along a wave whose phase is 0 at the crest, or a quarter: on the site there, or the mean of what is in phase.
+  const auto force = [&](const Eigen::Vector2d &displacement, double shift)
   {
     lattice::State state = at_rest;
-    for (std::size_t row = 0; row < sheet_.rows(); ++row)
-      for (std::size_t column = 0; column < sheet_.sites_in_row(row); ++column)
-      {
-        const std::size_t place = sheet_.index(row, column);
-        const double phase = std::cos(K.dot(sheet_.reference(place) - sheet_.reference(crest)));
-        state.x[place] += phase * displacement.x();
-        state.y[place] += phase * displacement.y();
-      }
+    const auto phase = [&](std::size_t place)
+    { return std::cos(K.dot(sheet_.reference(place) - sheet_.reference(crest)) + shift); };
+    for_each_site(sheet_,
+                  [&](std::size_t place)
+                  {
+                    state.x[place] += phase(place) * displacement.x();
+                    state.y[place] += phase(place) * displacement.y();
+                  });
+    lattice::update_images(state, sheet_);
     forces.evaluate(state, state.vx, state.vy);
-    return Eigen::Vector2d(forces.fx()[crest], forces.fy()[crest]);
+    if (sheet_.scattered() == nullptr)
+      return Eigen::Vector2d(forces.fx()[crest], forces.fy()[crest]);
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    for_each_site(sheet_,
+                  [&](std::size_t place)
+                  {
+                    mean += phase(place) / static_cast<double>(sheet_.n_sites()) *
+                            Eigen::Vector2d(forces.fx()[place], forces.fy()[place]);
+                  });
+    return mean;
   };
-  Eigen::Matrix2d stiffness;
-  for (int i = 0; i < 2; ++i)
-  {
-    const Eigen::Vector2d p = amplitude * Eigen::Vector2d::Unit(i);
-    stiffness.col(i) = (force(-p) - force(p)) / (2. * amplitude * lattice::site_mass(material_, sheet_));
-  }
+  Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();
+  for (const double shift : {0., 0.5 * M_PI})
+    if (shift == 0. || sheet_.scattered() != nullptr)
+      for (int i = 0; i < 2; ++i)
+      {
+        const Eigen::Vector2d p = amplitude * Eigen::Vector2d::Unit(i);
+        stiffness.col(i) +=
+          (force(-p, shift) - force(p, shift)) / (2. * amplitude * lattice::site_mass(material_, sheet_));
+      }
   return stiffness;
 }
 
