@@ -2,10 +2,12 @@
 from __future__ import annotations
 
 import dataclasses
+import faulthandler
 import os
 import pathlib
 import re
-from collections.abc import Collection, Sequence
+import resource
+from collections.abc import Callable, Collection, Sequence
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
     import xarray
 
 _UNITS = re.compile(rb'<P?DataArray [^>]*Name="(\w+)"[^>]* units="([^"]+)"')
-_READERS = {".vtu": "vtkXMLUnstructuredGridReader", ".pvtu": "vtkXMLPUnstructuredGridReader"}
+_READERS = {".vtu": "vtkXMLUnstructuredGridReader", ".pvtu": "vtkXMLPUnstructuredGridReader", ".vti": "vtkXMLImageDataReader"}
 
 Floats = NDArray[np.float64]
 Field = NDArray[np.generic]
@@ -123,7 +125,7 @@ def read_frame(path: pathlib.Path, time: float, only: Collection[str] | None = N
 
     Raises UnreadableFile if the file is missing or damaged, or is not a frame.
     """
-    sheet = read_vtk(path, _READERS.get(path.suffix, "vtkXMLPolyDataReader"), only)
+    sheet = read_vtk(path, only)
     from vtkmodules.util.numpy_support import vtk_to_numpy
     if sheet.GetNumberOfPoints() == 0:  # VTK's result for a damaged file
         raise UnreadableFile(path, "truncated, damaged, or without sites")
@@ -169,7 +171,7 @@ def _data_set(frame: Frame) -> Any:
     """Returns the undeformed frame with its fields as VTK holds it: vertices and lines, or cells."""
     from vtkmodules import vtkCommonDataModel as vtk
     from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-    from vtkmodules.vtkCommonCore import vtkDataArray, vtkPoints
+    from vtkmodules.vtkCommonCore import vtkPoints
 
     def cells(nodes: Any) -> Any:
         array = vtk.vtkCellArray()
@@ -192,12 +194,19 @@ def _data_set(frame: Frame) -> Any:
                 for name, values in frame.bond_fields.items()}
     for data, fields in ((sheet.GetPointData(), frame.fields), (sheet.GetCellData(), of_cells)):
         for name, values in fields.items():
-            array = numpy_to_vtk(_spatial(values), deep=True)
-            array.SetName(name)
-            if name in frame.units:
-                array.GetInformation().Set(vtkDataArray.UNITS_LABEL(), frame.units[name])
-            data.AddArray(array)
+            data.AddArray(vtk_array(name, values, frame.units.get(name)))
     return sheet
+
+
+def vtk_array(name: str, values: Field, unit: str | None = None) -> Any:
+    """Returns an array of VTK; values in the plane are padded with zeros, to three and nine components."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+    from vtkmodules.vtkCommonCore import vtkDataArray
+    array = numpy_to_vtk(_spatial(values), deep=True)
+    array.SetName(name)
+    if unit is not None:
+        array.GetInformation().Set(vtkDataArray.UNITS_LABEL(), unit)
+    return array
 
 
 def _spatial(values: Field) -> Field:
@@ -230,7 +239,7 @@ def read_image(path: pathlib.Path) -> tuple[Floats, Floats, dict[str, Any], dict
     """Reads mean fields around the tip: X, Y, fields by name on (Y, X), their units, number of samples; raises UnreadableFile
     if the file is missing or damaged.
     """
-    image = read_vtk(path, "vtkXMLImageDataReader")
+    image = read_vtk(path)
     columns, rows, _ = image.GetDimensions()
     fields, units = arrays_of(image.GetPointData())
     if not fields or columns * rows == 0:
@@ -242,22 +251,58 @@ def read_image(path: pathlib.Path) -> tuple[Floats, Floats, dict[str, Any], dict
             None if samples is None else int(samples.GetValue(0)))
 
 
-def read_vtk(path: pathlib.Path, reader_name: str, only: Collection[str] | None = None) -> Any:
-    """Returns the data set in a VTK file, with the arrays of some names, or all."""
+def read_vtk(path: pathlib.Path, only: Collection[str] | None = None, is_strict: bool = False) -> Any:
+    """Returns the data set in a VTK file, with the arrays of some names, or all. If `is_strict`, raises UnreadableFile for a file
+    about which VTK has any complaint; others may have lost data then.
+    """
     vtkIOXML = optional_package("vtkmodules.vtkIOXML", "frames need", "vtk (Debian: python3-vtk9)")
-    from vtkmodules.vtkCommonCore import vtkObject
+    from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
     if not path.exists():
         raise UnreadableFile(path, "no such file")
-    vtkObject.GlobalWarningDisplayOff()  # the callers report damaged files
-    reader = getattr(vtkIOXML, reader_name)()
+    complaints = vtkStringOutputWindow()
+    vtkOutputWindow.SetInstance(complaints)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    reader = getattr(vtkIOXML, _READERS.get(path.suffix, "vtkXMLPolyDataReader"))()
     reader.SetFileName(os.fsencode(path))  # a name need not be UTF-8 text
+    if is_strict and not reader.CanReadFile(os.fsencode(path)):
+        raise UnreadableFile(path, "not a VTK file of the type that its name says")
+    if is_strict and not _is_survived(reader.Update):
+        raise UnreadableFile(path, "corrupt: invalid size of an array")
     if only is not None:
         reader.UpdateInformation()
         for selection in (reader.GetPointDataArraySelection(), reader.GetCellDataArraySelection()):
             for index in range(selection.GetNumberOfArrays()):
                 selection.SetArraySetting(selection.GetArrayName(index), selection.GetArrayName(index) in only)
     reader.Update()
+    # "ERROR: In FILE, line N\nvtkClass (ADDRESS): what is wrong\n\n"
+    if is_strict and (error := re.search(r"^ERROR: In .*\n.*?\): ((?:.|\n)*?)\n\n", complaints.GetOutput(), re.MULTILINE)):
+        raise UnreadableFile(path, "corrupt: " + error[1].replace("\n", " ").rstrip())
+    if is_strict and (reader.GetErrorCode() or not reader.GetOutput().GetNumberOfPoints()):
+        raise UnreadableFile(path, "truncated, or without points")
     return reader.GetOutput()
+
+
+def _is_survived(act: Callable[[], Any]) -> bool:
+    """Whether a child survives an act; exceptions of C++, as of an array of impossible size, would end this process."""
+    if (child := os.fork()) == 0:
+        try:
+            faulthandler.disable()
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+            # More than any frame and what is mapped already, since threads reserve gigabytes that they never use.
+            most = 2 * os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") + 2**34
+            resource.setrlimit(resource.RLIMIT_AS, (most, most))
+            act()
+        finally:
+            os._exit(0)
+    return os.waitpid(child, 0)[1] == 0
+
+
+def in_plane(values: Any) -> Any:
+    """Returns the components in the plane of vectors and tensors."""
+    if values.ndim == 2 and values.shape[1] == 3:
+        return values[:, :2]
+    return values.reshape(-1, 3, 3)[:, :2, :2] if values.ndim == 2 and values.shape[1] == 9 else values
 
 
 def arrays_of(data: Any) -> tuple[dict[str, Any], dict[str, str]]:
@@ -268,11 +313,7 @@ def arrays_of(data: Any) -> tuple[dict[str, Any], dict[str, str]]:
     for index in range(data.GetNumberOfArrays()):
         array = data.GetArray(index)
         name, values = array.GetName(), vtk_to_numpy(array)
-        if values.ndim == 2 and values.shape[1] == 3:
-            values = values[:, :2]
-        elif values.ndim == 2 and values.shape[1] == 9:
-            values = values.reshape(-1, 3, 3)[:, :2, :2]
-        arrays[name] = values
+        arrays[name] = in_plane(values)
         if array.HasInformation() and (unit := array.GetInformation().Get(vtkDataArray.UNITS_LABEL())):
             units[name] = unit
     return arrays, units
