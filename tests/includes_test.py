@@ -25,14 +25,12 @@ ALLOWED = {
     "verification/input": ("support", "lattice/bonds", "lattice"),
     "verification/bridge": (*SIDES, "verification/input"),
     "verification/output": (*SIDES, "verification/input", "verification/bridge", "verification/analysis"),
-    "verification/compare": ("support", "verification/output"),
     "verification/stepping": ("support", "lattice/bonds", "lattice", "verification/input", "verification/bridge"),
     "verification/resources": MODELS,
     "verification/claims": MODELS,
     "verification/claims/*": (*MODELS, "verification/claims"),
     "verification/elements": ("support", "verification/input", "verification/claims"),
-    "verification/commands": (*MODELS, "verification/compare", "verification/resources", "verification/claims",
-                              "verification/elements"),
+    "verification/commands": (*MODELS, "verification/resources", "verification/claims", "verification/elements"),
     # The program, and the module with the finite elements.
     "verification": ("support", "continuum", "verification/bridge", "verification/commands", "verification/elements"),
     # Tests of one side must not depend on the other either.
@@ -43,14 +41,14 @@ ALLOWED = {
 }
 # Folders that may not include a library, by the beginning of its headers' names.
 LIBRARIES = {
-    "deal.II/": ("support", "verification/input", "verification/compare", "verification/elements", "verification/resources",
+    "deal.II/": ("support", "verification/input", "verification/elements", "verification/resources",
                  "lattice/bonds", "lattice", "verification/analysis", "tests/support", "tests/lattice", "tests/verification/analysis"),
-    "vtk": [folder for folder in ALLOWED if folder not in ("verification/output", "verification/compare")],
+    "vtk": [folder for folder in ALLOWED if folder != "verification/output"],
 }
 # Headers below the folder of the first column that may include a library: every source that includes them pays for it.
 HEADERS = [
     ("verification/", "deal.II/", ("verification/bridge/affine_displacement.h",)),
-    ("", "vtk", ("verification/compare/frame.h", "verification/compare/quiet_vtk.h", "verification/output/point_data.h")),
+    ("", "vtk", ("verification/output/point_data.h",)),
     ("", "nlohmann/json.hpp", ()),
     *[("", f"Eigen/{part}", ()) for part in ("Cholesky", "Dense", "Eigen", "LU", "QR", "SVD")],
 ]

@@ -1,4 +1,4 @@
-"""``latcon compare`` of two cracks: quantities, entries of their cases, distance of their paths."""
+"""``latcon compare``; of two cracks: quantities, entries of their cases, distance of their paths."""
 from __future__ import annotations
 
 import dataclasses
@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .errors import CLAIM_FAILED, DONE, UnreadableFile
+from .errors import CLAIM_FAILED, DONE, optional_package
 from .files import read_columns, read_json
 from .folder import write_file
 from .frames import Floats
@@ -39,13 +39,37 @@ class _Crack:
     Y: Floats
 
 
-def compare_cracks(program: Program, printed: Printed, options: Mapping[str, Any]) -> int:
-    """Compares the cracks in two output directories. Returns the exit code; raises InputError if a file is missing or damaged."""
+def compare(program: Program, printed: Printed, options: Mapping[str, Any]) -> int:
+    """Compares two cracks or two frames. Returns the exit code; raises LatconError for invalid options or files."""
+    names = options["first"], options["second"]
+    if options["overrides"]:
+        raise InputError("latcon compare has no case that --set could change")
+    cracks = [os.path.isfile(os.path.join(name, "crack.json")) for name in names]
+    if all(cracks):
+        if any(options[name] for name in ("time", "lattice_time", "continuum_time", "tolerances", "excluded", "overlap")):
+            raise InputError("--time, --lattice-time, --continuum-time, --tolerance, --overlap and --exclude are for frames, and "
+                             f"{names[0]} and {names[1]} are two cracks; to compare frames, give their files")
+        if any(is_same_folder(options["output_dir"], name) for name in names):
+            raise InputError(f"--output-dir {options['output_dir']} is one of the runs, whose run.json would be lost: give another")
+        return _compare_cracks(program, printed, options)
+    if cracks[1] or cracks[0] and os.path.isdir(names[1]) and not os.path.exists(os.path.join(names[1], "continuum.pvd")):
+        raise InputError(", ".join(f"{name} holds a crack (crack.json)" if is_crack else f"{name} holds no crack.json"
+                                   for name, is_crack in zip(names, cracks))
+                         + "; give two output directories of cracks, or a lattice frame and a continuum frame in this order")
+    for module, package in (("vtkmodules.vtkIOXML", "vtk (Debian: python3-vtk9)"), ("scipy.spatial", "scipy (Debian: python3-scipy)")):
+        optional_package(module, "the comparison of frames needs", package)
+    from .compare_frames import compare_frames
+    return compare_frames(program, printed, options)
+
+
+def is_same_folder(one: str, other: str | os.PathLike[str]) -> bool:
+    """Whether both exist and are the same."""
+    return os.path.exists(one) and os.path.exists(other) and os.path.samefile(one, other)
+
+
+def _compare_cracks(program: Program, printed: Printed, options: Mapping[str, Any]) -> int:
     directory = options["output_dir"]
-    try:
-        cracks = [_read_crack(program, options[side]) for side in SIDES]
-    except UnreadableFile as error:
-        raise InputError(str(error)) from None
+    cracks = [_read_crack(program, options[side]) for side in SIDES]
     quantities, paths = _quantities(program, cracks), path_distance(*((crack.X, crack.Y) for crack in cracks))
     entries = [{"key": key, "unit": (program.entries[key].unit or "") if key in program.entries else "", "first": value,
                 "second": cracks[1].entries.get(key, "")}

@@ -77,7 +77,7 @@ def lto():
     return [*(Job(pathlib.Path(name).name, [program("lto", f"tests/{name}"), "--gtest_brief=1",
                                             "--gtest_filter=-" + ":".join(SLOW)]) for name in SERIAL),
             *tests_of("lto", {}, "continuum/continuum_tests", "verification/verification_tests",
-                      "verification/claims_tests", "verification/compare_tests"),
+                      "verification/claims_tests"),
             Job("study", [program("lto", "verification/latcon"), "study", "patterns", "--dry-run"]),
             crack("lto")]
 
@@ -87,8 +87,7 @@ def asan():
     # MPI keeps memory until the process ends, some of it in unloaded modules, which no suppression can name.
     no_leaks = {"ASAN_OPTIONS": "detect_leaks=0"}
     tests = [*tests_of("debug", leaks, *SERIAL),
-             *tests_of("debug", no_leaks, "verification/verification_tests", "verification/compare_tests",
-                       "continuum/continuum_tests")]
+             *tests_of("debug", no_leaks, "verification/verification_tests", "continuum/continuum_tests")]
     ranks = [Job(name, ["mpirun", "--oversubscribe", "-np", "2", program("debug", f"tests/{folder}/{name}"),
                         "--gtest_brief=1"], dict(no_leaks, LATCON_RANKS="2"))
              for folder, name in (("lattice", "lattice_ranks_tests"), ("continuum", "continuum_tests"))]

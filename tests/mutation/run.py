@@ -36,7 +36,6 @@ PLACES = {
     "verification/analysis/": ["analysis_tests"],
     "verification/input/": ["verification_tests"],
     "verification/output/": ["verification_tests", *COMMANDS],
-    "verification/compare/": ["compare_tests", "CommandLine.ComparesFrames"],
     "verification/commands/": COMMANDS,
     "verification/elements/": COMMANDS,
 }

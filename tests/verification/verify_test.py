@@ -10,7 +10,7 @@ import pytest
 
 import verification_page
 from documented import undocumented
-from program import CACHE, CASES, FULL, claims_where, latcon
+from program import CACHE, CASES, FULL, claims_where, latcon, read_csv
 
 VERSION = [] if FULL else ["--quick"]
 quick_only = pytest.mark.skipif(FULL, reason="the quick versions are enough")
@@ -115,3 +115,20 @@ def test_a_claim_that_is_named_judges_something_or_fails(out):
     run = latcon("verify", "running-crack", "--quick", "--set", "Loading/strain y=0", "--output-dir", out)
     assert run.returncode == 3, run.stdout + run.stderr
     assert "running-crack: rows that are judged: not computed: this case has none" in run.stdout
+
+
+@pytest.mark.skipif(not FULL, reason="takes half a minute")
+def test_frames_of_the_running_crack_can_be_compared(out, tmp_path):
+    """Frames of both sides have the same time and coordinates: the velocities differ most at the tip."""
+    run = latcon("verify", "running-crack", "--quick", "--output-dir", out)
+    assert run.returncode == 0, run.stdout + run.stderr
+    lattice, *continua = read_csv(out / "running_crack_frames.csv")
+    d, X, Y = 0.625e-3, float(lattice["X_tip [m]"]), float(lattice["Y_tip [m]"])
+    for side in continua:
+        differences = []
+        for centre in (X, X - 8 * d):
+            run = latcon("compare", out / lattice["file"], out / side["file"], "--overlap", "--exclude", f"{centre},{Y},{5 * d}",
+                         "--output-dir", tmp_path / "compared")
+            rows = {row["quantity"]: row for row in read_csv(tmp_path / "compared" / "results.csv")}
+            differences.append(float(rows["velocity, largest difference"]["error"]))
+        assert differences[0] < 0.5 * differences[1], side

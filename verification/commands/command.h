@@ -33,8 +33,8 @@ namespace latcon::commands
 /// Options of `latcon compare`. Times are texts, with a unit or in s, or load factors; empty: the last frame.
 struct CompareOptions
 {
-  std::string lattice, continuum; ///< frames, series or output directories; or output directories of two cracks
-  std::string time;               ///< of both frames
+  std::string first, second; ///< frames, series or output directories; or output directories of two cracks
+  std::string time;          ///< of both frames
   std::string lattice_time, continuum_time;
   std::vector<std::string> tolerances; ///< `FIELD=VALUE`
   bool overlap = false;                ///< whether the sheets may overlap only in part
@@ -78,12 +78,10 @@ struct ReportOptions
 };
 
 // The commands. Each runs on every MPI rank and returns the exit code of the program, or throws.
-support::ExitCode verify(const input::Options &options);                                       ///< `latcon verify`
-support::ExitCode run_lattice(const input::Options &options);                                  ///< `latcon lattice`
-support::ExitCode run_fracture(const input::Options &options);                                 ///< `latcon fracture`
-support::ExitCode compare_frames(const input::Options &options, const CompareOptions &chosen); ///< `latcon compare`
-/// `latcon compare` of the cracks in two output directories.
-support::ExitCode compare_cracks(const input::Options &options, const std::string &first, const std::string &second);
+support::ExitCode verify(const input::Options &options);                                  ///< `latcon verify`
+support::ExitCode run_lattice(const input::Options &options);                             ///< `latcon lattice`
+support::ExitCode run_fracture(const input::Options &options);                            ///< `latcon fracture`
+support::ExitCode compare(const input::Options &options, const CompareOptions &chosen);   ///< `latcon compare`
 support::ExitCode report(const input::Options &options, const ReportOptions &chosen);     ///< `latcon report`
 support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen);   ///< `latcon study`
 support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen); ///< `latcon batch`

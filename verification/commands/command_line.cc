@@ -199,9 +199,9 @@ support::ExitCode run_program(int argc, char **argv)
   add_case_command("continuum", "equilibrium or motion of the finite element sheet", "latcon continuum hole",
                    "-continuum",
                    [](const input::Options &chosen) { return elements::elements().run_continuum(chosen); });
-  CLI::App *fracture_command = add_case_command(
-    "fracture", "verify the case's material and pre-stretch, then run its crack",
-    "latcon fracture quick --set \"Loading/strain y=1.7\"", "", run_fracture);
+  CLI::App *fracture_command =
+    add_case_command("fracture", "verify the case's material and pre-stretch, then run its crack",
+                     "latcon fracture quick --set \"Loading/strain y=1.7\"", "", run_fracture);
   fracture_command->add_flag("--skip-verification", options.skip_verification,
                              "run the crack unverified; noted in every output");
   fracture_command->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
@@ -284,12 +284,12 @@ support::ExitCode run_program(int argc, char **argv)
     add_command("compare", "two cracks, or a lattice frame and a continuum frame site by site",
                 "latcon compare output/strip output/thin");
   compare_command
-    ->add_option("LATTICE", chosen.lattice,
+    ->add_option("LATTICE", chosen.first,
                  "output directory of a crack; or frame (.vtp), series (.pvd) or output directory of a lattice")
     ->required()
     ->type_name("");
   compare_command
-    ->add_option("CONTINUUM", chosen.continuum,
+    ->add_option("CONTINUUM", chosen.second,
                  "output directory of a second crack; or frame (.vtu, .pvtu), series (.pvd) or output directory of a "
                  "continuum")
     ->required()
@@ -317,7 +317,7 @@ support::ExitCode run_program(int argc, char **argv)
     [&]
     {
       default_folder("compare");
-      command = [&] { return compare_frames(options, chosen); };
+      command = [&] { return compare(options, chosen); };
     });
 
   ReportOptions shown;

@@ -47,7 +47,7 @@ Json json_of(const input::Options &options, const SweepOptions &sweep)
 support::ExitCode continue_in_python(const std::string &command, const input::Options &chosen,
                                      const std::vector<std::string> &names, const Json &options)
 {
-  if (support::n_ranks() > 1)
+  if (support::n_ranks() > 1 && command != "compare")
     throw support::InputError("`latcon " + command + "` is one process; run it without mpirun");
   const std::string python = python_interpreter();
   if (access(python.c_str(), X_OK) != 0)
@@ -140,9 +140,18 @@ support::ExitCode write_batch(const input::Options &options, const BatchOptions 
   return continue_in_python("batch", options, {chosen.study}, all);
 }
 
-support::ExitCode compare_cracks(const input::Options &options, const std::string &first, const std::string &second)
+support::ExitCode compare(const input::Options &options, const CompareOptions &chosen)
 {
-  return continue_in_python("compare", options, {first, second}, json_of(options, {}));
+  if (!support::is_root_rank())
+    return support::ExitCode::done; // the first rank does all the work
+  Json all = json_of(options, {});
+  all["time"] = chosen.time;
+  all["lattice_time"] = chosen.lattice_time;
+  all["continuum_time"] = chosen.continuum_time;
+  all["tolerances"] = chosen.tolerances;
+  all["overlap"] = chosen.overlap;
+  all["excluded"] = chosen.excluded;
+  return continue_in_python("compare", options, {chosen.first, chosen.second}, all);
 }
 
 } // namespace latcon::commands

@@ -1,4 +1,4 @@
-"""``latcon study``, ``latcon batch`` and ``latcon compare`` of two cracks, with the options that the program has parsed."""
+"""``latcon study``, ``latcon batch`` and ``latcon compare``, with the options that the program has parsed."""
 from __future__ import annotations
 
 import dataclasses
@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import BAD_INPUT, CLAIM_FAILED, DONE, INTERNAL_ERROR, INTERRUPTED, OUTPUT_FAILED, SOLVER_FAILED
-from ..compare import compare_cracks
+from ..compare import compare
+from ..errors import BAD_INPUT, CLAIM_FAILED, DONE, INTERNAL_ERROR, INTERRUPTED, OUTPUT_FAILED, SOLVER_FAILED, LatconError
 from ..folder import FolderLock, prepare_run, remove, require_in_place, write_file
 from .batch import write_batch
 from .outcome import RunOutcome, RunState, is_begun, read_outcome
@@ -33,15 +33,14 @@ _PATIENCE_WITH_SHARDS = 60.0
 def run(command: str, options: Mapping[str, Any]) -> int:
     """Runs a command and returns its exit code; run.json, log and messages agree with it."""
     printed = Printed(options["quiet"])
-    study = program = None
+    program = None
     try:
         signals = Signals()
         program = Program(options)
         if command == "study":
-            study = _StudyCommand(program, printed, signals, options)
-            code = study.run()
+            code = _StudyCommand(program, printed, signals, options).run()
         else:
-            code = (write_batch if command == "batch" else compare_cracks)(program, printed, options)
+            code = (write_batch if command == "batch" else compare)(program, printed, options)
         message = ""
         if code == DONE and output_is_lost(printed):
             code, message = OUTPUT_FAILED, "cannot write standard output: it is closed or full"
@@ -53,9 +52,9 @@ def run(command: str, options: Mapping[str, Any]) -> int:
         message = f"latcon: {message}\n"
         say_error(message)
     try:
-        if study and study.record:
-            study.record.write(code, message)
-            study.record.release()
+        if printed.record:
+            printed.record.write(code, message)
+            printed.record.release()
     except OSError:
         pass  # most likely a full disk, which is then the failure itself
     if program:
@@ -69,7 +68,7 @@ def _failure(error: BaseException) -> tuple[int, str]:
         return error.exit_code, error.message
     if isinstance(error, Interrupted):
         return INTERRUPTED, f"interrupted by {signal.Signals(error.args[0]).name}"
-    if isinstance(error, InputError):
+    if isinstance(error, LatconError):
         return BAD_INPUT, str(error)
     if isinstance(error, OSError):
         return OUTPUT_FAILED, f"cannot write {error.filename or 'to the output directory'}: {error.strerror}"

@@ -56,7 +56,7 @@ def study_json(program: Program, results: StudyResults) -> str:
     return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
 
 
-def _finite(value: float | None) -> float | str | None:
+def finite_or_text(value: float | None) -> float | str | None:
     """JSON has no number that is not finite, and null means that there is no value."""
     return value if value is None or math.isfinite(value) else str(value)
 
@@ -66,14 +66,14 @@ def _row(outcome: RowOutcome) -> dict[str, Any]:
     document: dict[str, Any] = {
         "runs": row.runs, "quantity": row.quantity, "unit": row.unit, "against": row.against or None,
         "against_unit": row.against_unit if row.against else None, "expected": outcome.expected,
-        "measured": "; ".join(outcome.measured), "number": _finite(outcome.number)}
+        "measured": "; ".join(outcome.measured), "number": finite_or_text(outcome.number)}
     if row.rule is Rule.ONSET_EXPONENT:
         document["onset"] = fit and {
             "exponent": dict(zip(_INTERVAL, fit.exponent)), "onset": dict(zip(_INTERVAL, fit.onset)), "prefactor": fit.prefactor,
             "p_fit": fit.p_fit}
     return document | {"note": "; ".join(outcome.note), "verdict": outcome.verdict.value, "values": [
-        {"run": seeds.run, "against": _finite(seeds.abscissa), "seeds": seeds.n_seeds, "n": seeds.n, "mean": _finite(seeds.mean),
-         "standard_deviation": _finite(seeds.deviation), "patterns": seeds.patterns, "undecided": seeds.n_undecided}
+        {"run": seeds.run, "against": finite_or_text(seeds.abscissa), "seeds": seeds.n_seeds, "n": seeds.n,
+         "mean": finite_or_text(seeds.mean), "standard_deviation": finite_or_text(seeds.deviation), "patterns": seeds.patterns, "undecided": seeds.n_undecided}
         for seeds in outcome.runs]}
 
 

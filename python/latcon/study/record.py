@@ -1,4 +1,4 @@
-"""Record of a study in its output directory: `run.json`, `log.txt`, `results.json`, `results.csv`; what is printed."""
+"""Record of a command in its output directory: `run.json`, `log.txt`, `results.json`, `results.csv`; what is printed."""
 from __future__ import annotations
 
 import contextlib
@@ -11,6 +11,7 @@ import select
 import shutil
 import signal
 import subprocess
+import textwrap
 import time
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -31,6 +32,7 @@ class Printed:
         self.is_quiet = is_quiet
         self.text = ""
         self.is_complete = True
+        self.record: Record | None = None  # with the log
 
     def say(self, text: str) -> None:
         """Prints lines unless --quiet is given."""
@@ -57,7 +59,7 @@ def json_text(document: Any) -> str:
 
 
 class Record:
-    """Locked output directory of a study; `run.json` has the exit code however the study ends.
+    """Locked output directory of a command; `run.json` has the exit code however the command ends.
 
     With `resume` earlier files stay; otherwise they are moved to a subfolder.
     """
@@ -80,6 +82,7 @@ class Record:
                 self._log = file.read()
         self._log += "$ " + " ".join(options["arguments"]) + "\n"
         self._document: dict[str, Any] = program.facts | {"wall_time_s": {}}
+        printed.record = self
         self.write(None)
 
     def add(self, **facts: Any) -> None:
@@ -155,6 +158,30 @@ class Record:
         shutil.rmtree(folder)
         if child.returncode != DONE:
             raise Ended(CLAIM_FAILED, "latcon: " + message)
+
+
+def table_of_rows(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Returns the rows as a table, at most 120 columns wide, and below it those that fail."""
+    def number(row: Mapping[str, Any], key: str, digits: int) -> str:
+        return "" if row[key] is None else f"{float(row[key]):.{digits}g}"
+
+    table = [["claim", "quantity [unit]", "lattice", "continuum", "theory", "error", "tolerance", "verdict"]]
+    table += [[row["claim"], f"{row['quantity']} [{row['unit']}]", *(number(row, key, 7) for key in table[0][2:5]),
+               *(number(row, key, 3) for key in table[0][5:7]), row["verdict"]] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*table)]
+    widths[1] = min(widths[1], 120 - sum(widths) - 2 * (len(widths) - 1) + widths[1])  # numbers are never truncated
+    lines = []
+    for claim, quantity, *numbers, verdict in table:
+        first, *more = textwrap.wrap(quantity, widths[1], break_on_hyphens=False)
+        cells = [claim.ljust(widths[0]), first.ljust(widths[1]), *(cell.rjust(width) for cell, width in zip(numbers, widths[2:])), verdict]
+        lines += ["  ".join(cells), *(" " * (widths[0] + 2) + line for line in more)]
+    lines.insert(1, "-" * (sum(widths) + 2 * (len(widths) - 1)))
+    failing, judged = [row for row in rows if row["verdict"] == "fails"], sum(row["verdict"] != "reported" for row in rows)
+    if failing:
+        lines += ["", f"{len(failing)} of {judged} check{'s' * (judged > 1)} fail{'s' * (len(failing) == 1)}:"]
+        lines += [f"  {row['claim']}: {row['quantity']}: error {number(row, 'error', 3)}, tolerance {number(row, 'tolerance', 3)}"
+                  for row in failing]
+    return "\n".join(lines)
 
 
 BEGIN = time.monotonic()
