@@ -48,6 +48,7 @@ TEST(Scatter, MovesEachPointWhateverTheOthersAre)
   EXPECT_GT((largest - smallest).minCoeff(), 0.98);
 }
 
+// Sums (H.30) of the weights (H.29), theory-comparison.md.
 TEST(Scatter, GivesEachPointTheAreaLawAndNearlyNoForce)
 {
   for (const double scatter : {0.25, 0.5})
@@ -135,7 +136,7 @@ TEST(Scatter, CountsTheBondsOfEachPointForTheTip)
   EXPECT_EQ(fracture.tip(), place);
 }
 
-// Forces of a sheet without edges, against those in the middle of the same points with edges.
+// Forces of a sheet without edges: of each site those of its bonds one by one, and none in sum.
 TEST(Scatter, HasNoEdgesInAPeriodicSheet)
 {
   const Grid grid{Grid::Kind::square, d / 1.5};
@@ -151,18 +152,19 @@ TEST(Scatter, HasNoEdgesInAPeriodicSheet)
   };
   add_noise(state, lattice, 0.05 * d, 3);
   const auto [fx, fy] = forces(state);
-  double largest = 0., rest_x = 0., rest_y = 0.;
+  latcon::support::Extremes sizes;
+  double rest_x = 0., rest_y = 0.;
   for_each_site(lattice,
                 [&](std::size_t place)
                 {
                   const Eigen::Vector2d force(fx[place], fy[place]);
-                  largest = std::max(largest, force.norm());
+                  sizes.add(force.norm());
                   rest_x += force.x();
                   rest_y += force.y();
                   EXPECT_LT((force - Forces(lattice, material).on_site(state, state.vx, state.vy, place)).norm(),
                             1e-12 * force.norm() + 1e-15);
                 });
-  EXPECT_LT(std::hypot(rest_x, rest_y), 1e-10 * largest);
+  EXPECT_LT(std::hypot(rest_x, rest_y), 1e-10 * sizes.largest());
 }
 
 } // namespace lattice_scatter_test
