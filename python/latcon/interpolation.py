@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from .frames import Floats
 
@@ -42,7 +43,6 @@ def interpolate(points: Floats, nodes: Floats, values: Floats, cells: Sequence[I
 
 def _near_cells(points: Floats, corners: Floats, tolerance: float) -> tuple[Indices, Indices]:
     """Returns pairs of a point and a cell in whose bounding box it is, sorted."""
-    from scipy.spatial import cKDTree
     low, high = corners.min(axis=1), corners.max(axis=1)
     # A curved side may extend beyond the box of its nodes, by much less than the length of the cell.
     margin = (0.1 * (high - low).max(axis=1) + tolerance)[:, None]

@@ -43,9 +43,10 @@ struct NonlocalOptions
 /// and 2, bonds in all directions.
 std::vector<NonlocalStencil> fixed_stencils(double d, lattice::Orientation orientation);
 
-/// Claim `nonlocal`: the nonlocal continuum, bonds of the lattice's lengths in all directions on a grid, has the moduli
-/// of the network law and the mean over rotations of the lattice, up to what its grid leaves; and converges to both
-/// with the spacing h = d/m of the grid (theory-comparison.md, eqs. (H.25) to (H.28)).
+/// Claim `nonlocal`: the nonlocal continuum, bonds of the lattice's lengths in all directions on a grid or between
+/// scattered points, has the moduli of the network law and the mean over rotations of the lattice, up to what its grid
+/// leaves; and converges to both with the spacing h = d/m of the grid (theory-comparison.md, eqs. (H.25) to (H.30)).
+/// At rest, Maxwell branches relax as the network's, and the tip of a cut is at its end.
 ///
 /// Energies, stresses, waves and the energy of a cut are those of the simulator on a sheet with the stencil. Every rank
 /// computes all of it.
