@@ -123,7 +123,7 @@ def test_run_whose_folder_is_replaced_leaves_the_other_alone(start, out):
     for name, arguments in VICTIMS.items():
         process = start(*arguments, "--output-dir", out)
         assert wait_for((out / "run.json").exists, process)
-        process.send_signal(signal.SIGSTOP)
+        stop(process)
         shutil.rmtree(out)
         out.mkdir()
         (out / LOCK).write_text("of another run")
