@@ -1,7 +1,9 @@
 #include "continuum/element_integrals.h"
 
+#include "continuum/collective.h"
 #include "continuum/element_kernels.h"
 #include "continuum/errors.h"
+#include "continuum/local_to_global.h"
 #include "continuum/mesh_loop.h"
 #include "continuum/shape_tables.h"
 #include "continuum/vector_kernels.h"
@@ -43,21 +45,24 @@ private:
   const double *own_; // a ghosted vector is sorted, so the owned entries are contiguous
 };
 
-// Integrates densities over cells and faces at one state u, or those of a motion.
+// Integrates over cells and faces, at one state u, densities of the energy or of other forces.
 class Integrator
 {
 public:
   Integrator(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order,
-             const Motion *motion = nullptr)
-    : sheet_(sheet), fields_{NodalValues(u, sheet.owned())}, load_factor_(load_factor), order_(order), motion_(motion),
+             const PointForces *forces = nullptr)
+    : sheet_(sheet), fields_{NodalValues(u, sheet.owned())}, load_factor_(load_factor), order_(order), forces_(forces),
       tables_(sheet)
   {
-    if (motion)
-      fields_.emplace_back(motion->velocity, sheet.owned());
+    if (forces && forces->velocity)
+      fields_.emplace_back(*forces->velocity, sheet.owned());
     for (unsigned int n = 0; n < sheet.element().n_dofs_per_cell() / 2; ++n)
       for (unsigned int i = 0; i < 2; ++i)
         system_index_[i].push_back(sheet.element().component_to_system_index(i, n));
   }
+
+  // Whether densities depend on second derivatives, and faces have any.
+  bool has_faces() const { return forces_ ? forces_->faces != nullptr : sheet_.has_gradient(); }
 
   void cell(const Iterator &cell, Contributions &contributions)
   {
@@ -65,13 +70,13 @@ public:
     begin(contributions);
     add_nodes(cell, 0);
     start(1);
-    const Rows rows = {1, sheet_.has_gradient() ? n_derivatives : n_first};
+    const Rows rows = {1, has_faces() ? n_derivatives : n_first};
     for (unsigned int q = 0; q < table.n_points; ++q)
     {
       const double *basis = table.row(q, 0);
       evaluate_sides(basis, rows);
-      if (motion_)
-        motion_->law.cell_density(derivatives_[0], rates_[0], order_, motion_->rate_by_displacement, density_);
+      if (forces_)
+        forces_->density({n_points_++, table.JxW[q], derivatives_[0], rates_[0]}, density_);
       else
         cell_density(sheet_.constitution(), sheet_.has_gradient(), derivatives_[0], order_, density_);
       add_point(basis, rows, table.JxW[q], contributions.back());
@@ -90,7 +95,7 @@ public:
         std::vector<Tensor<1, 2>> prescribed(points.size());
         for (std::size_t q = 0; q < points.size(); ++q)
           for (unsigned int i = 0; i < 2; ++i)
-            prescribed[q][i] = (motion_ ? motion_->load_rate : load_factor_) * condition.gradient->value(points[q], i);
+            prescribed[q][i] = (forces_ ? forces_->load_rate : load_factor_) * condition.gradient->value(points[q], i);
         begin(contributions);
         add_nodes(cell, 0);
         integrate_face(tables, 1, extent(cell, face), &prescribed, {condition.components[0], condition.components[1]},
@@ -191,10 +196,10 @@ private:
       evaluate_sides(basis_.data(), rows);
       const Tensor<1, 2> &N = tables[0]->normals[q];
       const Tensor<1, 2> given = prescribed ? (*prescribed)[q] : Tensor<1, 2>();
-      if (motion_)
-        motion_->law.face_density(derivatives_, rates_, n_sides, N, given, held,
-                                  sheet_.penalty(extent, motion_->law.resistance_across(N)), order_,
-                                  motion_->rate_by_displacement, density_);
+      if (forces_)
+        forces_->faces->face_density(derivatives_, rates_, n_sides, N, given, held,
+                                     sheet_.penalty(extent, forces_->faces->resistance_across(N)), order_,
+                                     forces_->rate_by_displacement, density_);
       else
         face_density(*sheet_.constitution().gradient, derivatives_, n_sides, N, given, held, penalty, order_, density_);
       add_point(basis_.data(), rows, tables[0]->JxW[q], contribution);
@@ -207,7 +212,7 @@ private:
   {
     clear(density_, order_);
     evaluate_field(basis, rows, nodal_.data(), derivatives_);
-    if (motion_)
+    if (fields_.size() > 1)
       evaluate_field(basis, rows, &nodal_[2 * stride_], rates_);
   }
 
@@ -231,7 +236,7 @@ private:
       for (unsigned int block = 0; block < n_blocks(); ++block)
       {
         const auto &[i, k] = components[block];
-        add_second(basis, stride_, rows, density_.second[i][k][0][0][0], JxW, i == k && !motion_, nodes_.size(),
+        add_second(basis, stride_, rows, density_.second[i][k][0][0][0], JxW, i == k && is_symmetric(), nodes_.size(),
                    work_.data(), second_[block].data());
       }
   }
@@ -258,11 +263,11 @@ private:
     // and only one of the two mixed blocks.
     FullMatrix<double> &K = contribution.tangent;
     K.reinit(2 * n, 2 * n);
-    for (unsigned int block = 0; block < n_blocks() && motion_; ++block)
+    for (unsigned int block = 0; block < n_blocks() && !is_symmetric(); ++block)
       for (std::size_t a = 0; a < n; ++a)
         for (std::size_t b = 0; b < n; ++b)
           K(2 * a + components[block].first, 2 * b + components[block].second) = second_[block][a * stride_ + b];
-    if (motion_)
+    if (!is_symmetric())
       return;
     for (std::size_t a = 0; a < n; ++a)
     {
@@ -275,13 +280,15 @@ private:
   }
 
   static constexpr std::pair<unsigned int, unsigned int> components[4] = {{0, 0}, {1, 1}, {0, 1}, {1, 0}}; // of second_
-  unsigned int n_blocks() const { return motion_ ? 4 : 3; }
+  bool is_symmetric() const { return !forces_ || forces_->is_symmetric; }
+  unsigned int n_blocks() const { return is_symmetric() ? 3 : 4; }
 
   const Sheet &sheet_;
-  std::vector<NodalValues> fields_; // u, and the velocity of a motion
+  std::vector<NodalValues> fields_; // u, and the velocity if there is one
   double load_factor_;
   Order order_;
-  const Motion *motion_; // nullptr: none
+  const PointForces *forces_; // nullptr: those of the energy
+  std::size_t n_points_ = 0;  // visited
   ShapeTables tables_;
   std::array<std::vector<unsigned int>, 2> system_index_; // of the scalar shape functions, per component
 
@@ -337,7 +344,7 @@ struct AddingVisitor
 void integrate_with(Integrator &integrator, const Sheet &sheet, const std::function<void(const Contribution &)> &add)
 {
   AddingVisitor visitor{integrator, add, {}};
-  if (sheet.has_gradient())
+  if (integrator.has_faces())
   {
     for_each_cell_and_face(sheet.dof_handler(), visitor);
     return;
@@ -358,10 +365,66 @@ void integrate(const Sheet &sheet, const Sheet::Vector &u, const double load_fac
   integrate_with(integrator, sheet, add);
 }
 
-void integrate(const Sheet &sheet, const Sheet::Vector &u, const Motion &motion, const Order order,
+void integrate(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, const Order order,
                const std::function<void(const Contribution &)> &add)
 {
-  Integrator integrator(sheet, u, 0., order, &motion);
+  Integrator integrator(sheet, u, 0., order, &forces);
   integrate_with(integrator, sheet, add);
+}
+
+void add_forces(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, Sheet::Vector &nodal,
+                Sheet::Vector *magnitude)
+{
+  VectorAssembly to_nodal(sheet.conformity_constraints(), nodal);
+  VectorAssembly to_magnitude(sheet.conformity_constraints(), magnitude ? *magnitude : nodal);
+  const DeferredException guarded(
+    [&]
+    {
+      integrate(sheet, u, forces, Order::first,
+                [&](const Contribution &part)
+                {
+                  to_nodal.add(part.residual, part.dofs);
+                  if (magnitude)
+                    to_magnitude.add(part.magnitude, part.dofs);
+                });
+    });
+  nodal.compress(VectorOperation::add);
+  if (magnitude)
+    magnitude->compress(VectorOperation::add);
+  guarded.rethrow_collectively(sheet.communicator());
+}
+
+void add_tangent(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces,
+                 const AffineConstraints<double> &constraints, Sheet::Matrix &matrix)
+{
+  MatrixAssembly to_matrix(constraints, matrix);
+  const DeferredException guarded(
+    [&]
+    {
+      integrate(sheet, u, forces, Order::second,
+                [&](const Contribution &part) { to_matrix.add(part.tangent, part.dofs); });
+    });
+  matrix.compress(VectorOperation::add);
+  guarded.rethrow_collectively(sheet.communicator());
+}
+
+void for_each_point(const Sheet &sheet, const Sheet::Vector &u, const std::function<void(const CellPoint &)> &visit)
+{
+  PointForces none;
+  none.density = [&](const CellPoint &point, PointIntegrand &) { visit(point); };
+  run_collectively(sheet.communicator(), [&] { integrate(sheet, u, none, Order::value, [](const Contribution &) {}); });
+}
+
+void add_stresses(const Sheet &sheet, const Sheet::Vector &u, PointForces forces, std::vector<Tensor<2, 2>> &stresses)
+{
+  forces.density = [&, density = forces.density](const CellPoint &point, PointIntegrand &d)
+  {
+    density(point, d);
+    for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int J = 0; J < 2; ++J)
+        stresses[point.number][i][J] += d.first[i][0][J];
+  };
+  run_collectively(sheet.communicator(),
+                   [&] { integrate(sheet, u, forces, Order::first, [](const Contribution &) {}); });
 }
 } // namespace latcon::continuum

@@ -29,18 +29,46 @@ struct Contribution
 void integrate(const Sheet &sheet, const Sheet::Vector &u, double load_factor, Order order,
                const std::function<void(const Contribution &)> &add);
 
-/// Motion in which a gradient viscosity dissipates.
-struct Motion
+/// Quadrature point of a cell.
+struct CellPoint
 {
-  const GradientViscosity &law;
-  const Sheet::Vector &velocity; ///< [m/s], with ghost entries
-  double load_rate;              ///< rate of the load factor [1/s]
-  double rate_by_displacement;   ///< dv/du [1/s], for Order::second
+  std::size_t number; ///< among the points of the cells on this rank, in their order
+  double JxW;         ///< weight [m^2]
+  const FieldDerivatives &u;
+  const FieldDerivatives &v; ///< undefined without a velocity
 };
 
-/// Calls add(contribution) likewise for the viscous forces of `motion` at the state `u`, a contribution of which has
-/// the dissipated power as energy, the forces as residual and their derivative by u as tangent, which is not symmetric.
-/// The sheet must have a gradient law, whose faces and penalty factor these are.
-void integrate(const Sheet &sheet, const Sheet::Vector &u, const Motion &motion, Order order,
+/// Forces that no energy of u gives, those of viscosity and memory.
+struct PointForces
+{
+  /// Adds the density at a point, as cell_density() does for an energy: dissipated power [W/m^3] as `value`, stresses as
+  /// `first`, their derivatives by u as `second`. The density has been cleared.
+  std::function<void(const CellPoint &, PointIntegrand &)> density;
+  bool is_symmetric = false;                 ///< whether that derivative is symmetric
+  const Sheet::Vector *velocity = nullptr;   ///< [m/s], with ghost entries; nullptr: none
+  const GradientViscosity *faces = nullptr;  ///< law of the densities of faces and second derivatives; nullptr: none
+  double load_rate = 0.;                     ///< rate of the load factor [1/s], for faces
+  double rate_by_displacement = 0.;          ///< dv/du [1/s], for faces and Order::second
+};
+
+/// Calls add(contribution) likewise for `forces` at the state `u`: dissipated power as energy, forces as residual, their
+/// derivative by u as tangent. A sheet with densities of faces must have a gradient law, whose penalty factor is theirs.
+void integrate(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, Order order,
                const std::function<void(const Contribution &)> &add);
+
+/// Adds nodal forces [N/m] to `nodal` and, if given, the absolute values of their terms to `magnitude`. Collective, as
+/// are the functions below; throw NonPhysicalState on every rank.
+void add_forces(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, Sheet::Vector &nodal,
+                Sheet::Vector *magnitude);
+
+/// Adds the derivative of the nodal forces by u [N/m^2] to `matrix`, condensed by `constraints`.
+void add_tangent(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces,
+                 const dealii::AffineConstraints<double> &constraints, Sheet::Matrix &matrix);
+
+/// Calls visit(point) for every quadrature point of the cells on this rank.
+void for_each_point(const Sheet &sheet, const Sheet::Vector &u, const std::function<void(const CellPoint &)> &visit);
+
+/// Adds the first Piola stresses [Pa] at the quadrature points of the cells on this rank, in their order.
+void add_stresses(const Sheet &sheet, const Sheet::Vector &u, PointForces forces,
+                  std::vector<dealii::Tensor<2, 2>> &stresses);
 } // namespace latcon::continuum

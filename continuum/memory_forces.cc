@@ -1,8 +1,8 @@
 #include "continuum/memory_forces.h"
 
 #include "continuum/collective.h"
+#include "continuum/element_integrals.h"
 #include "continuum/errors.h"
-#include "continuum/stress_integrals.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -12,41 +12,23 @@ namespace latcon::continuum
 {
 namespace
 {
-// Calls work(points, F) for every locally owned cell; u has ghost entries. Local.
-template <typename Work>
-void for_each_cell(const Sheet &sheet, const Sheet::Vector &u, const Work &work)
-{
-  stress_integrals::for_each_cell<1>(sheet, {&u},
-                                     [&](auto &points)
-                                     {
-                                       stress_integrals::add_identity(points.gradients[0]);
-                                       work(points, points.gradients[0]);
-                                     });
-}
-
-// Adds the tangent to `matrix`; overstress(point, F) returns the overstresses at the point of that number.
+// Forces of the overstresses that overstress(point, F) returns, those of the quadrature point of that number.
 template <typename Overstress>
-void add_tangent_of(const Sheet &sheet, const FibreMemory &law, const FibreMemory::Step &step, const Sheet::Vector &u,
-                    const AffineConstraints<double> &constraints, Sheet::Matrix &matrix, const Overstress &overstress)
+PointForces remembered(const FibreMemory &law, const FibreMemory::Step &step, const Order order,
+                       const Overstress &overstress)
 {
-  const DeferredException guarded(
-    [&]
-    {
-      const unsigned int n = sheet.element().n_dofs_per_cell();
-      FullMatrix<double> local(n, n);
-      for_each_cell(sheet, u,
-                    [&](const auto &points, const auto &F)
-                    {
-                      local = 0.;
-                      for (unsigned int q = 0; q < F.size(); ++q)
-                        stress_integrals::add_stiffness(
-                          points.values, q, law.tangent(step, F[q], overstress(points.cell * F.size() + q, F[q])),
-                          local);
-                      constraints.distribute_local_to_global(local, points.dofs, matrix);
-                    });
-    });
-  matrix.compress(VectorOperation::add);
-  guarded.rethrow_collectively(sheet.communicator());
+  PointForces forces;
+  forces.is_symmetric = true;
+  forces.density = [=, &law](const CellPoint &point, PointIntegrand &density)
+  {
+    const Tensor<2, 2> F = deformation_gradient(point.u);
+    const double *q = overstress(point.number, F);
+    if (order == Order::first)
+      add_stress(density, law.stress(F, q));
+    else
+      add_F_F(density, 0, law.tangent(step, F, q), 1.);
+  };
+  return forces;
 }
 } // namespace
 
@@ -81,20 +63,13 @@ void MemoryForces::start(const Vector &u, const std::vector<Vector> &relaxed)
   const auto stretches = [&](const Vector &displacement)
   {
     std::vector<double> all;
-    run_collectively(sheet_.communicator(),
-                     [&]
-                     {
-                       std::vector<double> l(law_->families().size());
-                       for_each_cell(sheet_, displacement,
-                                     [&](const auto &, const auto &F)
-                                     {
-                                       for (const Tensor<2, 2> &at_point : F)
-                                       {
-                                         law_->stretches(at_point, l.data());
-                                         all.insert(all.end(), l.begin(), l.end());
-                                       }
-                                     });
-                     });
+    std::vector<double> l(law_->families().size());
+    for_each_point(sheet_, displacement,
+                   [&](const CellPoint &point)
+                   {
+                     law_->stretches(deformation_gradient(point.u), l.data());
+                     all.insert(all.end(), l.begin(), l.end());
+                   });
     return all;
   };
   history_.stretch = stretches(u);
@@ -117,58 +92,33 @@ void MemoryForces::start(const Vector &u, const std::vector<Vector> &relaxed)
   }
 }
 
+// Returns the forces after `duration`. The state at a point must outlive them.
+PointForces MemoryForces::after(const double duration, const Order order, AtPoint &state) const
+{
+  const FibreMemory::Step step = law_->step(duration);
+  return remembered(*law_, step, order,
+                    [this, step, &state](const std::size_t point, const Tensor<2, 2> &F)
+                    {
+                      advance(step, point, F, state);
+                      return state.overstress.data();
+                    });
+}
+
 void MemoryForces::add_forces(const double duration, const Vector &u, Vector &forces, Vector *magnitude) const
 {
   if (law_ == nullptr)
     return;
-  const DeferredException guarded(
-    [&]
-    {
-      const FibreMemory::Step step = law_->step(duration);
-      dealii::Vector<double> local(sheet_.element().n_dofs_per_cell());
-      dealii::Vector<double> local_magnitude(local.size());
-      AtPoint state;
-      for_each_cell(sheet_, u,
-                    [&](const auto &points, const auto &F)
-                    {
-                      local = 0.;
-                      local_magnitude = 0.;
-                      for (unsigned int q = 0; q < F.size(); ++q)
-                      {
-                        advance(step, points.cell * F.size() + q, F[q], state);
-                        stress_integrals::add_stress(points.values, q, law_->stress(F[q], state.overstress.data()),
-                                                     local, local_magnitude);
-                      }
-                      sheet_.conformity_constraints().distribute_local_to_global(local, points.dofs, forces);
-                      if (magnitude != nullptr)
-                        sheet_.conformity_constraints().distribute_local_to_global(local_magnitude, points.dofs,
-                                                                                   *magnitude);
-                    });
-    });
-  forces.compress(VectorOperation::add);
-  if (magnitude != nullptr)
-    magnitude->compress(VectorOperation::add);
-  guarded.rethrow_collectively(sheet_.communicator());
+  AtPoint state;
+  continuum::add_forces(sheet_, u, after(duration, Order::first, state), forces, magnitude);
 }
 
 void MemoryForces::add_stresses(const Vector &u, std::vector<Tensor<2, 2>> &stresses) const
 {
   if (law_ == nullptr)
     return;
-  run_collectively(sheet_.communicator(),
-                   [&]
-                   {
-                     for_each_cell(sheet_, u,
-                                   [&](const auto &points, const auto &F)
-                                   {
-                                     for (unsigned int q = 0; q < F.size(); ++q)
-                                     {
-                                       const std::size_t point = points.cell * F.size() + q;
-                                       stresses[point] +=
-                                         law_->stress(F[q], &history_.overstress[point * law_->n_variables()]);
-                                     }
-                                   });
-                   });
+  const auto present = [&](const std::size_t point, const Tensor<2, 2> &)
+  { return &history_.overstress[point * law_->n_variables()]; };
+  continuum::add_stresses(sheet_, u, remembered(*law_, {}, Order::first, present), stresses);
 }
 
 void MemoryForces::add_tangent(const double duration, const Vector &u, const AffineConstraints<double> &constraints,
@@ -176,14 +126,8 @@ void MemoryForces::add_tangent(const double duration, const Vector &u, const Aff
 {
   if (law_ == nullptr)
     return;
-  const FibreMemory::Step step = law_->step(duration);
   AtPoint state;
-  add_tangent_of(sheet_, *law_, step, u, constraints, matrix,
-                 [&](const std::size_t point, const Tensor<2, 2> &F)
-                 {
-                   advance(step, point, F, state);
-                   return state.overstress.data();
-                 });
+  continuum::add_tangent(sheet_, u, after(duration, Order::second, state), constraints, matrix);
 }
 
 void MemoryForces::add_relaxed_tangent(const Sheet &sheet, const FibreMemory *law, const double duration,
@@ -193,8 +137,10 @@ void MemoryForces::add_relaxed_tangent(const Sheet &sheet, const FibreMemory *la
   if (law == nullptr)
     return;
   const std::vector<double> relaxed(law->n_variables(), 0.);
-  add_tangent_of(sheet, *law, law->step(duration), u, constraints, matrix,
-                 [&](std::size_t, const Tensor<2, 2> &) { return relaxed.data(); });
+  continuum::add_tangent(sheet, u,
+                         remembered(*law, law->step(duration), Order::second,
+                                    [&](std::size_t, const Tensor<2, 2> &) { return relaxed.data(); }),
+                         constraints, matrix);
 }
 
 MemoryForces::History MemoryForces::advanced(const double duration, const Vector &u,
@@ -205,34 +151,25 @@ MemoryForces::History MemoryForces::advanced(const double duration, const Vector
     return next;
   const std::size_t n = law_->n_numbers();
   std::vector<double> sums(2 * n, 0.); // stored, dissipated
-  run_collectively(
-    sheet_.communicator(),
-    [&]
-    {
-      const FibreMemory::Step step = law_->step(duration);
-      AtPoint state;
-      std::vector<double> density(2 * n);
-      next.overstress.reserve(history_.overstress.size());
-      next.stretch.reserve(history_.stretch.size());
-      for_each_cell(sheet_, u,
-                    [&](const auto &points, const auto &F)
-                    {
-                      for (unsigned int q = 0; q < F.size(); ++q)
-                      {
-                        const std::size_t point = points.cell * F.size() + q;
-                        advance(step, point, F[q], state);
-                        density.assign(2 * n, 0.);
-                        law_->add_stored(state.overstress.data(), density.data());
-                        law_->add_dissipated(step, stretch_before(point), state.stretch.data(),
-                                             history_.overstress.data() + point * law_->n_variables(),
-                                             density.data() + n);
-                        for (std::size_t i = 0; i < 2 * n; ++i)
-                          sums[i] += density[i] * points.values.JxW(q);
-                        next.overstress.insert(next.overstress.end(), state.overstress.begin(), state.overstress.end());
-                        next.stretch.insert(next.stretch.end(), state.stretch.begin(), state.stretch.end());
-                      }
-                    });
-    });
+  const FibreMemory::Step step = law_->step(duration);
+  AtPoint state;
+  std::vector<double> density(2 * n);
+  next.overstress.reserve(history_.overstress.size());
+  next.stretch.reserve(history_.stretch.size());
+  for_each_point(sheet_, u,
+                 [&](const CellPoint &point)
+                 {
+                   advance(step, point.number, deformation_gradient(point.u), state);
+                   density.assign(2 * n, 0.);
+                   law_->add_stored(state.overstress.data(), density.data());
+                   law_->add_dissipated(step, stretch_before(point.number), state.stretch.data(),
+                                        history_.overstress.data() + point.number * law_->n_variables(),
+                                        density.data() + n);
+                   for (std::size_t i = 0; i < 2 * n; ++i)
+                     sums[i] += density[i] * point.JxW;
+                   next.overstress.insert(next.overstress.end(), state.overstress.begin(), state.overstress.end());
+                   next.stretch.insert(next.stretch.end(), state.stretch.begin(), state.stretch.end());
+                 });
   dealii::Utilities::MPI::sum(sums, sheet_.communicator(), sums);
   energies.resize(n);
   for (std::size_t i = 0; i < n; ++i)

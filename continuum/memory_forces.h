@@ -1,6 +1,7 @@
 #pragma once
 
 #include "continuum/cell_order.h"
+#include "continuum/element_integrals.h"
 #include "continuum/fibre_memory.h"
 #include "continuum/sheet.h"
 
@@ -105,6 +106,7 @@ private:
 
   std::size_t n_points_per_cell() const;
   const double *stretch_before(std::size_t point) const;
+  PointForces after(double duration, Order order, AtPoint &state) const;
   void advance(const FibreMemory::Step &step, std::size_t point, const dealii::Tensor<2, 2> &F, AtPoint &state) const;
 
   const Sheet &sheet_;

@@ -8,15 +8,6 @@ namespace latcon::continuum
 {
 namespace
 {
-Tensor<2, 2> deformation_gradient(const FieldDerivatives &u)
-{
-  Tensor<2, 2> F;
-  for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int J = 0; J < 2; ++J)
-      F[i][J] = (i == J ? 1. : 0.) + u[i][J];
-  return F;
-}
-
 Tensor<3, 2> second_gradient(const FieldDerivatives &u)
 {
   Tensor<3, 2> G;
@@ -35,15 +26,6 @@ constexpr unsigned int second_index[n_derivatives] = {0, 0, 0, 1, 1};
 constexpr double multiplicity[n_derivatives] = {1., 1., 1., 1., 2.};
 
 // Adds factor * tensor of a law to the second derivatives on side s.
-void add_F_F(PointIntegrand &d, const unsigned int s, const Tensor<4, 2> &T, const double factor)
-{
-  for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int J = 0; J < 2; ++J)
-      for (unsigned int k = 0; k < 2; ++k)
-        for (unsigned int L = 0; L < 2; ++L)
-          d.second[i][k][s][J][s][L] += factor * T[i][J][k][L];
-}
-
 void add_G_F(PointIntegrand &d, const unsigned int s, const Tensor<5, 2> &T, const double factor)
 {
   for (unsigned int i = 0; i < 2; ++i)
@@ -93,6 +75,31 @@ void clear(PointIntegrand &density, const Order order)
     std::memset(density.second, 0, sizeof(density.second));
 }
 
+Tensor<2, 2> deformation_gradient(const FieldDerivatives &u)
+{
+  Tensor<2, 2> F;
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      F[i][J] = (i == J ? 1. : 0.) + u[i][J];
+  return F;
+}
+
+void add_stress(PointIntegrand &d, const Tensor<2, 2> &P)
+{
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      d.first[i][0][J] += P[i][J];
+}
+
+void add_F_F(PointIntegrand &d, const unsigned int s, const Tensor<4, 2> &T, const double factor)
+{
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      for (unsigned int k = 0; k < 2; ++k)
+        for (unsigned int L = 0; L < 2; ++L)
+          d.second[i][k][s][J][s][L] += factor * T[i][J][k][L];
+}
+
 void cell_density(const Constitution &laws, const bool has_gradient, const FieldDerivatives &u, const Order order,
                   PointIntegrand &d)
 {
@@ -113,9 +120,7 @@ void cell_density(const Constitution &laws, const bool has_gradient, const Field
       for (unsigned int c = n_first; c < n_derivatives; ++c)
         d.first[i][0][c] = multiplicity[c] * Q[i][first_index[c]][second_index[c]];
   }
-  for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int J = 0; J < 2; ++J)
-      d.first[i][0][J] = P[i][J];
+  add_stress(d, P);
   if (order == Order::first)
     return;
 

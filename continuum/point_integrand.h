@@ -35,6 +35,13 @@ enum class Order
 /// Sets the density and its derivatives up to `order` to zero.
 void clear(PointIntegrand &density, Order order);
 
+/// Returns F_iJ = delta_iJ + u_i,J of a displacement.
+dealii::Tensor<2, 2> deformation_gradient(const FieldDerivatives &u);
+
+/// Adds a first Piola stress P, and factor * T for its derivative T = dP/dF, as densities of one side of a cell or face.
+void add_stress(PointIntegrand &density, const dealii::Tensor<2, 2> &P);
+void add_F_F(PointIntegrand &density, unsigned int side, const dealii::Tensor<4, 2> &T, double factor);
+
 /// Computes W(F) + W_g(F, G) [J/m^3] in a cell, eq. (C.28), as a density of side 0. `density` must have been cleared.
 void cell_density(const Constitution &laws, bool has_gradient, const FieldDerivatives &u, Order order,
                   PointIntegrand &density);

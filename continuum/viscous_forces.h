@@ -37,6 +37,5 @@ public:
 private:
   const Sheet &sheet_;
   const Viscosity *viscosity_;
-  const GradientViscosity *gradient_; // nullptr: none
 };
 } // namespace latcon::continuum
