@@ -19,9 +19,7 @@ public:
   /// vector to 1e-12, a weight is not positive, or a potential has no positive stiffness at l = 1.
   explicit CauchyBorn(std::vector<FibreFamily> families);
 
-  double energy(const dealii::Tensor<2, 2> &F) const override;
-  dealii::Tensor<2, 2> first_piola_stress(const dealii::Tensor<2, 2> &F) const override;
-  dealii::Tensor<4, 2> tangent(const dealii::Tensor<2, 2> &F) const override;
+  Response evaluate(const dealii::Tensor<2, 2> &F, Order order) const override;
   double thickness_stretch(const dealii::Tensor<2, 2> &F) const override;
 
   const std::vector<FibreFamily> &families() const { return families_; }

@@ -41,18 +41,19 @@ struct CellPoint
 /// Forces that no energy of u gives, those of viscosity and memory.
 struct PointForces
 {
-  /// Adds the density at a point, as cell_density() does for an energy: dissipated power [W/m^3] as `value`, stresses as
-  /// `first`, their derivatives by u as `second`. The density has been cleared.
+  /// Adds the density at a point, as cell_density() does for an energy: dissipated power [W/m^3] as `value`, stresses
+  /// as `first`, their derivatives by u as `second`. The density has been cleared.
   std::function<void(const CellPoint &, PointIntegrand &)> density;
-  bool is_symmetric = false;                 ///< whether that derivative is symmetric
-  const Sheet::Vector *velocity = nullptr;   ///< [m/s], with ghost entries; nullptr: none
-  const GradientViscosity *faces = nullptr;  ///< law of the densities of faces and second derivatives; nullptr: none
-  double load_rate = 0.;                     ///< rate of the load factor [1/s], for faces
-  double rate_by_displacement = 0.;          ///< dv/du [1/s], for faces and Order::second
+  bool is_symmetric = false;                ///< whether that derivative is symmetric
+  const Sheet::Vector *velocity = nullptr;  ///< [m/s], with ghost entries; nullptr: none
+  const GradientViscosity *faces = nullptr; ///< law of the densities of faces and second derivatives; nullptr: none
+  double load_rate = 0.;                    ///< rate of the load factor [1/s], for faces
+  double rate_by_displacement = 0.;         ///< dv/du [1/s], for faces and Order::second
 };
 
-/// Calls add(contribution) likewise for `forces` at the state `u`: dissipated power as energy, forces as residual, their
-/// derivative by u as tangent. A sheet with densities of faces must have a gradient law, whose penalty factor is theirs.
+/// Calls add(contribution) likewise for `forces` at the state `u`: dissipated power as energy, forces as residual,
+/// their derivative by u as tangent. A sheet with densities of faces must have a gradient law, whose penalty factor is
+/// theirs.
 void integrate(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, Order order,
                const std::function<void(const Contribution &)> &add);
 

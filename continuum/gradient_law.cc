@@ -9,21 +9,6 @@ using dealii::Tensor;
 
 namespace latcon::continuum
 {
-double GradientLaw::energy(const Tensor<2, 2> &F, const Gradient &G) const
-{
-  return 0.5 * form(F, G, G);
-}
-
-Tensor<2, 2> GradientLaw::first_piola_stress(const Tensor<2, 2> &F, const Gradient &G) const
-{
-  return 0.5 * form_by_F(F, G, G);
-}
-
-Tensor<4, 2> GradientLaw::tangent(const Tensor<2, 2> &F, const Gradient &G) const
-{
-  return 0.5 * form_by_FF(F, G, G);
-}
-
 GradientLaw::Gradient GradientLaw::unit_jump(const unsigned int i, const Tensor<2, 2> &NN)
 {
   Gradient Z;
@@ -36,7 +21,7 @@ double GradientLaw::stiffness_across(const Tensor<2, 2> &F, const Tensor<1, 2> &
   const Tensor<2, 2> NN = outer_product(N, N);
   double sum = 0.;
   for (unsigned int i = 0; i < 2; ++i)
-    sum += form(F, unit_jump(i, NN), unit_jump(i, NN));
+    sum += evaluate(F, unit_jump(i, NN), unit_jump(i, NN), Order::value).value;
   return sum;
 }
 

@@ -14,12 +14,8 @@ public:
   IsotropicGradient(double shear_modulus, double length);
 
   bool is_zero() const override { return modulus_ == 0.; }
-  double form(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override;
-  dealii::Tensor<2, 2> form_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override;
-  dealii::Tensor<4, 2> form_by_FF(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override;
-  Gradient double_stress(const dealii::Tensor<2, 2> &F, const Gradient &G) const override;
-  dealii::Tensor<5, 2> double_stress_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G) const override;
-  dealii::Tensor<6, 2> double_stress_by_G(const dealii::Tensor<2, 2> &F) const override;
+  GradientForm evaluate(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z,
+                        Order order) const override;
 
   double modulus() const { return modulus_; } ///< c_g [Pa m^2]
 

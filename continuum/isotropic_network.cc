@@ -1,6 +1,7 @@
 #include "continuum/isotropic_network.h"
 
 #include "continuum/errors.h"
+#include "continuum/plane_invariants.h"
 
 using dealii::Tensor;
 
@@ -53,7 +54,7 @@ IsotropicNetwork::IsotropicNetwork(const std::vector<FibreFamily> &families)
     sampled_.emplace(std::move(sampled));
 }
 
-InvariantFunction IsotropicNetwork::density(const Tensor<2, 2> &F) const
+Response IsotropicNetwork::evaluate(const Tensor<2, 2> &F, const Order order) const
 {
   const double J = checked_determinant(F);
   const double I = F.norm_square();
@@ -65,24 +66,15 @@ InvariantFunction IsotropicNetwork::density(const Tensor<2, 2> &F) const
   add(W, b_, {0.5 * r - 1.5, 0., -0.5 * r * r, 0., 0., r * r * r});
   add(W, b_ - e_, mean.stretch);
   add(W, e_, {0.25 * I + 0.5, 0.25, 0., 0., 0., 0.});
-  return W;
-}
-
-double IsotropicNetwork::energy(const Tensor<2, 2> &F) const
-{
-  return density(F).value + (sampled_ ? sampled_->energy(F) : 0.);
-}
-
-Tensor<2, 2> IsotropicNetwork::first_piola_stress(const Tensor<2, 2> &F) const
-{
-  Tensor<2, 2> P = continuum::first_piola_stress(density(F), F);
-  return sampled_ ? P += sampled_->first_piola_stress(F) : P;
-}
-
-Tensor<4, 2> IsotropicNetwork::tangent(const Tensor<2, 2> &F) const
-{
-  Tensor<4, 2> T = continuum::tangent(density(F), F);
-  return sampled_ ? T += sampled_->tangent(F) : T;
+  Response result = response(W, F, order);
+  if (sampled_)
+  {
+    const Response sum = sampled_->evaluate(F, order);
+    result.energy += sum.energy;
+    result.first_piola += sum.first_piola;
+    result.tangent += sum.tangent;
+  }
+  return result;
 }
 
 double IsotropicNetwork::thickness_stretch(const Tensor<2, 2> &F) const

@@ -2,8 +2,6 @@
 
 #include "continuum/cauchy_born.h"
 #include "continuum/fibres.h"
-#include "continuum/material.h"
-#include "continuum/plane_invariants.h"
 
 #include <optional>
 #include <vector>
@@ -25,16 +23,12 @@ public:
   /// Creates the law from `families`, whose directions are ignored. Throws InvalidMaterial as CauchyBorn does.
   explicit IsotropicNetwork(const std::vector<FibreFamily> &families);
 
-  double energy(const dealii::Tensor<2, 2> &F) const override;
-  dealii::Tensor<2, 2> first_piola_stress(const dealii::Tensor<2, 2> &F) const override;
-  dealii::Tensor<4, 2> tangent(const dealii::Tensor<2, 2> &F) const override;
+  Response evaluate(const dealii::Tensor<2, 2> &F, Order order) const override;
   double thickness_stretch(const dealii::Tensor<2, 2> &F) const override;
 
   static constexpr unsigned int n_directions = 96;
 
 private:
-  InvariantFunction density(const dealii::Tensor<2, 2> &F) const;
-
   // Sums of weight times constant over the families [Pa]: an energy is linear in its constants.
   double a_ = 0.;
   double b_ = 0.;

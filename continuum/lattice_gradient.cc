@@ -61,6 +61,23 @@ std::array<double, n_pairs> pairs(const Tensor<2, 2> &A)
   return {A[0][0], A[1][1], A[0][1]};
 }
 
+// Adds the derivative by F of the double stress factor dh(a, b)/db (x) S of a bond along N.
+void add_stress_by_F(const BondStiffness &h, const Tensor<1, 2> &f, const Tensor<1, 2> &a, const double factor,
+                     const std::array<double, n_pairs> &S, const Tensor<1, 2> &N, double sum[2][n_pairs][2][2])
+{
+  const double fa = f * a;
+  Tensor<2, 2> by_f =
+    h.across[1] * outer_product(a, f) + h.coupling[0] * outer_product(f, a) + h.coupling[1] * fa * outer_product(f, f);
+  for (unsigned int i = 0; i < 2; ++i)
+    by_f[i][i] += h.coupling[0] * fa;
+  by_f *= factor;
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int JK = 0; JK < n_pairs; ++JK)
+      for (unsigned int l = 0; l < 2; ++l)
+        for (unsigned int M = 0; M < 2; ++M)
+          sum[i][JK][l][M] += by_f[i][l] * S[JK] * N[M];
+}
+
 Tensor<1, 2> selected(const GradientLaw::Gradient &G, const Tensor<2, 2> &selector)
 {
   Tensor<1, 2> a;
@@ -110,163 +127,72 @@ LatticeGradient::LatticeGradient(const std::vector<BondFamily> &families, const 
   }
 }
 
-double LatticeGradient::form(const Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const
+GradientForm LatticeGradient::evaluate(const Tensor<2, 2> &F, const Gradient &G, const Gradient &Z,
+                                       const Order order) const
 {
   checked_determinant(F);
-  double B = 0.;
-  for (const Family &family : families_)
-  {
-    const Tensor<1, 2> f = F * family.fibre.direction;
-    const BondStiffness h = stiffness(family.fibre.potential, f.norm());
-    for (unsigned int term = 0; term < 2; ++term)
-    {
-      const Tensor<1, 2> a = selected(G, family.selector[term]);
-      const Tensor<1, 2> b = selected(Z, family.selector[term]);
-      B += family.factor[term] * (h.across[0] * (a * b) + h.coupling[0] * (f * a) * (f * b));
-    }
-  }
-  return B;
-}
-
-Tensor<2, 2> LatticeGradient::form_by_F(const Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const
-{
-  checked_determinant(F);
-  Tensor<2, 2> result;
-  for (const Family &family : families_)
-  {
-    const Tensor<1, 2> f = F * family.fibre.direction;
-    const BondStiffness h = stiffness(family.fibre.potential, f.norm());
-    Tensor<1, 2> by_f;
-    for (unsigned int term = 0; term < 2; ++term)
-    {
-      const Tensor<1, 2> a = selected(G, family.selector[term]);
-      const Tensor<1, 2> b = selected(Z, family.selector[term]);
-      by_f += family.factor[term] * ((h.across[1] * (a * b) + h.coupling[1] * (f * a) * (f * b)) * f +
-                                     h.coupling[0] * ((f * b) * a + (f * a) * b));
-    }
-    result += outer_product(by_f, family.fibre.direction);
-  }
-  return result;
-}
-
-Tensor<4, 2> LatticeGradient::form_by_FF(const Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const
-{
-  checked_determinant(F);
-  Tensor<4, 2> result;
+  GradientForm B;
+  double by_GF[2][n_pairs][2][2] = {}, by_ZF[2][n_pairs][2][2] = {}; // [i][JK][l][M]
+  double by_GZ[n_pairs][n_pairs][n_pairs] = {};                      // [il][JK][MN]
   for (const Family &family : families_)
   {
     const Tensor<1, 2> &N = family.fibre.direction;
     const Tensor<1, 2> f = F * N;
     const BondStiffness h = stiffness(family.fibre.potential, f.norm());
+    Tensor<2, 2> by_ab = h.coupling[0] * outer_product(f, f); // second derivative of h by a and b
+    for (unsigned int i = 0; i < 2; ++i)
+      by_ab[i][i] += h.across[0];
+    Tensor<1, 2> by_f;
     Tensor<2, 2> by_ff;
     for (unsigned int term = 0; term < 2; ++term)
     {
-      const Tensor<1, 2> a = selected(G, family.selector[term]);
-      const Tensor<1, 2> b = selected(Z, family.selector[term]);
-      const double ab = a * b;
-      const double fa_fb = (f * a) * (f * b);
-      const Tensor<1, 2> mixed = (f * b) * a + (f * a) * b;
-      Tensor<2, 2> h_by_ff = (h.across[2] * ab + h.coupling[2] * fa_fb) * outer_product(f, f) +
+      const double factor = family.factor[term];
+      const Tensor<2, 2> &selector = family.selector[term];
+      const Tensor<1, 2> a = selected(G, selector), b = selected(Z, selector);
+      const double ab = a * b, fa = f * a, fb = f * b;
+      B.value += factor * (h.across[0] * ab + h.coupling[0] * fa * fb);
+      if (order == Order::value)
+        continue;
+      const Tensor<1, 2> mixed = fb * a + fa * b;
+      const double by_s = h.across[1] * ab + h.coupling[1] * fa * fb; // derivative of h by s = |f|^2/2
+      by_f += factor * (by_s * f + h.coupling[0] * mixed);
+      B.by_G += factor * outer_product(h.across[0] * b + h.coupling[0] * fb * f, selector);
+      B.by_Z += factor * outer_product(h.across[0] * a + h.coupling[0] * fa * f, selector);
+      if (order == Order::first)
+        continue;
+      Tensor<2, 2> h_by_ff = (h.across[2] * ab + h.coupling[2] * (fa * fb)) * outer_product(f, f) +
                              h.coupling[1] * (outer_product(f, mixed) + outer_product(mixed, f)) +
                              h.coupling[0] * (outer_product(a, b) + outer_product(b, a));
       for (unsigned int i = 0; i < 2; ++i)
-        h_by_ff[i][i] += h.across[1] * ab + h.coupling[1] * fa_fb;
-      by_ff += family.factor[term] * h_by_ff;
+        h_by_ff[i][i] += by_s;
+      by_ff += factor * h_by_ff;
+      const auto S = pairs(selector);
+      add_stress_by_F(h, f, b, factor, S, N, by_GF);
+      add_stress_by_F(h, f, a, factor, S, N, by_ZF);
+      const auto H = pairs(by_ab);
+      for (unsigned int il = 0; il < n_pairs; ++il)
+        for (unsigned int JK = 0; JK < n_pairs; ++JK)
+          for (unsigned int MN = 0; MN < n_pairs; ++MN)
+            by_GZ[il][JK][MN] += factor * H[il] * S[JK] * S[MN];
     }
+    B.by_F += outer_product(by_f, N);
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int J = 0; J < 2; ++J)
         for (unsigned int k = 0; k < 2; ++k)
           for (unsigned int L = 0; L < 2; ++L)
-            result[i][J][k][L] += by_ff[i][k] * N[J] * N[L];
+            B.by_FF[i][J][k][L] += by_ff[i][k] * N[J] * N[L];
   }
-  return result;
-}
-
-GradientLaw::Gradient LatticeGradient::double_stress(const Tensor<2, 2> &F, const Gradient &G) const
-{
-  checked_determinant(F);
-  Gradient Q;
-  for (const Family &family : families_)
-  {
-    const Tensor<1, 2> f = F * family.fibre.direction;
-    const BondStiffness h = stiffness(family.fibre.potential, f.norm());
-    for (unsigned int term = 0; term < 2; ++term)
-    {
-      const Tensor<1, 2> a = selected(G, family.selector[term]);
-      Q += family.factor[term] * outer_product(h.across[0] * a + h.coupling[0] * (f * a) * f, family.selector[term]);
-    }
-  }
-  return Q;
-}
-
-Tensor<5, 2> LatticeGradient::double_stress_by_F(const Tensor<2, 2> &F, const Gradient &G) const
-{
-  checked_determinant(F);
-  double sum[2][n_pairs][2][2] = {}; // [i][JK][l][M]
-  for (const Family &family : families_)
-  {
-    const Tensor<1, 2> &N = family.fibre.direction;
-    const Tensor<1, 2> f = F * N;
-    const BondStiffness h = stiffness(family.fibre.potential, f.norm());
-    for (unsigned int term = 0; term < 2; ++term)
-    {
-      const Tensor<1, 2> a = selected(G, family.selector[term]);
-      const double fa = f * a;
-      Tensor<2, 2> by_f = h.across[1] * outer_product(a, f) + h.coupling[0] * outer_product(f, a) +
-                          h.coupling[1] * fa * outer_product(f, f);
-      for (unsigned int i = 0; i < 2; ++i)
-        by_f[i][i] += h.coupling[0] * fa;
-      by_f *= family.factor[term];
-      const auto S = pairs(family.selector[term]);
-      for (unsigned int i = 0; i < 2; ++i)
-        for (unsigned int JK = 0; JK < n_pairs; ++JK)
-          for (unsigned int l = 0; l < 2; ++l)
-            for (unsigned int M = 0; M < 2; ++M)
-              sum[i][JK][l][M] += by_f[i][l] * S[JK] * N[M];
-    }
-  }
-  Tensor<5, 2> result;
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int J = 0; J < 2; ++J)
       for (unsigned int K = 0; K < 2; ++K)
         for (unsigned int l = 0; l < 2; ++l)
           for (unsigned int M = 0; M < 2; ++M)
-            result[i][J][K][l][M] = sum[i][pair_of[J][K]][l][M];
-  return result;
-}
-
-Tensor<6, 2> LatticeGradient::double_stress_by_G(const Tensor<2, 2> &F) const
-{
-  checked_determinant(F);
-  double sum[n_pairs][n_pairs][n_pairs] = {}; // [il][JK][MN]
-  for (const Family &family : families_)
-  {
-    const Tensor<1, 2> f = F * family.fibre.direction;
-    const BondStiffness h = stiffness(family.fibre.potential, f.norm());
-    Tensor<2, 2> by_a = h.coupling[0] * outer_product(f, f);
-    for (unsigned int i = 0; i < 2; ++i)
-      by_a[i][i] += h.across[0];
-    const auto H = pairs(by_a);
-    for (unsigned int term = 0; term < 2; ++term)
-    {
-      const auto S = pairs(family.selector[term]);
-      for (unsigned int il = 0; il < n_pairs; ++il)
-        for (unsigned int JK = 0; JK < n_pairs; ++JK)
-        {
-          const double factor = family.factor[term] * H[il] * S[JK];
-          for (unsigned int MN = 0; MN < n_pairs; ++MN)
-            sum[il][JK][MN] += factor * S[MN];
-        }
-    }
-  }
-  Tensor<6, 2> result;
-  for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int J = 0; J < 2; ++J)
-      for (unsigned int K = 0; K < 2; ++K)
-        for (unsigned int l = 0; l < 2; ++l)
-          for (unsigned int M = 0; M < 2; ++M)
+          {
+            B.by_GF[i][J][K][l][M] = by_GF[i][pair_of[J][K]][l][M];
+            B.by_ZF[i][J][K][l][M] = by_ZF[i][pair_of[J][K]][l][M];
             for (unsigned int N = 0; N < 2; ++N)
-              result[i][J][K][l][M][N] = sum[pair_of[i][l]][pair_of[J][K]][pair_of[M][N]];
-  return result;
+              B.by_GZ[i][J][K][l][M][N] = by_GZ[pair_of[i][l]][pair_of[J][K]][pair_of[M][N]];
+          }
+  return B;
 }
 } // namespace latcon::continuum

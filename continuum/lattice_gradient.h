@@ -36,12 +36,8 @@ public:
   /// Returns the smallest l_d [m] for which the energy is positive: the longest bond over sqrt(12).
   static double smallest_length(const std::vector<BondFamily> &families);
 
-  double form(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override;
-  dealii::Tensor<2, 2> form_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override;
-  dealii::Tensor<4, 2> form_by_FF(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override;
-  Gradient double_stress(const dealii::Tensor<2, 2> &F, const Gradient &G) const override;
-  dealii::Tensor<5, 2> double_stress_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G) const override;
-  dealii::Tensor<6, 2> double_stress_by_G(const dealii::Tensor<2, 2> &F) const override;
+  GradientForm evaluate(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z,
+                        Order order) const override;
 
 private:
   // A family contributes two terms (1/2) c h(a, a) with a_i = G_iJK S_JK, which differ in S and its factor.

@@ -4,6 +4,22 @@
 
 namespace latcon::continuum
 {
+/// Highest derivative to compute.
+enum class Order
+{
+  value = 0,
+  first = 1,
+  second = 2
+};
+
+/// Energy of a law at a point and its derivatives by F up to an order; those beyond it are zero.
+struct Response
+{
+  double energy = 0.;               ///< W [Pa = J/m^3], zero at F = I
+  dealii::Tensor<2, 2> first_piola; ///< P_iJ = dW/dF_iJ [Pa]: force per reference length and unit reference thickness
+  dealii::Tensor<4, 2> tangent;     ///< dP_iJ/dF_kL [Pa], index order [i][J][k][L]; major symmetric
+};
+
 /// Hyperelastic law of a sheet: energy, stress and tangent. Laws are const and stateless.
 ///
 /// F_iJ = dx_i/dX_J is the in-plane deformation gradient (current index first, reference index second). Densities are
@@ -17,14 +33,15 @@ class Material
 public:
   virtual ~Material() = default;
 
-  /// W(F) [Pa = J/m^3], zero at F = I.
-  virtual double energy(const dealii::Tensor<2, 2> &F) const = 0;
+  /// Returns the energy and its derivatives up to `order`.
+  virtual Response evaluate(const dealii::Tensor<2, 2> &F, Order order) const = 0;
 
-  /// First Piola stress P_iJ = dW/dF_iJ [Pa]: force per reference length and unit reference thickness.
-  virtual dealii::Tensor<2, 2> first_piola_stress(const dealii::Tensor<2, 2> &F) const = 0;
-
-  /// dP_iJ/dF_kL [Pa], index order [i][J][k][L]; major symmetric.
-  virtual dealii::Tensor<4, 2> tangent(const dealii::Tensor<2, 2> &F) const = 0;
+  double energy(const dealii::Tensor<2, 2> &F) const { return evaluate(F, Order::value).energy; }
+  dealii::Tensor<2, 2> first_piola_stress(const dealii::Tensor<2, 2> &F) const
+  {
+    return evaluate(F, Order::first).first_piola;
+  }
+  dealii::Tensor<4, 2> tangent(const dealii::Tensor<2, 2> &F) const { return evaluate(F, Order::second).tangent; }
 
   /// Thickness stretch F_33 [-], current over reference thickness; 1 for laws that do not model the thickness.
   virtual double thickness_stretch(const dealii::Tensor<2, 2> &F) const = 0;

@@ -46,17 +46,6 @@ Invariants invariants(const MooneyRivlin::Constants &m, const Tensor<2, 2> &F)
   s.t = (m.kappa * s.j + std::sqrt(discriminant)) / (2. * s.A);
   return s;
 }
-
-// Partial derivatives of the energy at fixed thickness, eq. (C.7).
-double energy_by_F_squared(const MooneyRivlin::Constants &m, const Invariants &s)
-{
-  return m.c1 + m.c2 * s.t * s.t;
-}
-
-double energy_by_j(const MooneyRivlin::Constants &m, const Invariants &s)
-{
-  return -s.B / s.j + 2. * m.c2 * s.j + m.kappa * s.t * (s.j * s.t - 1.);
-}
 } // namespace
 
 MooneyRivlin::Constants MooneyRivlin::Constants::with_equal_lame_constants(const double shear_modulus,
@@ -82,7 +71,7 @@ MooneyRivlin::MooneyRivlin(const Constants &constants) : constants_(constants)
       "Mooney-Rivlin needs 4 c1 + 8 c2 + kappa > 0 for the thickness of the unloaded sheet to be stable");
 }
 
-double MooneyRivlin::energy(const Tensor<2, 2> &F) const
+Response MooneyRivlin::evaluate(const Tensor<2, 2> &F, const Order order) const
 {
   const auto &[c1, c2, kappa] = constants_;
   const Invariants s = invariants(constants_, F);
@@ -90,29 +79,15 @@ double MooneyRivlin::energy(const Tensor<2, 2> &F) const
   const double log_J = std::log(J);
   const double I1 = s.F_squared + s.t * s.t;
   const double I2 = s.j * s.j + s.t * s.t * s.F_squared;
-  return c1 * (I1 - 3. - 2. * log_J) + c2 * (I2 - 3. - 4. * log_J) + 0.5 * kappa * (J - 1.) * (J - 1.);
-}
-
-Tensor<2, 2> MooneyRivlin::first_piola_stress(const Tensor<2, 2> &F) const
-{
-  const Invariants s = invariants(constants_, F);
-  return continuum::first_piola_stress({0., energy_by_F_squared(constants_, s), energy_by_j(constants_, s), 0., 0., 0.},
-                                       F);
-}
-
-Tensor<4, 2> MooneyRivlin::tangent(const Tensor<2, 2> &F) const
-{
-  const auto &[c1, c2, kappa] = constants_;
-  const Invariants s = invariants(constants_, F);
-
-  // Second derivatives with the thickness eliminated, eq. (C.8).
+  const double energy = c1 * (I1 - 3. - 2. * log_J) + c2 * (I2 - 3. - 4. * log_J) + 0.5 * kappa * (J - 1.) * (J - 1.);
+  // First derivatives at fixed thickness, eq. (C.7), and second ones with the thickness eliminated, eq. (C.8).
+  const double by_F_squared = c1 + c2 * s.t * s.t;
+  const double by_j = -s.B / s.j + 2. * c2 * s.j + kappa * s.t * (s.j * s.t - 1.);
   const double tt = s.A + s.B / (s.t * s.t);
   const double ft = 2. * c2 * s.t;
   const double jt = kappa * (2. * s.j * s.t - 1.);
   const double jj = s.B / (s.j * s.j) + 2. * c2 + kappa * s.t * s.t;
-  return continuum::tangent({0., energy_by_F_squared(constants_, s), energy_by_j(constants_, s), -ft * ft / tt,
-                             -ft * jt / tt, jj - jt * jt / tt},
-                            F);
+  return response({energy, by_F_squared, by_j, -ft * ft / tt, -ft * jt / tt, jj - jt * jt / tt}, F, order);
 }
 
 double MooneyRivlin::thickness_stretch(const Tensor<2, 2> &F) const

@@ -32,9 +32,7 @@ public:
   /// c1 + 8 c2 + kappa > 0.
   explicit MooneyRivlin(const Constants &constants);
 
-  double energy(const dealii::Tensor<2, 2> &F) const override;
-  dealii::Tensor<2, 2> first_piola_stress(const dealii::Tensor<2, 2> &F) const override;
-  dealii::Tensor<4, 2> tangent(const dealii::Tensor<2, 2> &F) const override;
+  Response evaluate(const dealii::Tensor<2, 2> &F, Order order) const override;
 
   /// Thickness stretch F_33 [-], the stable root of S_33 = 0 (theory-continuum.md, eq. (C.6)).
   double thickness_stretch(const dealii::Tensor<2, 2> &F) const override;

@@ -59,15 +59,16 @@ Tensor<2, 2> cofactor(const Tensor<2, 2> &F)
   return cof;
 }
 
-Tensor<2, 2> first_piola_stress(const InvariantFunction &W, const Tensor<2, 2> &F)
+Response response(const InvariantFunction &W, const Tensor<2, 2> &F, const Order order)
 {
-  return 2. * W.by_I * F + W.by_J * cofactor(F);
-}
-
-Tensor<4, 2> tangent(const InvariantFunction &W, const Tensor<2, 2> &F)
-{
+  Response result;
+  result.energy = W.value;
+  if (order == Order::value)
+    return result;
   const Tensor<2, 2> cof = cofactor(F);
-  Tensor<4, 2> T;
+  result.first_piola = 2. * W.by_I * F + W.by_J * cof;
+  if (order == Order::first)
+    return result;
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int J = 0; J < 2; ++J)
       for (unsigned int k = 0; k < 2; ++k)
@@ -75,11 +76,11 @@ Tensor<4, 2> tangent(const InvariantFunction &W, const Tensor<2, 2> &F)
         {
           // The cofactor is linear in F: d cof_iJ / dF_kL = eps_ik eps_JL.
           const double permutation = i == k || J == L ? 0. : (i == J ? 1. : -1.);
-          T[i][J][k][L] = (i == k && J == L ? 2. * W.by_I : 0.) + W.by_J * permutation +
-                          4. * W.by_II * F[i][J] * F[k][L] +
-                          2. * W.by_IJ * (F[i][J] * cof[k][L] + cof[i][J] * F[k][L]) + W.by_JJ * cof[i][J] * cof[k][L];
+          result.tangent[i][J][k][L] =
+            (i == k && J == L ? 2. * W.by_I : 0.) + W.by_J * permutation + 4. * W.by_II * F[i][J] * F[k][L] +
+            2. * W.by_IJ * (F[i][J] * cof[k][L] + cof[i][J] * F[k][L]) + W.by_JJ * cof[i][J] * cof[k][L];
         }
-  return T;
+  return result;
 }
 
 StretchMeans stretch_means(const double I, const double J)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <deal.II/base/tensor.h>
+#include "continuum/material.h"
 
 namespace latcon::continuum
 {
@@ -19,12 +19,9 @@ void add(InvariantFunction &sum, double factor, const InvariantFunction &term);
 /// Returns the cofactor cof F_iJ = d det F / dF_iJ [-].
 dealii::Tensor<2, 2> cofactor(const dealii::Tensor<2, 2> &F);
 
-/// Returns the first Piola stress P_iJ [Pa] of an energy W(I, J) [Pa] at F (theory-continuum.md, eq. (C.55)).
-dealii::Tensor<2, 2> first_piola_stress(const InvariantFunction &W, const dealii::Tensor<2, 2> &F);
-
-/// Returns the tangent dP_iJ/dF_kL [Pa] of an energy W(I, J) [Pa] at F, index order [i][J][k][L] (theory-continuum.md,
-/// eq. (C.56)).
-dealii::Tensor<4, 2> tangent(const InvariantFunction &W, const dealii::Tensor<2, 2> &F);
+/// Returns an energy W(I, J) [Pa] at F with its derivatives by F up to `order` (theory-continuum.md, eqs. (C.55),
+/// (C.56)).
+Response response(const InvariantFunction &W, const dealii::Tensor<2, 2> &F, Order order);
 
 /// Means over all directions N, for principal stretches l1 and l2 of F, of the stretch l = |F N|.
 struct StretchMeans

@@ -104,33 +104,27 @@ void cell_density(const Constitution &laws, const bool has_gradient, const Field
                   PointIntegrand &d)
 {
   const Tensor<2, 2> F = deformation_gradient(u);
-  d.value = laws.local->energy(F);
-  const Tensor<3, 2> G = has_gradient ? second_gradient(u) : Tensor<3, 2>();
-  if (has_gradient)
-    d.value += laws.gradient->energy(F, G);
+  const Response W = laws.local->evaluate(F, order);
+  d.value = W.energy;
+  add_stress(d, W.first_piola);
+  if (order == Order::second)
+    add_F_F(d, 0, W.tangent, 1.);
+  if (!has_gradient)
+    return;
+  const Tensor<3, 2> G = second_gradient(u);
+  const GradientForm B = laws.gradient->evaluate(F, G, G, order); // twice the energy
+  d.value += 0.5 * B.value;
   if (order == Order::value)
     return;
-
-  Tensor<2, 2> P = laws.local->first_piola_stress(F);
-  if (has_gradient)
-  {
-    P += laws.gradient->first_piola_stress(F, G);
-    const Tensor<3, 2> Q = laws.gradient->double_stress(F, G);
-    for (unsigned int i = 0; i < 2; ++i)
-      for (unsigned int c = n_first; c < n_derivatives; ++c)
-        d.first[i][0][c] = multiplicity[c] * Q[i][first_index[c]][second_index[c]];
-  }
-  add_stress(d, P);
+  add_stress(d, 0.5 * B.by_F);
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int c = n_first; c < n_derivatives; ++c)
+      d.first[i][0][c] = multiplicity[c] * B.by_Z[i][first_index[c]][second_index[c]];
   if (order == Order::first)
     return;
-
-  add_F_F(d, 0, laws.local->tangent(F), 1.);
-  if (has_gradient)
-  {
-    add_F_F(d, 0, laws.gradient->tangent(F, G), 1.);
-    add_G_F(d, 0, laws.gradient->double_stress_by_F(F, G), 1.);
-    add_G_G(d, 0, laws.gradient->double_stress_by_G(F), 1.);
-  }
+  add_F_F(d, 0, B.by_FF, 0.5);
+  add_G_F(d, 0, B.by_ZF, 1.);
+  add_G_G(d, 0, B.by_GZ, 1.);
 }
 
 void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> &u, const unsigned int n_sides,
@@ -164,36 +158,33 @@ void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> 
   {
     const Tensor<2, 2> F = deformation_gradient(u[s]);
     const Tensor<3, 2> G = second_gradient(u[s]);
-    d.value -= share * law.form(F, G, Z);
+    const GradientForm B = law.evaluate(F, G, Z, order);
+    d.value -= share * B.value;
     if (order == Order::value)
       continue;
 
-    const Tensor<3, 2> Q = law.double_stress(F, G);
     for (unsigned int i = 0; i < 2; ++i)
-      by_z[i] -= share * scalar_product(Q[i], NN);
-    const Tensor<2, 2> by_F = law.form_by_F(F, G, Z);
-    const Tensor<3, 2> by_G = law.double_stress(F, Z);
+      by_z[i] -= share * scalar_product(B.by_Z[i], NN);
     if (sigma_by_stiffness != 0.)
       for (unsigned int i = 0; i < 2; ++i)
       {
         const Tensor<3, 2> unit = GradientLaw::unit_jump(i, NN);
-        stiffness_by_F[s] += share * law.form_by_F(F, unit, unit);
+        const GradientForm of_unit = law.evaluate(F, unit, unit, order);
+        stiffness_by_F[s] += share * of_unit.by_F;
         if (order == Order::second)
-          add_F_F(d, s, law.form_by_FF(F, unit, unit), 0.5 * share * sigma_by_stiffness * z.norm_square());
+          add_F_F(d, s, of_unit.by_FF, 0.5 * share * sigma_by_stiffness * z.norm_square());
       }
     const Tensor<2, 2> by_stiffness = 0.5 * sigma_by_stiffness * z.norm_square() * stiffness_by_F[s];
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int c = 0; c < n_derivatives; ++c)
-        d.first[i][s][c] -= c < n_first ? share * by_F[i][c] - by_stiffness[i][c]
-                                        : share * multiplicity[c] * by_G[i][first_index[c]][second_index[c]];
+        d.first[i][s][c] -= c < n_first ? share * B.by_F[i][c] - by_stiffness[i][c]
+                                        : share * multiplicity[c] * B.by_G[i][first_index[c]][second_index[c]];
     if (order == Order::first)
       continue;
 
-    add_F_F(d, s, law.form_by_FF(F, G, Z), -share);
-    add_G_F(d, s, law.double_stress_by_F(F, Z), -share);
+    add_F_F(d, s, B.by_FF, -share);
+    add_G_F(d, s, B.by_GF, -share);
     // Derivative of by_z by the derivatives on this side; z depends on both sides.
-    const Tensor<5, 2> Q_by_F = law.double_stress_by_F(F, G);
-    const Tensor<6, 2> Q_by_G = law.double_stress_by_G(F);
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int l = 0; l < 2 && held[i]; ++l)
         for (unsigned int c = 0; c < n_derivatives; ++c)
@@ -202,8 +193,8 @@ void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> 
           for (unsigned int J = 0; J < 2; ++J)
             for (unsigned int K = 0; K < 2; ++K)
               value -= share * NN[J][K] *
-                       (c < n_first ? Q_by_F[i][J][K][l][c]
-                                    : multiplicity[c] * Q_by_G[i][J][K][l][first_index[c]][second_index[c]]);
+                       (c < n_first ? B.by_ZF[i][J][K][l][c]
+                                    : multiplicity[c] * B.by_GZ[i][J][K][l][first_index[c]][second_index[c]]);
           for (unsigned int t = 0; t < n_sides; ++t)
             for (unsigned int J = 0; J < 2; ++J)
             {

@@ -24,21 +24,14 @@ struct PointIntegrand
   double second[2][2][2][n_derivatives][2][n_derivatives];
 };
 
-/// Highest derivative to compute.
-enum class Order
-{
-  value = 0,
-  first = 1,
-  second = 2
-};
-
 /// Sets the density and its derivatives up to `order` to zero.
 void clear(PointIntegrand &density, Order order);
 
 /// Returns F_iJ = delta_iJ + u_i,J of a displacement.
 dealii::Tensor<2, 2> deformation_gradient(const FieldDerivatives &u);
 
-/// Adds a first Piola stress P, and factor * T for its derivative T = dP/dF, as densities of one side of a cell or face.
+/// Adds a first Piola stress P, and factor * T for its derivative T = dP/dF, as densities of one side of a cell or
+/// face.
 void add_stress(PointIntegrand &density, const dealii::Tensor<2, 2> &P);
 void add_F_F(PointIntegrand &density, unsigned int side, const dealii::Tensor<4, 2> &T, double factor);
 

@@ -260,9 +260,12 @@ class StiffeningGradient : public continuum::IsotropicGradient
 {
 public:
   using IsotropicGradient::IsotropicGradient;
-  Tensor<6, 2> double_stress_by_G(const Tensor<2, 2> &F) const override
+  continuum::GradientForm evaluate(const Tensor<2, 2> &F, const Gradient &G, const Gradient &Z,
+                                   const continuum::Order order) const override
   {
-    return (F - dealii::unit_symmetric_tensor<2>()).norm() * IsotropicGradient::double_stress_by_G(F);
+    continuum::GradientForm B = IsotropicGradient::evaluate(F, G, Z, order);
+    B.by_GZ *= (F - dealii::unit_symmetric_tensor<2>()).norm();
+    return B;
   }
 };
 

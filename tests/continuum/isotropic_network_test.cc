@@ -1,6 +1,7 @@
 // Isotropic network law, compared with sums over directions, with Legendre functions to 40 digits, and with the
 // triangular network of which it is the mean.
 #include "continuum/isotropic_network.h"
+#include "continuum/plane_invariants.h"
 #include "material_checks.h"
 
 #include <array>

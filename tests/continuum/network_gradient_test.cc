@@ -39,17 +39,19 @@ TEST(NetworkGradient, IsTheMeanOfTheLatticeOverAllDirections)
         bond.fibre.weight /= n;
       }
       const LatticeGradient turned_law(turned_bonds, l_d);
-      form += turned_law.form(F, G, Z);
-      by_F += turned_law.form_by_F(F, G, Z);
-      Q += turned_law.double_stress(F, G);
-      Q_by_G += turned_law.double_stress_by_G(F);
+      const auto B = turned_law.evaluate(F, G, Z, Order::second);
+      form += B.value;
+      by_F += B.by_F;
+      Q += B.by_Z;
+      Q_by_G += B.by_GZ;
     }
     const double scale =
       law.energy(F, G) + law.energy(F, Z); // size of the form, which has both signs, and of its derivatives
-    EXPECT_NEAR(law.form(F, G, Z), form, digits * scale);
-    EXPECT_NEAR((law.form_by_F(F, G, Z) - by_F).norm(), 0., 10. * digits * scale);
-    EXPECT_NEAR((law.double_stress(F, G) - Q).norm(), 0., digits * Q.norm());
-    EXPECT_NEAR((law.double_stress_by_G(F) - Q_by_G).norm(), 0., digits * Q_by_G.norm());
+    const auto B = law.evaluate(F, G, Z, Order::second);
+    EXPECT_NEAR(B.value, form, digits * scale);
+    EXPECT_NEAR((B.by_F - by_F).norm(), 0., 10. * digits * scale);
+    EXPECT_NEAR((B.by_Z - Q).norm(), 0., digits * Q.norm());
+    EXPECT_NEAR((B.by_GZ - Q_by_G).norm(), 0., digits * Q_by_G.norm());
   }
 }
 

@@ -248,9 +248,10 @@ TEST(StaticSolver, LeavesAnUnloadedSheetAtRest)
 class FragileLaw : public continuum::Material
 {
 public:
-  double energy(const Tensor<2, 2> &F) const override { return whole().energy(F); }
-  Tensor<2, 2> first_piola_stress(const Tensor<2, 2> &F) const override { return whole().first_piola_stress(F); }
-  dealii::Tensor<4, 2> tangent(const Tensor<2, 2> &F) const override { return whole().tangent(F); }
+  continuum::Response evaluate(const Tensor<2, 2> &F, const continuum::Order order) const override
+  {
+    return whole().evaluate(F, order);
+  }
   double thickness_stretch(const Tensor<2, 2> &F) const override { return law_.thickness_stretch(F); }
   bool is_broken = false;
 

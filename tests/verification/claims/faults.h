@@ -23,29 +23,13 @@ public:
     : a_(a), b_(b), first_(std::move(first)), second_(std::move(second))
   {
   }
-  double form(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
+  latcon::continuum::GradientForm evaluate(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z,
+                                           latcon::continuum::Order order) const override
   {
-    return factor(F) * (a_ * first_->form(F, G, Z) + b_ * second_->form(F, G, Z));
-  }
-  dealii::Tensor<2, 2> form_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
-  {
-    return factor(F) * (a_ * first_->form_by_F(F, G, Z) + b_ * second_->form_by_F(F, G, Z));
-  }
-  dealii::Tensor<4, 2> form_by_FF(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
-  {
-    return factor(F) * (a_ * first_->form_by_FF(F, G, Z) + b_ * second_->form_by_FF(F, G, Z));
-  }
-  Gradient double_stress(const dealii::Tensor<2, 2> &F, const Gradient &G) const override
-  {
-    return factor(F) * (a_ * first_->double_stress(F, G) + b_ * second_->double_stress(F, G));
-  }
-  dealii::Tensor<5, 2> double_stress_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G) const override
-  {
-    return factor(F) * (a_ * first_->double_stress_by_F(F, G) + b_ * second_->double_stress_by_F(F, G));
-  }
-  dealii::Tensor<6, 2> double_stress_by_G(const dealii::Tensor<2, 2> &F) const override
-  {
-    return factor(F) * (a_ * first_->double_stress_by_G(F) + b_ * second_->double_stress_by_G(F));
+    const auto a = first_->evaluate(F, G, Z, order), b = second_->evaluate(F, G, Z, order);
+    const auto of = [&](const auto &x, const auto &y) { return factor(F) * (a_ * x + b_ * y); };
+    return {of(a.value, b.value), of(a.by_F, b.by_F),   of(a.by_G, b.by_G),   of(a.by_Z, b.by_Z),
+            of(a.by_FF, b.by_FF), of(a.by_GF, b.by_GF), of(a.by_ZF, b.by_ZF), of(a.by_GZ, b.by_GZ)};
   }
 
 protected:
