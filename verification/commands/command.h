@@ -30,62 +30,20 @@ class Checkpoints;
 namespace latcon::commands
 {
 
-/// Options of `latcon compare`. Times are texts, with a unit or in s, or load factors; empty: the last frame.
-struct CompareOptions
-{
-  std::string first, second; ///< frames, series or output directories; or output directories of two cracks
-  std::string time;          ///< of both frames
-  std::string lattice_time, continuum_time;
-  std::vector<std::string> tolerances; ///< `FIELD=VALUE`
-  bool overlap = false;                ///< whether the sheets may overlap only in part
-  std::vector<std::string> excluded;   ///< `X,Y,R` of circles
-};
-
-/// Sweep on the command line in place of a study file.
-struct SweepOptions
-{
-  std::vector<std::string> sweeps; ///< `Section/Name=START:STOP:COUNT` or `=VALUE,VALUE`; none: no sweep
-  std::size_t seeds = 0;           ///< number of seeds of each case; 0: not given
-};
-
-/// Options of `latcon study`.
-struct StudyOptions
-{
-  std::string study; ///< file, name of a shipped study, or case of a sweep
-  SweepOptions sweep;
-  std::string shard;    ///< `I/N`: run this share alone, without verdict; empty: run all
-  bool collect = false; ///< run nothing, judge the runs of all shards
-};
-
-/// Options of `latcon batch`.
-struct BatchOptions
-{
-  std::string study; ///< file, name of a shipped study, or case of a sweep
-  SweepOptions sweep;
-  bool slurm = false;              ///< write scripts for Slurm, the only batch system supported
-  bool submit = false;             ///< pass the scripts to sbatch
-  std::size_t tasks = 0;           ///< tasks of the job array; 0: one per run, at most 1000
-  std::size_t cpus_per_task = 1;   ///< runs at once in each task
-  std::string time = "1-00:00:00"; ///< limit per task, in the form of sbatch
-  std::string partition;           ///< empty: the default of the cluster
-};
-
-/// Options of `latcon report`.
-struct ReportOptions
-{
-  std::string directory;  ///< of a run, or of several
-  bool animation = false; ///< draw animations of cracks as well
-};
-
 // The commands. Each runs on every MPI rank and returns the exit code of the program, or throws.
-support::ExitCode verify(const input::Options &options);                                  ///< `latcon verify`
-support::ExitCode run_lattice(const input::Options &options);                             ///< `latcon lattice`
-support::ExitCode run_fracture(const input::Options &options);                            ///< `latcon fracture`
-support::ExitCode compare(const input::Options &options, const CompareOptions &chosen);   ///< `latcon compare`
-support::ExitCode report(const input::Options &options, const ReportOptions &chosen);     ///< `latcon report`
-support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen);   ///< `latcon study`
-support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen); ///< `latcon batch`
-support::ExitCode print_schema(const input::Options &options);                            ///< `latcon schema`
+support::ExitCode verify(const input::Options &options);        ///< `latcon verify`
+support::ExitCode run_lattice(const input::Options &options);   ///< `latcon lattice`
+support::ExitCode run_continuum(const input::Options &options); ///< `latcon continuum`
+support::ExitCode run_fracture(const input::Options &options);  ///< `latcon fracture`
+support::ExitCode print_schema(const input::Options &options);  ///< `latcon schema`
+
+/// `latcon study`, `latcon batch` and `latcon compare`, which are Python: does not return if it starts.
+/// @param command which of them @param names paths of what it is about @param chosen its own options, by name
+support::ExitCode continue_in_python(const input::Options &options, const std::string &command,
+                                     const std::vector<std::string> &names, nlohmann::ordered_json chosen);
+
+/// `latcon report`. @param directory of a run, or of several @param animation whether to draw animations as well
+support::ExitCode report(const input::Options &options, const std::string &directory, bool animation);
 
 /// Declared entries, shipped cases and claims as JSON; with a case its values.
 [[nodiscard]] nlohmann::ordered_json schema_document(const input::Options &options);

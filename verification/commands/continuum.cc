@@ -3,7 +3,6 @@
 #include <sstream>
 
 #include "continuum/errors.h"
-#include "verification/commands/continuum_commands.h"
 #include "verification/commands/cost.h"
 #include "verification/commands/element_motion.h"
 #include "verification/commands/equilibrium.h"

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "support/ranks.h"
 #include "verification/bridge/small_strain.h"
 #include "verification/claims/verdict_store.h"
@@ -107,7 +109,7 @@ bool keep(const claims::VerdictKey &key, const claims::Verdicts &verdicts, const
 struct Group
 {
   claims::Verdicts verdicts;
-  output::RunInfo::Object record; // of run.json
+  nlohmann::ordered_json record;  // of run.json
   std::string note, origin;       // messages; the first may be empty
   std::string refusal;            // addition to the message that the claims do not hold; empty: none
 };
@@ -153,7 +155,7 @@ Group verified(const input::Case &input, const std::vector<claims::Claim> &requi
   group.record = {
     {"hash", key.text.empty() ? "" : key.hash}, {"reused", reused}, {"checked_at", group.verdicts.checked_at}};
   if (!stored.note.empty())
-    group.record.emplace_back("note", stored.note);
+    group.record["note"] = stored.note;
   group.origin = reused ? "verdicts of " + group.verdicts.checked_at + ", hash " + key.hash + ", reused"
                         : "checked now" + (kept ? ", hash " + key.hash + ", kept" : std::string());
   if (reused)

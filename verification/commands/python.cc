@@ -1,5 +1,4 @@
 // Commands above one simulation are Python (python/latcon): this program replaces itself by the interpreter.
-#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -16,69 +15,12 @@
 #include "verification/commands/command.h"
 #include "verification/commands/python.h"
 #include "verification/commands/signals.h"
-#include "verification/input/data_folder.h"
+#include "verification/input/files.h"
 
 namespace latcon::commands
 {
-namespace
-{
-
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-Json json_of(const input::Options &options, const SweepOptions &sweep)
-{
-  return {{"arguments", options.arguments},
-          {"sweeps", sweep.sweeps},
-          {"seeds", sweep.seeds},
-          {"overrides", options.overrides},
-          {"threads", options.threads},
-          {"quick", options.quick},
-          {"quiet", options.quiet},
-          {"verbose", options.verbose},
-          {"dry_run", options.dry_run},
-          {"yes", options.yes},
-          {"skip_verification", options.skip_verification},
-          {"no_report", options.no_report},
-          {"resume", options.resume}};
-}
-
-// Paths are words of their own: they need not be UTF-8.
-support::ExitCode continue_in_python(const std::string &command, const input::Options &chosen,
-                                     const std::vector<std::string> &names, const Json &options)
-{
-  if (support::n_ranks() > 1 && command != "compare")
-    throw support::InputError("`latcon " + command + "` is one process; run it without mpirun");
-  const std::string python = python_interpreter();
-  if (access(python.c_str(), X_OK) != 0)
-    throw support::Error(support::ExitCode::output_failed,
-                         "cannot start " + python + "; install python3, or set LATCON_PYTHON to its path");
-  const std::string package = package_folder();
-  std::vector<std::string> words{python,
-                                 "-sP",
-                                 "-m",
-                                 "latcon",
-                                 "--parsed",
-                                 command,
-                                 chosen.output_dir,
-                                 fs::read_symlink("/proc/self/exe"),
-                                 input::data_folder()};
-  words.insert(words.end(), names.begin(), names.end());
-  words.push_back(options.dump(-1, ' ', false, Json::error_handler_t::replace));
-  std::vector<std::string> environment = environment_of_python(package);
-  const std::vector<char *> arguments = support::pointers(words), variables = support::pointers(environment);
-  std::cout << std::flush;
-  disregard_signals();
-  MPI_Finalize();
-  sigset_t all; // until Python handles them
-  sigfillset(&all);
-  sigprocmask(SIG_BLOCK, &all, nullptr);
-  execve(python.c_str(), arguments.data(), variables.data());
-  std::cerr << "latcon: cannot start " << python << std::endl;
-  std::_Exit(static_cast<int>(support::ExitCode::output_failed));
-}
-
-} // namespace
 
 std::string package_folder()
 {
@@ -110,48 +52,51 @@ std::string python_interpreter()
   return chosen != nullptr && *chosen != '\0' ? chosen : "/usr/bin/python3";
 }
 
-std::vector<std::string> shipped_studies()
+support::ExitCode continue_in_python(const input::Options &options, const std::string &command,
+                                     const std::vector<std::string> &names, Json chosen)
 {
-  std::vector<std::string> names;
-  std::error_code status;
-  for (const auto &file : std::filesystem::directory_iterator(input::data_folder() + "/studies", status))
-    if (file.path().extension() == ".json")
-      names.push_back(file.path().stem());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen)
-{
-  Json all = json_of(options, chosen.sweep);
-  all["shard"] = chosen.shard;
-  all["collect"] = chosen.collect;
-  return continue_in_python("study", options, {chosen.study}, all);
-}
-
-support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen)
-{
-  Json all = json_of(options, chosen.sweep);
-  all["submit"] = chosen.submit;
-  all["tasks"] = chosen.tasks;
-  all["cpus_per_task"] = chosen.cpus_per_task;
-  all["time"] = chosen.time;
-  all["partition"] = chosen.partition;
-  return continue_in_python("batch", options, {chosen.study}, all);
-}
-
-support::ExitCode compare(const input::Options &options, const CompareOptions &chosen)
-{
-  if (!support::is_root_rank())
+  if (command == "compare" && !support::is_root_rank())
     return support::ExitCode::done; // the first rank does all the work
-  Json all = json_of(options, {});
-  all["time"] = chosen.time;
-  all["lattice_time"] = chosen.lattice_time;
-  all["continuum_time"] = chosen.continuum_time;
-  all["tolerances"] = chosen.tolerances;
-  all["overlap"] = chosen.overlap;
-  all["excluded"] = chosen.excluded;
-  return continue_in_python("compare", options, {chosen.first, chosen.second}, all);
+  if (support::n_ranks() > 1 && command != "compare")
+    throw support::InputError("`latcon " + command + "` is one process; run it without mpirun");
+  chosen.update({{"arguments", options.arguments},
+                 {"overrides", options.overrides},
+                 {"threads", options.threads},
+                 {"quick", options.quick},
+                 {"quiet", options.quiet},
+                 {"verbose", options.verbose},
+                 {"dry_run", options.dry_run},
+                 {"yes", options.yes},
+                 {"skip_verification", options.skip_verification},
+                 {"no_report", options.no_report},
+                 {"resume", options.resume}});
+  const std::string python = python_interpreter();
+  if (access(python.c_str(), X_OK) != 0)
+    throw support::Error(support::ExitCode::output_failed,
+                         "cannot start " + python + "; install python3, or set LATCON_PYTHON to its path");
+  const std::string package = package_folder();
+  std::vector<std::string> words{python,
+                                 "-sP",
+                                 "-m",
+                                 "latcon",
+                                 "--parsed",
+                                 command,
+                                 options.output_dir,
+                                 fs::read_symlink("/proc/self/exe"),
+                                 input::data_folder()};
+  words.insert(words.end(), names.begin(), names.end()); // words of their own: paths need not be UTF-8
+  words.push_back(chosen.dump(-1, ' ', false, Json::error_handler_t::replace));
+  std::vector<std::string> environment = environment_of_python(package);
+  const std::vector<char *> arguments = support::pointers(words), variables = support::pointers(environment);
+  std::cout << std::flush;
+  disregard_signals();
+  MPI_Finalize();
+  sigset_t all; // until Python handles them
+  sigfillset(&all);
+  sigprocmask(SIG_BLOCK, &all, nullptr);
+  execve(python.c_str(), arguments.data(), variables.data());
+  std::cerr << "latcon: cannot start " << python << std::endl;
+  std::_Exit(static_cast<int>(support::ExitCode::output_failed));
 }
 
 } // namespace latcon::commands

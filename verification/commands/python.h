@@ -16,7 +16,4 @@ namespace latcon::commands
 /// path of the package.
 [[nodiscard]] std::vector<std::string> environment_of_python(const std::string &package);
 
-/// Returns the sorted names of the shipped studies, which are in the data folder.
-[[nodiscard]] std::vector<std::string> shipped_studies();
-
 } // namespace latcon::commands

@@ -71,16 +71,16 @@ support::ExitCode run_report(const std::string &directory, const std::vector<std
 
 } // namespace
 
-support::ExitCode report(const input::Options &options, const ReportOptions &chosen)
+support::ExitCode report(const input::Options &options, const std::string &directory, const bool animation)
 {
-  if (!std::filesystem::is_directory(chosen.directory))
-    throw support::InputError(chosen.directory + " is not a directory");
+  if (!std::filesystem::is_directory(directory))
+    throw support::InputError(directory + " is not a directory");
   if (!support::is_root_rank())
     return support::ExitCode::done;
   std::vector<std::string> words;
   if (options.quiet)
     words.emplace_back("--quiet");
-  if (chosen.animation)
+  if (animation)
     words.emplace_back("--animation");
   if (!options.output_dir.empty())
   {
@@ -90,8 +90,8 @@ support::ExitCode report(const input::Options &options, const ReportOptions &cho
       throw support::OutputError(options.output_dir, error.message());
     words.insert(words.end(), {"--output-dir", options.output_dir});
   }
-  const auto lock = lock_directory(options.output_dir.empty() ? chosen.directory : options.output_dir);
-  return run_report(chosen.directory, words, false);
+  const auto lock = lock_directory(options.output_dir.empty() ? directory : options.output_dir);
+  return run_report(directory, words, false);
 }
 
 support::ExitCode draw_report(const std::string &directory, bool quiet, bool shows_progress)
