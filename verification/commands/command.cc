@@ -216,6 +216,8 @@ support::ExitCode Run::end(const output::Results &results, support::ExitCode exi
 
 support::ExitCode exit_code_of(const output::Results &results)
 {
+  if (interrupted())
+    return support::ExitCode::interrupted;
   return results.verdict() == output::Verdict::fails ? support::ExitCode::claim_failed : support::ExitCode::done;
 }
 
@@ -239,13 +241,6 @@ support::ExitCode Run::finish(const output::Results &results)
   const support::ExitCode exit_code = end(results, exit_code_of(results));
   print(results);
   return exit_code;
-}
-
-support::ExitCode Run::interrupted(const output::Results &results)
-{
-  end(results, support::ExitCode::interrupted);
-  print(results);
-  return support::ExitCode::interrupted;
 }
 
 } // namespace latcon::commands

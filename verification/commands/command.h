@@ -67,12 +67,10 @@ support::ExitCode print_topic(const std::string &topic, const std::vector<std::s
 /// OutputError
 support::ExitCode init(const input::Options &options, const std::string &directory);
 
-/// Draws pictures and report.html of a run, or of a folder of several, in a directory that this process has locked. On
-/// rank 0.
-/// @param quiet whether the script prints nothing
+/// Draws pictures and report.html of a run in a directory that this process has locked, without a word. On rank 0.
 /// @param shows_progress whether a progress line is shown meanwhile
 /// @return the exit code of the script @throws OutputError
-support::ExitCode draw_report(const std::string &directory, bool quiet, bool shows_progress = false);
+support::ExitCode draw_report(const std::string &directory, bool shows_progress);
 
 /// Reads and checks the case that the options name; parameters.finish() throws its problems. Collective.
 void read_case(const input::Options &options, input::Case &input, input::Parameters &parameters);
@@ -118,9 +116,6 @@ public:
   /// each claim and those that fail, unless --verbose.
   support::ExitCode finish(const output::Results &results);
 
-  /// Does the same for a run that was stopped by a signal.
-  support::ExitCode interrupted(const output::Results &results);
-
   /// Writes results.json, results.csv and the final run.json, prints nothing. @return `exit_code`
   support::ExitCode end(const output::Results &results, support::ExitCode exit_code);
 
@@ -159,7 +154,7 @@ private:
 /// @param message printed to standard error, if any @throws OutputError
 void record_exit_code(support::ExitCode exit_code, const std::string &message = {});
 
-/// Exit code of a program whose results alone decide.
+/// Exit code of a program that was stopped by a signal or, otherwise, whose results alone decide.
 support::ExitCode exit_code_of(const output::Results &results);
 
 /// Keeps the verdicts of a claim in its small version for the cracks of this program, if it is about the program alone.

@@ -19,7 +19,6 @@
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/commands/recorded_output.h"
-#include "verification/commands/run_command.h"
 #include "verification/commands/signals.h"
 #include "verification/commands/usage_error.h"
 #include "verification/elements/elements.h"

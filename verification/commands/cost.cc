@@ -15,6 +15,8 @@ namespace latcon::commands
 namespace
 {
 
+// Estimated time above which a run is refused unless the user confirms it by `--yes` [s].
+constexpr double longest_run = 10. * 86400.;
 // Cost of a reduced frame over that of one with all fields, in time and on disk.
 constexpr double cost_of_motion_frame = 0.1;
 // Of a compressed frame with all fields; 373 and 386 at the start and the end of a crack through 3024 sites.

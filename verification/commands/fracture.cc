@@ -14,7 +14,6 @@
 #include "verification/commands/cost.h"
 #include "verification/commands/crack_summary.h"
 #include "verification/commands/motion.h"
-#include "verification/commands/signals.h"
 #include "verification/input/cracked_sheet.h"
 #include "verification/output/crack_film.h"
 #include "verification/output/near_tip_record.h"
@@ -32,7 +31,7 @@ support::ExitCode draw_page(Run &run)
   if (run.is_root())
   {
     auto phase = run.info().stopwatch().phase("report");
-    const support::ExitCode drawn = draw_report(run.directory(), true, run.is_verbose());
+    const support::ExitCode drawn = draw_report(run.directory(), run.is_verbose());
     phase.stop();
     if (drawn != support::ExitCode::claim_failed)
       exit_code = drawn;
@@ -160,8 +159,7 @@ output::Results passed_or_reported(const input::Case &input, const std::vector<c
 support::ExitCode end_crack(const input::Case &input, const input::Options &options, Run &run,
                             const output::Results &results, const analysis::CrackMeasurement &crack)
 {
-  const support::ExitCode exit_code =
-    run.end(results, interrupted() ? support::ExitCode::interrupted : exit_code_of(results));
+  const support::ExitCode exit_code = run.end(results, exit_code_of(results));
   if (run.is_verbose())
   {
     if (options.verbose)

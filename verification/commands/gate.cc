@@ -73,15 +73,6 @@ Stored look_up(const input::Case &input, const std::vector<claims::Claim> &requi
   return stored;
 }
 
-// Returns the same on all ranks.
-Stored look_up_on_root_rank(const input::Case &input, const std::vector<claims::Claim> &required,
-                            const bridge::Laws &laws, const Run &run, const std::optional<std::string> &folder)
-{
-  Stored stored = run.is_root() ? look_up(input, required, laws, folder) : Stored();
-  const auto shared = [](const std::string &text) { return support::broadcast(text); };
-  return {shared(stored.key), shared(stored.text), shared(stored.note), std::move(stored.turn)};
-}
-
 void append(std::string &note, const std::string &more)
 {
   note += (note.empty() ? "" : "; ") + more;
@@ -118,7 +109,9 @@ Group verified(const input::Case &input, const std::vector<claims::Claim> &requi
                const Run &run)
 {
   const std::optional<std::string> folder = claims::VerdictStore::folder_of_user();
-  Stored stored = look_up_on_root_rank(input, required, laws, run, folder);
+  Stored stored = run.is_root() ? look_up(input, required, laws, folder) : Stored();
+  for (std::string *text : {&stored.key, &stored.text, &stored.note})
+    *text = support::broadcast(*text);
   const claims::VerdictKey key(stored.key);
   const std::string path = folder ? claims::VerdictStore(*folder).path(key) : "";
   // Of verdicts that refuse a crack, rows may be missing.

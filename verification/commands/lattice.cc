@@ -10,7 +10,6 @@
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
 #include "verification/commands/motion.h"
-#include "verification/commands/signals.h"
 #include "verification/output/field_writer.h"
 
 namespace latcon::commands
@@ -123,7 +122,7 @@ support::ExitCode run_lattice(const input::Options &options)
   }
   else if (run.is_root()) // the root rank computes the equilibrium
     results = relaxed(input, sheet, material, state_of(sheet), run);
-  return interrupted() ? run.interrupted(results) : run.finish(results);
+  return run.finish(results);
 }
 
 } // namespace latcon::commands
