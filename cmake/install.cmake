@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME runtime)
 install(TARGETS latcon latcon_elements LIBRARY DESTINATION lib/latcon)
-# verification/input/data_folder.h looks for it.
+# verification/input/files.h looks for it.
 foreach(folder cases studies paraview)
   install(DIRECTORY verification/${folder} DESTINATION share/latcon PATTERN __pycache__ EXCLUDE)
 endforeach()

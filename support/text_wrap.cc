@@ -11,6 +11,11 @@ std::size_t width_of(const std::string &text)
     text.begin(), text.end(), [](const char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
+std::string padded(const std::string &text, const std::size_t width)
+{
+  return text + std::string(width - std::min(width, width_of(text)), ' ');
+}
+
 std::vector<std::string> wrap_text(const std::string &text, const std::size_t width)
 {
   std::vector<std::string> lines(1);

@@ -11,6 +11,9 @@ namespace latcon::support
 /// Returns the number of terminal columns of a UTF-8 text: its code points.
 [[nodiscard]] std::size_t width_of(const std::string &text);
 
+/// Returns a text with blanks behind it, as wide as `width` or wider.
+[[nodiscard]] std::string padded(const std::string &text, std::size_t width);
+
 /// Breaks a text into lines of at most `width` columns, between words where possible. Replaces control characters,
 /// which would break a table, by question marks. Returns at least one line, which may be empty.
 [[nodiscard]] std::vector<std::string> wrap_text(const std::string &text, std::size_t width);

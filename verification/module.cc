@@ -1,7 +1,7 @@
 #include "verification/elements/elements.h"
 
 #include "continuum/parallel_session.h"
-#include "verification/commands/continuum_commands.h"
+#include "verification/commands/command.h"
 
 namespace latcon::elements
 {

@@ -11,8 +11,6 @@ namespace latcon::analysis
 namespace
 {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Transforms rows with correlated noise of unit variance in place to rows with independent noise of unit variance, by
 /// the one-state Kalman filter of this noise. Takes O(rows); positions may have gaps.
 /// @return log det of the correlation matrix
@@ -78,7 +76,7 @@ NoiseFit fit_noise(const Eigen::VectorXd &position, const Eigen::MatrixXd &desig
     const double freedom = static_cast<double>(n - n_coefficients);
     const double variance = sum_of_squares / freedom;
     const double log_evidence =
-      -0.5 * (freedom * (std::log(2. * pi * variance) + 1.) + log_determinant + log_information + 2. * log_scale);
+      -0.5 * (freedom * (std::log(2. * M_PI * variance) + 1.) + log_determinant + log_information + 2. * log_scale);
     if (log_evidence > best.log_evidence)
       best = {{variance, fraction, length}, log_evidence};
   };

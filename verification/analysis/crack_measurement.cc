@@ -223,8 +223,7 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
 
   m.X_end = std::min(X_last, (1. - options.clamp_fraction) * options.strip_length);
   m.X_begin = std::min(m.X_end, options.seed_tip_X + options.run_in_fraction * options.strip_length);
-  const SteadyPart steady_part = find_steady_part(
-    tip, m.X_begin, m.X_end, {options.lattice_spacing, options.min_wavelength, options.steady_amplitude});
+  const SteadyPart steady_part = find_steady_part(tip, m.X_begin, m.X_end, options);
   m.X_begin = steady_part.X_begin;
   m.sinusoid = steady_part.sinusoid;
   if (m.sinusoid)

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/analysis/crack_branches.h"
-#include "verification/analysis/crack_flanks.h"
+#include "verification/analysis/crack_damage.h"
 #include "verification/analysis/crack_records.h"
 #include "verification/analysis/path_fit.h"
 

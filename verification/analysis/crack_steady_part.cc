@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "support/dense.h"
+#include "verification/analysis/crack_measurement.h"
 
 namespace latcon::analysis
 {
@@ -102,7 +103,8 @@ std::vector<TipRecord> part_between(const std::vector<TipRecord> &tip, double X_
   return part;
 }
 
-SteadyPart find_steady_part(const std::vector<TipRecord> &tip, double X_begin, double X_end, const SteadyPartRule &rule)
+SteadyPart find_steady_part(const std::vector<TipRecord> &tip, double X_begin, double X_end,
+                            const CrackMeasurementOptions &rule)
 {
   SteadyPart result;
   result.X_begin = X_begin;

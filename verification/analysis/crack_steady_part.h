@@ -9,13 +9,7 @@
 namespace latcon::analysis
 {
 
-/// Criteria for the steady part of an oscillating path.
-struct SteadyPartRule
-{
-  double lattice_spacing;  ///< d [m], > 0
-  double min_wavelength;   ///< shortest wavelength of the search, in d
-  double steady_amplitude; ///< fraction of the later amplitude from which on an oscillation is steady [-], in (0, 1)
-};
+struct CrackMeasurementOptions;
 
 /// Steady part of a path and its fitted sinusoid.
 struct SteadyPart
@@ -32,7 +26,7 @@ std::vector<TipRecord> part_between(const std::vector<TipRecord> &tip, double X_
 /// over one wavelength has reached the later one; repeats this until the beginning no longer changes. At least two
 /// wavelengths remain if there are two; a path without a clear sinusoid is not shortened.
 SteadyPart find_steady_part(const std::vector<TipRecord> &tip, double X_begin, double X_end,
-                            const SteadyPartRule &rule);
+                            const CrackMeasurementOptions &rule);
 
 /// Returns half the height from trough to crest [m], mean over the whole wavelengths of a path without its drift; the
 /// uncertainty is that of the mean. The path is first averaged over columns of 2 d, so that a single hop is not a

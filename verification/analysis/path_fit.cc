@@ -12,8 +12,6 @@ namespace latcon::analysis
 namespace
 {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Fitted interval of a path. Coordinates relative to its middle in units of its length keep the columns of the model
 /// of similar size.
 struct Stretch
@@ -25,7 +23,7 @@ struct Stretch
 /// Returns the columns 1, u, sin, cos of the model at one wave number, u = (X - origin) / length.
 Eigen::MatrixXd linear_columns(const ColumnMeans &path, const Stretch &stretch, double wave_number)
 {
-  const double q = 2. * pi * wave_number;
+  const double q = 2. * M_PI * wave_number;
   Eigen::MatrixXd columns(path.size(), 4);
   columns.col(0).setOnes();
   columns.col(1) = (path.X().array() - stretch.origin) / stretch.length;
@@ -77,7 +75,7 @@ ColumnMeans::ColumnMeans(std::vector<double> X, std::vector<double> Y, double wi
 
 double Sinusoid::operator()(double X) const
 {
-  const double phase = 2. * pi * (X - origin) / wavelength;
+  const double phase = 2. * M_PI * (X - origin) / wavelength;
   return offset + slope * (X - origin) + sine * std::sin(phase) + cosine * std::cos(phase);
 }
 
@@ -125,8 +123,8 @@ std::optional<SinusoidFit> fit_sinusoid(const ColumnMeans &path, double shortest
   jacobian << columns, path.mean_of(
                          [&](double X)
                          {
-                           const double phase = 2. * pi * wave_number * (X - stretch.origin);
-                           return 2. * pi * (X - stretch.origin) * (c(2) * std::cos(phase) - c(3) * std::sin(phase));
+                           const double phase = 2. * M_PI * wave_number * (X - stretch.origin);
+                           return 2. * M_PI * (X - stretch.origin) * (c(2) * std::cos(phase) - c(3) * std::sin(phase));
                          });
   const NoiseFit with_sinusoid = fit_noise(path.X(), jacobian, fit.residual, resolution);
   const Eigen::MatrixXd covariance = least_squares_covariance(with_sinusoid.noise, path.X(), jacobian);
@@ -140,7 +138,7 @@ std::optional<SinusoidFit> fit_sinusoid(const ColumnMeans &path, double shortest
   const double variance_about_line = project(straight, path.Y()).residual.squaredNorm() / count;
   const double residual_variance = fit.residual.squaredNorm() / count;
   // Volume of the uniform prior of (sine, cosine, wave number): a disc of radius sqrt(2 variance) times an interval.
-  const double prior_volume = 2. * pi * variance_about_line * highest;
+  const double prior_volume = 2. * M_PI * variance_about_line * highest;
   result.log_evidence = with_sinusoid.log_evidence - without_sinusoid.log_evidence - std::log(prior_volume);
   result.residual_rms = std::sqrt(residual_variance);
   const double explained = variance_about_line - residual_variance;

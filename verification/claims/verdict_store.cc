@@ -25,7 +25,7 @@
 #include "support/errors.h"
 #include "support/folder_lock.h"
 #include "verification/claims/claim_inputs.h"
-#include "verification/input/data_folder.h"
+#include "verification/input/files.h"
 #include "verification/input/sha256.h"
 #include "verification/output/output_file.h"
 #include "verification/output/run_info.h"

@@ -72,9 +72,8 @@ std::string unknown_claim(const std::string &name)
   const std::vector<std::string> known = names();
   if (std::find(known.begin(), known.end(), name) != known.end())
     return "";
-  const std::string nearest = input::nearest_word(name, known);
-  return "unknown claim '" + input::printable(name) + "'; " +
-         (nearest.empty() ? "claims: " + input::comma_separated(known) : "nearest: " + nearest);
+  return "unknown claim '" + input::printable(name) + "'" +
+         input::nearest_hint(name, known, "; claims: " + input::comma_separated(known));
 }
 
 std::string claim_choices()

@@ -6,12 +6,14 @@
 #include <system_error>
 #include <utility>
 
+#include <nlohmann/json.hpp>
+
 #include "support/atomic_file.h"
 #include "support/ranks.h"
 #include "verification/commands/crack_summary.h"
 #include "verification/commands/recorded_output.h"
 #include "verification/commands/signals.h"
-#include "verification/input/input_file.h"
+#include "verification/input/files.h"
 #include "verification/input/sha256.h"
 #include "verification/output/checkpoints.h"
 #include "verification/output/output_file.h"
@@ -21,11 +23,6 @@ namespace latcon::commands
 {
 namespace
 {
-
-bool first_rank()
-{
-  return support::is_root_rank();
-}
 
 // Reports libraries of bond laws that are not the same on all ranks: other machines may have others below one path.
 // Collective.
@@ -61,7 +58,7 @@ bool has_default_threads(const input::Options &options)
 
 void print_dry_run(const input::Options &options, const std::string &text)
 {
-  if (first_rank() && !options.quiet)
+  if (support::is_root_rank() && !options.quiet)
     std::cout << text << std::flush;
 }
 
@@ -111,16 +108,16 @@ void record_exit_code(support::ExitCode exit_code, const std::string &message)
 Run::Run(const input::Options &options, const input::Parameters &parameters) : Run(options, &parameters) {}
 
 Run::Run(const input::Options &options, const input::Parameters *parameters)
-  : record_(std::make_shared<Record>(options)), directory_(options.output_dir), is_root_(first_rank()),
+  : record_(std::make_shared<Record>(options)), directory_(options.output_dir), is_root_(support::is_root_rank()),
     is_verbose_(is_root_ && !options.quiet), prints_all_(options.verbose), resumes_(options.resume),
     has_default_threads_(commands::has_default_threads(options))
 {
   if (parameters != nullptr)
   {
     info().add("case_hash", input::sha256(input::case_lines(*parameters)));
-    output::RunInfo::Object entries;
+    nlohmann::ordered_json entries;
     for (const auto &[key, value] : parameters->values())
-      entries.emplace_back(key, value);
+      entries[key] = value;
     info().add("entries", entries);
   }
   if (is_root_)
@@ -180,11 +177,11 @@ void Run::record_checkpoint(const output::Checkpoints &checkpoints)
 {
   const std::optional<output::CheckpointPlace> &found = checkpoints.found();
   if (found)
-    info().add("resumed_from", output::RunInfo::Object{{"checkpoint", found->file.filename().string()},
-                                                       {"step", static_cast<std::uint64_t>(found->step)},
-                                                       {"time", found->time},
-                                                       {"git_commit", found->commit},
-                                                       {"program_hash", found->program_hash}});
+    info().add("resumed_from", {{"checkpoint", found->file.filename().string()},
+                                {"step", found->step},
+                                {"time", found->time},
+                                {"git_commit", found->commit},
+                                {"program_hash", found->program_hash}});
   if (!is_verbose_ || !resumes_)
     return;
   if (!found)
@@ -205,9 +202,9 @@ support::ExitCode Run::end(const output::Results &results, support::ExitCode exi
     const SignalDeferral deferral;
     results.write(directory_);
     record_->verdict = to_string(results.verdict());
-    output::RunInfo::Object failed;
+    nlohmann::ordered_json failed = nlohmann::ordered_json::object();
     for (const auto &[row, kind] : results.failed_rows())
-      failed.emplace_back(row, to_string(kind));
+      failed[row] = to_string(kind);
     info().add("failed_rows", failed);
     record_->write(exit_code);
     record_->exit_code = exit_code;
@@ -219,6 +216,8 @@ support::ExitCode Run::end(const output::Results &results, support::ExitCode exi
 
 support::ExitCode exit_code_of(const output::Results &results)
 {
+  if (interrupted())
+    return support::ExitCode::interrupted;
   return results.verdict() == output::Verdict::fails ? support::ExitCode::claim_failed : support::ExitCode::done;
 }
 
@@ -242,13 +241,6 @@ support::ExitCode Run::finish(const output::Results &results)
   const support::ExitCode exit_code = end(results, exit_code_of(results));
   print(results);
   return exit_code;
-}
-
-support::ExitCode Run::interrupted(const output::Results &results)
-{
-  end(results, support::ExitCode::interrupted);
-  print(results);
-  return support::ExitCode::interrupted;
 }
 
 } // namespace latcon::commands

@@ -30,62 +30,20 @@ class Checkpoints;
 namespace latcon::commands
 {
 
-/// Options of `latcon compare`. Times are texts, with a unit or in s, or load factors; empty: the last frame.
-struct CompareOptions
-{
-  std::string first, second; ///< frames, series or output directories; or output directories of two cracks
-  std::string time;          ///< of both frames
-  std::string lattice_time, continuum_time;
-  std::vector<std::string> tolerances; ///< `FIELD=VALUE`
-  bool overlap = false;                ///< whether the sheets may overlap only in part
-  std::vector<std::string> excluded;   ///< `X,Y,R` of circles
-};
-
-/// Sweep on the command line in place of a study file.
-struct SweepOptions
-{
-  std::vector<std::string> sweeps; ///< `Section/Name=START:STOP:COUNT` or `=VALUE,VALUE`; none: no sweep
-  std::size_t seeds = 0;           ///< number of seeds of each case; 0: not given
-};
-
-/// Options of `latcon study`.
-struct StudyOptions
-{
-  std::string study; ///< file, name of a shipped study, or case of a sweep
-  SweepOptions sweep;
-  std::string shard;    ///< `I/N`: run this share alone, without verdict; empty: run all
-  bool collect = false; ///< run nothing, judge the runs of all shards
-};
-
-/// Options of `latcon batch`.
-struct BatchOptions
-{
-  std::string study; ///< file, name of a shipped study, or case of a sweep
-  SweepOptions sweep;
-  bool slurm = false;              ///< write scripts for Slurm, the only batch system supported
-  bool submit = false;             ///< pass the scripts to sbatch
-  std::size_t tasks = 0;           ///< tasks of the job array; 0: one per run, at most 1000
-  std::size_t cpus_per_task = 1;   ///< runs at once in each task
-  std::string time = "1-00:00:00"; ///< limit per task, in the form of sbatch
-  std::string partition;           ///< empty: the default of the cluster
-};
-
-/// Options of `latcon report`.
-struct ReportOptions
-{
-  std::string directory;  ///< of a run, or of several
-  bool animation = false; ///< draw animations of cracks as well
-};
-
 // The commands. Each runs on every MPI rank and returns the exit code of the program, or throws.
-support::ExitCode verify(const input::Options &options);                                  ///< `latcon verify`
-support::ExitCode run_lattice(const input::Options &options);                             ///< `latcon lattice`
-support::ExitCode run_fracture(const input::Options &options);                            ///< `latcon fracture`
-support::ExitCode compare(const input::Options &options, const CompareOptions &chosen);   ///< `latcon compare`
-support::ExitCode report(const input::Options &options, const ReportOptions &chosen);     ///< `latcon report`
-support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen);   ///< `latcon study`
-support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen); ///< `latcon batch`
-support::ExitCode print_schema(const input::Options &options);                            ///< `latcon schema`
+support::ExitCode verify(const input::Options &options);        ///< `latcon verify`
+support::ExitCode run_lattice(const input::Options &options);   ///< `latcon lattice`
+support::ExitCode run_continuum(const input::Options &options); ///< `latcon continuum`
+support::ExitCode run_fracture(const input::Options &options);  ///< `latcon fracture`
+support::ExitCode print_schema(const input::Options &options);  ///< `latcon schema`
+
+/// `latcon study`, `latcon batch` and `latcon compare`, which are Python: does not return if it starts.
+/// @param command which of them @param names paths of what it is about @param chosen its own options, by name
+support::ExitCode continue_in_python(const input::Options &options, const std::string &command,
+                                     const std::vector<std::string> &names, nlohmann::ordered_json chosen);
+
+/// `latcon report`. @param directory of a run, or of several @param animation whether to draw animations as well
+support::ExitCode report(const input::Options &options, const std::string &directory, bool animation);
 
 /// Declared entries, shipped cases and claims as JSON; with a case its values.
 [[nodiscard]] nlohmann::ordered_json schema_document(const input::Options &options);
@@ -109,12 +67,10 @@ support::ExitCode print_topic(const std::string &topic, const std::vector<std::s
 /// OutputError
 support::ExitCode init(const input::Options &options, const std::string &directory);
 
-/// Draws pictures and report.html of a run, or of a folder of several, in a directory that this process has locked. On
-/// rank 0.
-/// @param quiet whether the script prints nothing
+/// Draws pictures and report.html of a run in a directory that this process has locked, without a word. On rank 0.
 /// @param shows_progress whether a progress line is shown meanwhile
 /// @return the exit code of the script @throws OutputError
-support::ExitCode draw_report(const std::string &directory, bool quiet, bool shows_progress = false);
+support::ExitCode draw_report(const std::string &directory, bool shows_progress);
 
 /// Reads and checks the case that the options name; parameters.finish() throws its problems. Collective.
 void read_case(const input::Options &options, input::Case &input, input::Parameters &parameters);
@@ -160,9 +116,6 @@ public:
   /// each claim and those that fail, unless --verbose.
   support::ExitCode finish(const output::Results &results);
 
-  /// Does the same for a run that was stopped by a signal.
-  support::ExitCode interrupted(const output::Results &results);
-
   /// Writes results.json, results.csv and the final run.json, prints nothing. @return `exit_code`
   support::ExitCode end(const output::Results &results, support::ExitCode exit_code);
 
@@ -201,7 +154,7 @@ private:
 /// @param message printed to standard error, if any @throws OutputError
 void record_exit_code(support::ExitCode exit_code, const std::string &message = {});
 
-/// Exit code of a program whose results alone decide.
+/// Exit code of a program that was stopped by a signal or, otherwise, whose results alone decide.
 support::ExitCode exit_code_of(const output::Results &results);
 
 /// Keeps the verdicts of a claim in its small version for the cracks of this program, if it is about the program alone.

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "lattice/row_kernels.h"
 #include "support/atomic_file.h"
@@ -17,20 +18,20 @@
 #include "support/ranks.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
-#include "verification/commands/python.h"
 #include "verification/commands/recorded_output.h"
-#include "verification/commands/run_command.h"
 #include "verification/commands/signals.h"
 #include "verification/commands/usage_error.h"
 #include "verification/elements/elements.h"
 #include "verification/input/case_text.h"
-#include "verification/input/data_folder.h"
-#include "verification/input/shipped_cases.h"
+#include "verification/input/files.h"
 
 namespace latcon::commands
 {
 namespace
 {
+
+using Json = nlohmann::ordered_json;
+using Words = std::vector<std::string>;
 
 // Sets the threads of each rank; by default OMP_NUM_THREADS, or as many as there are cores for it.
 void set_threads(const input::Options &options)
@@ -64,13 +65,13 @@ constexpr const char *shared_options =
 // Describes the studies that a user can give.
 std::string study_choices()
 {
-  const std::vector<std::string> names = shipped_studies();
+  const std::vector<std::string> names = input::shipped_studies();
   return "study file (.json)" +
          (names.empty() ? std::string() : ", or a shipped one: " + input::comma_separated(names));
 }
 
 // Default output directory of a study; of the study file that a sweep wrote beside a copy of its case, its own folder.
-std::string study_folder(const std::string &study, const SweepOptions &sweep)
+std::string study_folder(const std::string &study, bool is_sweep)
 {
   const std::filesystem::path path(study), folder = std::filesystem::absolute(path).parent_path();
   const auto has = [&folder](const char *file)
@@ -80,7 +81,26 @@ std::string study_folder(const std::string &study, const SweepOptions &sweep)
   };
   if (path.filename() == "sweep.json" && (has("base.prm") || has("base.json")))
     return path.has_parent_path() ? path.parent_path().string() : folder.string();
-  return "output/" + path.stem().string() + (sweep.sweeps.empty() ? "" : "-sweep");
+  return "output/" + path.stem().string() + (is_sweep ? "-sweep" : "");
+}
+
+// Adds an option or a flag of a command that is Python, which gets its value under a key. @param type of it in the help
+template <class Value>
+CLI::Option *keep(CLI::App *command, Json &chosen, const std::string &key, const std::string &name,
+                  const std::string &type, const Value &otherwise, const std::string &help)
+{
+  chosen[key] = otherwise;
+  return command
+    ->add_option_function<Value>(
+      name, [&chosen, key](const Value &value) { chosen[key] = value; }, help)
+    ->allow_extra_args(false)
+    ->type_name(type);
+}
+void keep(CLI::App *command, Json &chosen, const std::string &key, const std::string &name, const std::string &help)
+{
+  chosen[key] = false;
+  command->add_flag_callback(
+    name, [&chosen, key] { chosen[key] = true; }, help);
 }
 
 std::string case_choices()
@@ -219,119 +239,100 @@ support::ExitCode run_program(int argc, char **argv)
   for (CLI::App *internal : {gate_command, resolve_command})
     internal->group(""); // not listed: `latcon study` uses them
 
-  StudyOptions study;
-  BatchOptions batch;
-  const auto add_study_command = [&](const std::string &name, const std::string &help, const std::string &example,
-                                     std::string &place, SweepOptions &sweep)
+  std::string study; // file, name of a shipped study, or case of a sweep
+  Json study_chosen, batch_chosen, compared;
+  const auto add_study_command =
+    [&](const std::string &name, const std::string &help, const std::string &example, Json &chosen)
   {
     CLI::App *subcommand = add_command(name, help, example);
-    subcommand->add_option("STUDY", place, study_choices() + "; with --sweep a case")->required()->type_name("");
-    subcommand
-      ->add_option(
-        "--sweep", sweep.sweeps,
-        "Section/Name=START:STOP:COUNT or =VALUE,VALUE,...: run the case STUDY for these values; repeatable: "
-        "all combinations")
-      ->allow_extra_args(false)
-      ->type_name("ENTRY");
-    subcommand->add_option("--seeds", sweep.seeds, "seeds 1 to N of each case of a sweep; default: 1")
-      ->check(CLI::Range(1u, 100000u))
-      ->type_name("N");
+    subcommand->add_option("STUDY", study, study_choices() + "; with --sweep a case")->required()->type_name("");
+    keep(subcommand, chosen, "sweeps", "--sweep", "ENTRY", Words(),
+         "Section/Name=START:STOP:COUNT or =VALUE,VALUE,...: run the case STUDY for these values; repeatable: "
+         "all combinations");
+    keep(subcommand, chosen, "seeds", "--seeds", "N", 0u, "seeds 1 to N of each case of a sweep; default: 1")
+      ->check(CLI::Range(1u, 100000u));
     subcommand->add_flag("--quick", options.quick, "small version");
     subcommand->add_flag("--skip-verification", options.skip_verification,
                          "run the cracks unverified; noted in every output");
+    subcommand->callback(
+      [&, name]
+      {
+        if (options.output_dir.empty())
+          options.output_dir = study_folder(study, !chosen["sweeps"].empty());
+        command = [&, name] { return continue_in_python(options, name, {study}, chosen); };
+      });
     return subcommand;
   };
   CLI::App *study_command = add_study_command("study", "a sweep of cracks, compared with what a source states",
-                                              "latcon study paper --quick", study.study, study.sweep);
-  study_command->add_option("--shard", study.shard, "run one of N shares of the runs, without verdict; then --collect")
-    ->type_name("I/N");
-  study_command->add_flag("--collect", study.collect, "run nothing: judge the runs of all shards");
+                                              "latcon study paper --quick", study_chosen);
+  keep(study_command, study_chosen, "shard", "--shard", "I/N", std::string(),
+       "run one of N shares of the runs, without verdict; then --collect");
+  keep(study_command, study_chosen, "collect", "--collect", "run nothing: judge the runs of all shards");
   study_command->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
-  study_command->callback(
-    [&]
-    {
-      if (options.output_dir.empty())
-        options.output_dir = study_folder(study.study, study.sweep);
-      command = [&] { return run_study(options, study); };
-    });
 
   CLI::App *batch_command = add_study_command("batch", "a study as a job array of a cluster",
-                                              "latcon batch paper --slurm --tasks 50", batch.study, batch.sweep);
-  batch_command->add_flag("--slurm", batch.slurm, "write job scripts for Slurm")->required();
-  batch_command->add_flag("--submit", batch.submit, "submit them with sbatch");
-  batch_command->add_option("--tasks", batch.tasks, "tasks of the array; default: one per run, at most 1000")
-    ->check(CLI::Range(1u, 100000u))
-    ->type_name("N");
-  batch_command->add_option("--cpus-per-task", batch.cpus_per_task, "runs at once in each task")
+                                              "latcon batch paper --slurm --tasks 50", batch_chosen);
+  batch_command->add_flag("--slurm", "write job scripts for Slurm")->required(); // the only system supported
+  keep(batch_command, batch_chosen, "submit", "--submit", "submit them with sbatch");
+  keep(batch_command, batch_chosen, "tasks", "--tasks", "N", 0u,
+       "tasks of the array; default: one per run, at most 1000")
+    ->check(CLI::Range(1u, 100000u));
+  keep(batch_command, batch_chosen, "cpus_per_task", "--cpus-per-task", "N", 1u, "runs at once in each task")
     ->check(CLI::Range(1u, 4096u))
-    ->capture_default_str()
-    ->type_name("N");
-  batch_command->add_option("--time", batch.time, "limit per task, [days-]hours:minutes:seconds")
-    ->capture_default_str()
-    ->type_name("TIME");
-  batch_command->add_option("--partition", batch.partition, "partition; default: that of the cluster")
-    ->type_name("NAME");
-  batch_command->callback(
-    [&]
-    {
-      if (options.output_dir.empty())
-        options.output_dir = study_folder(batch.study, batch.sweep);
-      command = [&] { return write_batch(options, batch); };
-    });
+    ->default_str("1");
+  keep(batch_command, batch_chosen, "time", "--time", "TIME", std::string("1-00:00:00"),
+       "limit per task, [days-]hours:minutes:seconds")
+    ->default_str("1-00:00:00");
+  keep(batch_command, batch_chosen, "partition", "--partition", "NAME", std::string(),
+       "partition; default: that of the cluster");
 
-  CompareOptions chosen;
+  std::string first, second;
   CLI::App *compare_command =
     add_command("compare", "two cracks, or a lattice frame and a continuum frame site by site",
                 "latcon compare output/strip output/thin");
   compare_command
-    ->add_option("LATTICE", chosen.first,
+    ->add_option("LATTICE", first,
                  "output directory of a crack; or frame (.vtp), series (.pvd) or output directory of a lattice")
     ->required()
     ->type_name("");
   compare_command
-    ->add_option("CONTINUUM", chosen.second,
+    ->add_option("CONTINUUM", second,
                  "output directory of a second crack; or frame (.vtu, .pvtu), series (.pvd) or output directory of a "
                  "continuum")
     ->required()
     ->type_name("");
-  const auto add_time = [&](const std::string &name, std::string &time, const std::string &help)
-  { compare_command->add_option(name, time, help)->type_name("TIME"); };
-  add_time("--time", chosen.time, "time of both frames, or load factor; default: the last");
-  add_time("--lattice-time", chosen.lattice_time, "time of the lattice frame");
-  add_time("--continuum-time", chosen.continuum_time, "time of the continuum frame; with --lattice-time it may differ");
-  compare_command
-    ->add_option("--tolerance", chosen.tolerances,
-                 "FIELD=VALUE, largest relative root-mean-square difference that holds; repeatable")
-    ->allow_extra_args(false)
-    ->type_name("FIELD=VALUE");
-  compare_command->add_flag("--overlap", chosen.overlap,
-                            "compare where both sheets are; one may be a part of the other, as around a crack");
-  compare_command
-    ->add_option("--exclude", chosen.excluded,
-                 "X,Y,R, centre and radius of a circle in the undeformed sheet whose sites are not compared, as at a "
-                 "crack tip; repeatable")
-    ->allow_extra_args(false)
-    ->type_name("X,Y,R");
+  keep(compare_command, compared, "time", "--time", "TIME", std::string(),
+       "time of both frames, or load factor; default: the last");
+  keep(compare_command, compared, "lattice_time", "--lattice-time", "TIME", std::string(), "time of the lattice frame");
+  keep(compare_command, compared, "continuum_time", "--continuum-time", "TIME", std::string(),
+       "time of the continuum frame; with --lattice-time it may differ");
+  keep(compare_command, compared, "tolerances", "--tolerance", "FIELD=VALUE", Words(),
+       "FIELD=VALUE, largest relative root-mean-square difference that holds; repeatable");
+  keep(compare_command, compared, "overlap", "--overlap",
+       "compare where both sheets are; one may be a part of the other, as around a crack");
+  keep(compare_command, compared, "excluded", "--exclude", "X,Y,R", Words(),
+       "X,Y,R, centre and radius of a circle in the undeformed sheet whose sites are not compared, as at a "
+       "crack tip; repeatable");
   compare_command->add_flag("--no-report", options.no_report, "of two cracks, draw no page");
   compare_command->callback(
     [&]
     {
       default_folder("compare");
-      command = [&] { return compare(options, chosen); };
+      command = [&] { return continue_in_python(options, "compare", {first, second}, compared); };
     });
 
-  ReportOptions shown;
+  std::string directory;
+  bool animation = false;
   CLI::App *report_command =
     add_command("report", "summary table, pictures and report.html of finished runs", "latcon report output/quick");
   report_command
-    ->add_option("DIR", shown.directory,
+    ->add_option("DIR", directory,
                  "output directory of a run, or a folder of several; with --output-dir it is only read")
     ->required()
     ->type_name("");
-  report_command->add_flag("--animation", shown.animation, "draw animation.gif of each crack as well");
-  report_command->callback([&] { command = [&] { return report(options, shown); }; });
+  report_command->add_flag("--animation", animation, "draw animation.gif of each crack as well");
+  report_command->callback([&] { command = [&] { return report(options, directory, animation); }; });
 
-  std::string directory;
   CLI::App *init_command = add_command("init", "a folder with a commented case to start from", "latcon init my-strip");
   init_command->add_option("DIR", directory, "folder; the case in it has its name")
     ->required()

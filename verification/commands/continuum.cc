@@ -3,11 +3,9 @@
 #include <sstream>
 
 #include "continuum/errors.h"
-#include "verification/commands/continuum_commands.h"
 #include "verification/commands/cost.h"
 #include "verification/commands/element_motion.h"
 #include "verification/commands/equilibrium.h"
-#include "verification/commands/signals.h"
 #include "verification/output/checkpoints.h"
 #include "verification/resources/continuum_resources.h"
 #include "verification/resources/resources.h"
@@ -87,7 +85,7 @@ support::ExitCode run_continuum(const input::Options &options)
     const output::Results results =
       moves ? motion(input, model, *sheet_in_motion, checkpoints, run)
             : equilibrium(input, model, checkpoints, run);
-    return interrupted() ? run.interrupted(results) : run.finish(results);
+    return run.finish(results);
   }
   catch (const output::UnusableCheckpoint &)
   {

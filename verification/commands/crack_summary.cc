@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "support/text_wrap.h"
-#include "verification/output/quantity_text.h"
 
 namespace latcon::commands
 {
@@ -18,9 +17,48 @@ constexpr std::size_t columns = 120;
 // Leaves room for the measured quantities; results.csv has all rows.
 constexpr std::size_t most_failing_rows = 4;
 
-std::string padded(const std::string &text, std::size_t width)
+// Unit and scale for display.
+struct Display
 {
-  return text + std::string(width - std::min(width, support::width_of(text)), ' ');
+  double scale;
+  std::string unit;
+};
+
+Display display(const std::string &unit)
+{
+  if (unit == "m")
+    return {1e2, " cm"};
+  if (unit == "m^2")
+    return {1e6, " mm²"};
+  if (unit == "s")
+    return {1e3, " ms"};
+  if (unit == "degrees")
+    return {1., "°"};
+  return {1., unit == "1" ? "" : " " + unit};
+}
+
+std::string format_number(const char *format, int digits, double value)
+{
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), format, digits, value);
+  return text.data();
+}
+
+// A number with a readable unit: lengths in cm, areas in mm^2, times in ms. @param deviation standard deviation in the
+// same unit, or none
+std::string quantity_text(const double value, const std::optional<double> deviation, const std::string &unit)
+{
+  const Display shown = display(unit);
+  // Equal values have a deviation of round-off.
+  if (!deviation || !(*deviation > 1e-12 * std::abs(value)))
+    return format_number("%.*g", 4, shown.scale * value) + shown.unit;
+  // Two digits of the deviation, and the value to the same decimal place.
+  const double spread = shown.scale * *deviation;
+  const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(spread))), 0, 12);
+  if (digits > 6 && std::abs(shown.scale * value) < 1e-3)
+    return format_number("%.*e", 1, shown.scale * value) + " ± " + format_number("%.*e", 1, spread) + shown.unit;
+  return format_number("%.*f", digits, shown.scale * value) + " ± " + format_number("%.*f", digits, spread) +
+         shown.unit;
 }
 
 // One quantity: "  wavelength, undeformed   2.359 ± 0.026 cm    reference 2.3 cm, +2.6 %".
@@ -29,11 +67,11 @@ std::string line_of(const std::string &name, const std::optional<analysis::Measu
 {
   if (!measured && !reference)
     return "";
-  std::string line = "  " + padded(name, 26);
-  line += measured ? output::quantity_text(measured->value, measured->uncertainty, unit) : "not measured";
+  std::string line = "  " + support::padded(name, 26);
+  line += measured ? quantity_text(measured->value, measured->uncertainty, unit) : "not measured";
   if (!reference)
     return line + "\n";
-  line = padded(line, 52) + "reference " + output::quantity_text(*reference, {}, unit);
+  line = support::padded(line, 52) + "reference " + quantity_text(*reference, {}, unit);
   if (measured)
   {
     std::array<char, 32> percent{};
@@ -41,23 +79,6 @@ std::string line_of(const std::string &name, const std::optional<analysis::Measu
     line += percent.data();
   }
   return line + "\n";
-}
-
-std::string counted(std::size_t n)
-{
-  return std::to_string(n) + (n == 1 ? " check" : " checks");
-}
-
-// One claim: "  energy                    12 checks hold".
-std::string line_of_claim(const std::string &claim, const output::Results &rows)
-{
-  const std::size_t fail = rows.count(output::Verdict::fails), hold = rows.count(output::Verdict::holds);
-  std::string line = "  " + padded(claim, 26);
-  if (fail > 0)
-    return line + std::to_string(fail) + " of " + counted(fail + hold) + (fail == 1 ? " fails\n" : " fail\n");
-  if (hold > 0)
-    return line + counted(hold) + (hold == 1 ? " holds\n" : " hold\n");
-  return line + "nothing was checked\n";
 }
 
 } // namespace
@@ -75,7 +96,7 @@ std::string claim_lines(const output::Results &results)
   }
   std::string text;
   for (const auto &[claim, rows] : claims)
-    text += line_of_claim(claim, rows);
+    text += "  " + support::padded(claim, 26) + rows.count_text() + "\n";
   return text;
 }
 

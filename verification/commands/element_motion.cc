@@ -7,6 +7,8 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/numerics/vector_tools_interpolate.h>
 
+#include <nlohmann/json.hpp>
+
 #include "continuum/errors.h"
 #include "continuum/field_writer.h"
 #include "verification/bridge/affine_displacement.h"
@@ -53,9 +55,9 @@ output::Results motion_results(const continuum::DynamicSolver &solver, const out
 {
   output::Results results;
   const continuum::EnergyLedger &ledger = solver.ledger();
-  const auto add = [&results](const std::string &quantity, const std::string &unit, double value) {
-    results.add({"continuum", quantity, unit, {}, value, {}, {}, {}});
-  };
+  const auto add =
+    [rows = claims::Rows(results, "continuum", "")](const std::string &quantity, const std::string &unit, double value)
+  { rows.add(quantity, unit, claims::of_continuum(value)); };
   add("unknowns", "1", solver.sheet().dof_handler().n_dofs());
   add("time step", "s", time_step);
   add("elastic energy per thickness", "J/m", ledger.stored);
@@ -64,16 +66,8 @@ output::Results motion_results(const continuum::DynamicSolver &solver, const out
   add("energy dissipated per thickness", "J/m", ledger.dissipated);
   add("work done on the sheet per thickness", "J/m", ledger.work);
   add("energy imbalance per thickness", "J/m", ledger.imbalance);
-  results.add({"continuum",
-               "energy imbalance over energy exchanged",
-               "1",
-               {},
-               check.imbalance(),
-               {},
-               check.imbalance(),
-               output::allowed_imbalance_of_implicit_motion(check.rate(), time_step),
-               false,
-               output::RowKind::ledger});
+  results.add(ledger_row("continuum", claims::of_continuum(check.imbalance()), check.imbalance(),
+                         output::allowed_imbalance_of_implicit_motion(check.rate(), time_step)));
   return results;
 }
 
@@ -83,9 +77,8 @@ class ElementMotion : public Motion
 public:
   ElementMotion(const input::Case &input, const bridge::ContinuumModel &model, MovingSheet &sheet,
                 output::Checkpoints &checkpoints, Run &run)
-    : Motion(input, checkpoints, run), model_(model), sheet_(sheet),
-      record_(output::mechanism_names(model.subject().material)), frames_(MPI_COMM_WORLD, run.directory()),
-      n_steps_(static_cast<std::size_t>(std::ceil(input.end_time / sheet.settings.time_step * (1. - 1e-12))))
+    : Motion(input, checkpoints, run, sheet.settings.time_step), model_(model), sheet_(sheet),
+      record_(output::mechanism_names(model.subject().material)), frames_(MPI_COMM_WORLD, run.directory())
   {
   }
 
@@ -93,7 +86,7 @@ public:
   output::Results results()
   {
     go("motion");
-    run_.info().add("divided_steps", static_cast<std::uint64_t>(solver_.n_divided_steps()));
+    run_.info().add("divided_steps", solver_.n_divided_steps());
     run_.info().add("newton_iterations", n_newton_);
     run_.info().add("linear_iterations", n_linear_);
     return motion_results(solver_, record_.ledger(), sheet_.settings.time_step);
@@ -101,13 +94,7 @@ public:
 
 private:
   double time() const override { return solver_.time(); }
-  double time_of_step() const override { return static_cast<double>(step()) * sheet_.settings.time_step; }
-  bool is_complete() const override { return step() >= n_steps_; }
   std::size_t n_frames() const override { return frames_.n_frames(); }
-  std::pair<std::string, double> progress() const override
-  {
-    return {"/" + std::to_string(n_steps_), static_cast<double>(step()) / static_cast<double>(n_steps_)};
-  }
   void start() override
   {
     sheet_.start(input_, model_, run_);
@@ -170,7 +157,6 @@ private:
   continuum::DynamicSolver &solver_ = sheet_.solver;
   output::ContinuumRecord record_;
   continuum::FieldWriter frames_;
-  std::size_t n_steps_;
   std::uint64_t n_newton_ = 0, n_linear_ = 0; // iterations of this run, without those before a checkpoint
 };
 

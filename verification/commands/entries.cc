@@ -7,8 +7,7 @@
 #include "support/text_wrap.h"
 #include "verification/commands/command.h"
 #include "verification/input/case_text.h"
-#include "verification/input/input_file.h"
-#include "verification/input/shipped_cases.h"
+#include "verification/input/files.h"
 #include "verification/input/spelling.h"
 
 namespace latcon::commands
@@ -21,22 +20,14 @@ using Entries = std::vector<input::Declaration>;
 
 constexpr std::size_t page_columns = 120;
 
-bool is_root()
+// The entries of cases.
+const input::Parameters &declared()
 {
-  return support::is_root_rank();
-}
-
-Entries all_entries()
-{
-  input::Case input;
-  input::Parameters parameters;
-  input.declare(parameters);
-  return parameters.declarations();
-}
-
-std::string key_of(const input::Declaration &entry)
-{
-  return entry.section + "/" + entry.name;
+  static input::Case input;
+  static input::Parameters parameters;
+  if (parameters.sections().empty())
+    input.declare(parameters);
+  return parameters;
 }
 
 std::string default_of(const input::Declaration &entry)
@@ -47,20 +38,6 @@ std::string default_of(const input::Declaration &entry)
 std::string unit_of(const input::Declaration &entry)
 {
   return entry.unit == "1" ? "-" : entry.unit;
-}
-
-std::string padded_name(const std::string &text, std::size_t width)
-{
-  return text + std::string(width - std::min(width, support::width_of(text)), ' ');
-}
-
-std::vector<std::string> sections_of(const Entries &entries)
-{
-  std::vector<std::string> sections;
-  for (const input::Declaration &entry : entries)
-    if (std::find(sections.begin(), sections.end(), entry.section) == sections.end())
-      sections.push_back(entry.section);
-  return sections;
 }
 
 // The text in lines that begin below one another, the first after `before`.
@@ -74,14 +51,14 @@ std::string hanging(const std::string &before, const std::string &text)
 }
 
 // Table of the entries of a section: name, unit, default, meaning.
-std::string section_text(const Entries &entries, const std::string &section)
+std::string section_text(const std::string &section)
 {
   constexpr std::size_t name_width = 20, unit_width = 8, default_width = 22;
   std::string text = section + "\n";
-  for (const input::Declaration &entry : entries)
+  for (const input::Declaration &entry : declared().declarations())
     if (entry.section == section)
-      text += hanging("  " + padded_name(entry.name, name_width) + padded_name(unit_of(entry), unit_width) +
-                        padded_name(default_of(entry), default_width) + " ",
+      text += hanging("  " + support::padded(entry.name, name_width) + support::padded(unit_of(entry), unit_width) +
+                        support::padded(default_of(entry), default_width) + " ",
                       entry.documentation);
   return text;
 }
@@ -89,7 +66,7 @@ std::string section_text(const Entries &entries, const std::string &section)
 // All that is declared of one entry, and how to set it.
 std::string entry_text(const input::Declaration &entry)
 {
-  std::string text = key_of(entry) + "\n" + hanging("  ", entry.documentation);
+  std::string text = entry.key() + "\n" + hanging("  ", entry.documentation);
   if (!entry.unit.empty())
     text +=
       "  unit:     " + (entry.unit == "1" ? "none" : entry.unit + "; a value may carry its unit, with any prefix") +
@@ -104,7 +81,7 @@ std::string entry_text(const input::Declaration &entry)
   const std::string value = entry.presence == input::Presence::required ? "..." : entry.default_text;
   text += "  in a case file:       subsection " + entry.section + "\n                          set " + entry.name +
           " = " + value + "\n                        end\n";
-  return text + "  on the command line:  --set \"" + key_of(entry) + "=" + value + "\"\n";
+  return text + "  on the command line:  --set \"" + entry.key() + "=" + value + "\"\n";
 }
 
 // Equal but for capitals.
@@ -116,9 +93,8 @@ bool is_same_word(const std::string &a, const std::string &b)
 [[noreturn]] void refuse(const std::string &kind, const std::string &given, const std::vector<std::string> &known,
                          const std::string &otherwise)
 {
-  const std::string nearest = input::nearest_word(given, known);
-  throw support::InputError("no " + kind + " '" + input::printable(given) + "'; " +
-                            (nearest.empty() ? otherwise : "nearest: " + nearest));
+  throw support::InputError("no " + kind + " '" + input::printable(given) + "'" +
+                            input::nearest_hint(given, known, otherwise));
 }
 
 // Entries that a text may mean: Section/Name, or a name in any section.
@@ -126,7 +102,7 @@ Entries entries_named(const Entries &entries, const std::string &text)
 {
   Entries named;
   for (const input::Declaration &entry : entries)
-    if (is_same_word(text, key_of(entry)) || is_same_word(text, entry.name))
+    if (is_same_word(text, entry.key()) || is_same_word(text, entry.name))
       named.push_back(entry);
   return named;
 }
@@ -138,9 +114,9 @@ std::vector<std::string> candidates(const Entries &entries, const std::string &t
   const bool is_key = topic.find('/') != std::string::npos;
   std::vector<std::string> known = is_key ? std::vector<std::string>{} : commands;
   for (const input::Declaration &entry : entries)
-    known.push_back(is_key ? key_of(entry) : entry.name);
+    known.push_back(is_key ? entry.key() : entry.name);
   if (!is_key)
-    for (const std::string &section : sections_of(entries))
+    for (const std::string &section : declared().sections())
       known.push_back(section);
   return known;
 }
@@ -157,30 +133,29 @@ std::string case_name(const std::string &directory)
 
 support::ExitCode print_entries(const std::string &section)
 {
-  const Entries entries = all_entries();
-  const std::vector<std::string> sections = sections_of(entries);
+  const std::vector<std::string> sections = declared().sections();
   std::string text;
   for (const std::string &known : sections)
     if (section.empty() || is_same_word(section, known))
-      text += (text.empty() ? "" : "\n") + section_text(entries, known);
+      text += (text.empty() ? "" : "\n") + section_text(known);
   if (text.empty())
-    refuse("section", section, sections, "sections: " + input::comma_separated(sections));
-  if (is_root())
+    refuse("section", section, sections, "; sections: " + input::comma_separated(sections));
+  if (support::is_root_rank())
     std::cout << text << "\nColumns: name, SI unit, default, meaning. One entry in full: latcon help Section/Name\n";
   return support::ExitCode::done;
 }
 
 support::ExitCode print_topic(const std::string &topic, const std::vector<std::string> &commands)
 {
-  const Entries entries = all_entries();
-  for (const std::string &section : sections_of(entries))
+  const Entries entries = declared().declarations();
+  for (const std::string &section : declared().sections())
     if (is_same_word(topic, section))
       return print_entries(section);
   const Entries named = entries_named(entries, topic);
   if (named.empty())
     refuse("command, section or entry", topic, candidates(entries, topic, commands),
-           "`latcon entries` lists all entries, `latcon --help` all commands");
-  if (is_root())
+           "; `latcon entries` lists all entries, `latcon --help` all commands");
+  if (support::is_root_rank())
     for (const input::Declaration &entry : named)
       std::cout << entry_text(entry);
   return support::ExitCode::done;
@@ -190,13 +165,13 @@ support::ExitCode init(const input::Options &options, const std::string &directo
 {
   const std::string name = case_name(directory);
   const fs::path file = fs::path(directory) / (name + ".prm");
-  if (is_root() && fs::exists(file))
+  if (support::is_root_rank() && fs::exists(file))
     throw support::InputError(file.string() + " exists; give another folder");
   const std::string source = input::shipped_case_file("start");
   const input::InputFile start = input::read_input_file(source);
   if (!start.problem.empty())
     throw support::InputError("cannot read the starting case " + source + ": " + start.problem);
-  if (is_root() && !options.dry_run)
+  if (support::is_root_rank() && !options.dry_run)
   {
     std::error_code error;
     fs::create_directories(directory, error);

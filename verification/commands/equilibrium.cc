@@ -106,9 +106,9 @@ output::Results equilibrium(const input::Case &input, bridge::ContinuumModel &mo
   write_frame(1.);
 
   output::Results results;
-  const auto add = [&results](const std::string &quantity, const std::string &unit, double value) {
-    results.add({"continuum", quantity, unit, {}, value, {}, {}, {}});
-  };
+  const claims::Rows rows(results, "continuum", "");
+  const auto add = [&rows](const std::string &quantity, const std::string &unit, double value)
+  { rows.add(quantity, unit, claims::of_continuum(value)); };
   add("unknowns", "1", solver.sheet().dof_handler().n_dofs());
   add("elastic energy per thickness", "J/m", solver.total_energy());
   for (const auto &[id, force] : solver.reactions())
@@ -118,14 +118,9 @@ output::Results equilibrium(const input::Case &input, bridge::ContinuumModel &mo
   add("smallest area ratio", "1", range.smallest);
   add("largest area ratio", "1", range.largest);
   if (n_cycles > 0)
-    results.add({"continuum",
-                 "largest reaction, relative change in the last adaptive cycle",
-                 "N/m",
-                 {},
-                 record.largest_reaction(),
-                 {},
-                 record.reaction_change(),
-                 input.continuum.reaction_tolerance});
+    rows.add("largest reaction, relative change in the last adaptive cycle", "N/m",
+             claims::of_continuum(record.largest_reaction()), record.reaction_change(),
+             input.continuum.reaction_tolerance);
   if (run.is_root())
     record.write(run.directory());
   return results;

@@ -1,13 +1,18 @@
 #include <algorithm>
+#include <iostream>
+#include <limits>
+#include <sstream>
 #include <string>
 
+#include <nlohmann/json.hpp>
+
+#include "support/largest_error.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/claims/claim_inputs.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
-#include "verification/commands/crack_run.h"
-#include "verification/commands/dry_run.h"
+#include "verification/commands/crack_summary.h"
 #include "verification/commands/motion.h"
 #include "verification/input/cracked_sheet.h"
 #include "verification/output/crack_film.h"
@@ -17,6 +22,25 @@ namespace latcon::commands
 {
 namespace
 {
+
+// Draws pictures and page of a run, then prints the seconds of each phase and the path of the page. Collective: an
+// exception on one rank would end the others while rank 0 draws. @return exit code of the drawing, on rank 0
+support::ExitCode draw_page(Run &run)
+{
+  support::ExitCode exit_code = support::ExitCode::done;
+  if (run.is_root())
+  {
+    auto phase = run.info().stopwatch().phase("report");
+    const support::ExitCode drawn = draw_report(run.directory(), run.is_verbose());
+    phase.stop();
+    if (drawn != support::ExitCode::claim_failed)
+      exit_code = drawn;
+    if (run.is_verbose() && exit_code == support::ExitCode::done)
+      std::cout << times_text(run.info().stopwatch().times()) << "; " << run.directory() << "/report.html" << std::endl;
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  return exit_code;
+}
 
 // Motion until the crack reaches the stop position or the time ends.
 class CrackMotion : public LatticeMotion
@@ -36,8 +60,11 @@ private:
   bool is_complete() const override { return !(time() < input_.end_time && record_.tip().X() < stop_); }
   std::pair<std::string, double> progress() const override
   {
-    return {crack_progress(time(), record_.tip()) + ", " + std::to_string(simulation_.n_broken()) + " bonds broken",
-            std::max((record_.tip().X() - seed_tip_) / (stop_ - seed_tip_), time() / input_.end_time)};
+    std::ostringstream text;
+    text.precision(3);
+    text << ", t " << 1e3 * time() << " ms, tip " << 100. * record_.tip().X() << " cm, speed " << record_.tip().speed()
+         << " m/s, " << simulation_.n_broken() << " bonds broken";
+    return {text.str(), std::max((record_.tip().X() - seed_tip_) / (stop_ - seed_tip_), time() / input_.end_time)};
   }
   void start() override
   {
@@ -70,6 +97,86 @@ private:
   output::CrackFilm film_;
 };
 
+// Returns the rows `fracture` of a crack: its measured quantities beside the published ones, and its energies.
+// @param imbalance output::LedgerCheck::imbalance() [-] @param allowed with which it holds
+output::Results measured_results(const input::Case &input, const analysis::CrackMeasurement &crack,
+                                 const double imbalance, const output::Tolerance &allowed)
+{
+  const auto of_side = input.nonlocal.is_used ? &output::Result::continuum : &output::Result::lattice;
+  output::Results results;
+  const auto add = [&](const std::string &quantity, const std::string &unit,
+                       const std::optional<analysis::Measured> &measured, const std::optional<double> &published)
+  {
+    output::Result row{"fracture", quantity, unit, {}, {}, published, {}, {}};
+    if (measured)
+      row.*of_side = measured->value;
+    if (published)
+    {
+      row.kind = output::RowKind::reference;
+      row.tolerance = {input.reference_tolerance, "that of the case: Reference/tolerance"};
+      // A published quantity that could not be measured does not agree.
+      row.error =
+        measured ? support::relative_error(measured->value, *published) : std::numeric_limits<double>::quiet_NaN();
+    }
+    results.add(row);
+  };
+  add("Lagrangian crack speed", "m/s", crack.speed_lagrangian, input.reference_speed);
+  add("laboratory crack speed", "m/s", crack.speed_laboratory, {});
+  add("wavelength, undeformed", "m", crack.wavelength, input.reference_wavelength);
+  add("amplitude, undeformed", "m", crack.amplitude, input.reference_amplitude);
+  results.add(ledger_row("fracture",
+                         input.nonlocal.is_used ? claims::of_continuum(imbalance) : claims::of_lattice(imbalance),
+                         imbalance, allowed));
+  return results;
+}
+
+// Checks claims on the case's own material and pre-stretch, as require_verified(). A crack that they refuse leaves its
+// page all the same.
+output::Results passed_or_reported(const input::Case &input, const std::vector<claims::Claim> &claims,
+                                   const bridge::Laws &laws, const input::Options &options, Run &run)
+{
+  try
+  {
+    return require_verified(input, claims, laws, run);
+  }
+  catch (const support::ClaimFailed &)
+  {
+    if (!options.no_report)
+      try
+      {
+        draw_page(run);
+      }
+      catch (const support::OutputError &error) // the failed claims are the message that matters
+      {
+        std::cerr << "latcon: " << error.what() << std::endl;
+      }
+    throw;
+  }
+}
+
+// Ends the run of a crack: writes its results, prints its summary, draws its page. Collective. @return the exit code of
+// the command
+support::ExitCode end_crack(const input::Case &input, const input::Options &options, Run &run,
+                            const output::Results &results, const analysis::CrackMeasurement &crack)
+{
+  const support::ExitCode exit_code = run.end(results, exit_code_of(results));
+  if (run.is_verbose())
+  {
+    if (options.verbose)
+      results.print(std::cout);
+    std::cout << crack_summary(input, crack, results) << std::flush;
+  }
+  if (options.no_report || exit_code == support::ExitCode::interrupted)
+  {
+    if (run.is_verbose())
+      std::cout << times_text(run.info().stopwatch().times()) << "; " << run.directory() << std::endl;
+    return exit_code;
+  }
+  // The verdict in the page is the one returned here; a crack without its page has failed.
+  const support::ExitCode drawn = draw_page(run);
+  return exit_code == support::ExitCode::done ? drawn : exit_code;
+}
+
 struct Crack
 {
   analysis::CrackMeasurement measurement;
@@ -88,7 +195,7 @@ Crack run_crack(const input::Case &input, const lattice::TriangularLattice &shee
   const double seed_tip = input.seed_tip(sheet);
   CrackMotion motion(input, simulation, seed_tip, checkpoints, run);
   motion.go("fracture");
-  run.info().add("divided_steps", static_cast<std::uint64_t>(simulation.n_divided_steps()));
+  run.info().add("divided_steps", simulation.n_divided_steps());
   motion.film().end();
   output::CrackRecord &record = motion.record();
   const analysis::CrackMeasurement crack = record.measure(seed_tip);
@@ -117,21 +224,8 @@ support::ExitCode run_fracture(const input::Options &options)
 
   const lattice::TriangularLattice sheet = input.sheet();
   const lattice::Material material = input.material();
-  const lattice::TimeStepping stepping = input.fracture_time_stepping();
-  const double seconds = rough_seconds(input, stepping, resources::expected_steps(input, stepping));
-  const bool claims = !options.skip_verification;
-  const resources::MemoryNeed memory = resources::lattice_memory(input, resources::RunKind::fracture, claims);
-  if (options.dry_run)
-  {
-    print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
-    require_memory(options, memory);
-    if (!options.quiet)
-      print_dry_run(options, lattice_text(input, stepping, resources::RunKind::fracture, claims, !options.no_report));
-    require_time(options, seconds);
+  if (!is_to_be_run(options, parameters, input, input.fracture_time_stepping(), resources::RunKind::fracture))
     return support::ExitCode::done;
-  }
-  require_memory(options, memory);
-  require_time(options, seconds);
 
   output::Checkpoints checkpoints(options, parameters, input,
                                   options.on_continuum ? "fracture --side continuum" : "fracture");
@@ -139,13 +233,13 @@ support::ExitCode run_fracture(const input::Options &options)
   run.record_checkpoint(checkpoints);
   if (options.on_continuum)
   {
-    run.info().add("side", std::string("continuum"));
+    run.info().add("side", "continuum");
     run.info().add("grid_spacing_m", sheet.spacing());
-    run.info().add("half_bonds", static_cast<std::uint64_t>(sheet.n_kinds()));
+    run.info().add("half_bonds", sheet.n_kinds());
   }
   run.info().add("skip_verification", options.skip_verification);
   output::Results results;
-  if (claims)
+  if (!options.skip_verification)
     results = passed_or_reported(input, claims_before_fracture(material, options.on_continuum),
                                  bridge::laws_of_lattice(), options, run);
   const Crack crack = run_crack(input, sheet, options.skip_verification, checkpoints, run);

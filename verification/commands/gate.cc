@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "support/ranks.h"
 #include "verification/bridge/small_strain.h"
 #include "verification/claims/verdict_store.h"
@@ -71,15 +73,6 @@ Stored look_up(const input::Case &input, const std::vector<claims::Claim> &requi
   return stored;
 }
 
-// Returns the same on all ranks.
-Stored look_up_on_root_rank(const input::Case &input, const std::vector<claims::Claim> &required,
-                            const bridge::Laws &laws, const Run &run, const std::optional<std::string> &folder)
-{
-  Stored stored = run.is_root() ? look_up(input, required, laws, folder) : Stored();
-  const auto shared = [](const std::string &text) { return support::broadcast(text); };
-  return {shared(stored.key), shared(stored.text), shared(stored.note), std::move(stored.turn)};
-}
-
 void append(std::string &note, const std::string &more)
 {
   note += (note.empty() ? "" : "; ") + more;
@@ -107,7 +100,7 @@ bool keep(const claims::VerdictKey &key, const claims::Verdicts &verdicts, const
 struct Group
 {
   claims::Verdicts verdicts;
-  output::RunInfo::Object record; // of run.json
+  nlohmann::ordered_json record;  // of run.json
   std::string note, origin;       // messages; the first may be empty
   std::string refusal;            // addition to the message that the claims do not hold; empty: none
 };
@@ -116,7 +109,9 @@ Group verified(const input::Case &input, const std::vector<claims::Claim> &requi
                const Run &run)
 {
   const std::optional<std::string> folder = claims::VerdictStore::folder_of_user();
-  Stored stored = look_up_on_root_rank(input, required, laws, run, folder);
+  Stored stored = run.is_root() ? look_up(input, required, laws, folder) : Stored();
+  for (std::string *text : {&stored.key, &stored.text, &stored.note})
+    *text = support::broadcast(*text);
   const claims::VerdictKey key(stored.key);
   const std::string path = folder ? claims::VerdictStore(*folder).path(key) : "";
   // Of verdicts that refuse a crack, rows may be missing.
@@ -153,7 +148,7 @@ Group verified(const input::Case &input, const std::vector<claims::Claim> &requi
   group.record = {
     {"hash", key.text.empty() ? "" : key.hash}, {"reused", reused}, {"checked_at", group.verdicts.checked_at}};
   if (!stored.note.empty())
-    group.record.emplace_back("note", stored.note);
+    group.record["note"] = stored.note;
   group.origin = reused ? "verdicts of " + group.verdicts.checked_at + ", hash " + key.hash + ", reused"
                         : "checked now" + (kept ? ", hash " + key.hash + ", kept" : std::string());
   if (reused)

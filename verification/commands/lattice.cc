@@ -1,15 +1,15 @@
 #include <cmath>
 #include <iostream>
 
+#include <nlohmann/json.hpp>
+
 #include "lattice/relaxation.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/bridge/plane_waves.h"
 #include "verification/bridge/small_strain.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
-#include "verification/commands/dry_run.h"
 #include "verification/commands/motion.h"
-#include "verification/commands/signals.h"
 #include "verification/output/field_writer.h"
 
 namespace latcon::commands
@@ -37,15 +37,9 @@ output::Results relaxed(const input::Case &input, const lattice::TriangularLatti
   state.time = 1.; // load factor, as for the continuum
   fields.add_frame(state);
   output::Results results;
-  results.add({"lattice",
-               "elastic energy per thickness",
-               "J/m",
-               lattice::elastic_energy(state, sheet, material),
-               {},
-               {},
-               {},
-               {}});
-  results.add({"lattice", "largest force on a free site, per thickness", "N/m", relaxation.residual, {}, {}, {}, {}});
+  const claims::Rows rows(results, "lattice", "");
+  rows.add("elastic energy per thickness", "J/m", claims::of_lattice(lattice::elastic_energy(state, sheet, material)));
+  rows.add("largest force on a free site, per thickness", "N/m", claims::of_lattice(relaxation.residual));
   return results;
 }
 
@@ -63,26 +57,6 @@ double exchange_steps(const input::Case &input, double time)
   return rate == 0. ? time / step : -std::expm1(-rate * time) / (rate * step);
 }
 
-// Motion until the end time.
-class FreeMotion : public LatticeMotion
-{
-public:
-  FreeMotion(const input::Case &input, lattice::Simulation &simulation, output::Checkpoints &checkpoints, Run &run)
-    : LatticeMotion(input, simulation, checkpoints, run),
-      n_steps_(static_cast<std::size_t>(std::ceil(input.end_time / simulation.time_step() * (1. - 1e-12))))
-  {
-  }
-
-private:
-  bool is_complete() const override { return step() >= n_steps_; }
-  std::pair<std::string, double> progress() const override
-  {
-    return {"/" + std::to_string(n_steps_), static_cast<double>(step()) / static_cast<double>(n_steps_)};
-  }
-
-  std::size_t n_steps_;
-};
-
 // Moves the sheet until the end time. Collective, with the same results on every rank.
 output::Results moved(const input::Case &input, const lattice::RowPartition &band, const lattice::Material &material,
                       lattice::State state, output::Checkpoints &checkpoints, Run &run)
@@ -94,23 +68,18 @@ output::Results moved(const input::Case &input, const lattice::RowPartition &ban
   lattice::Simulation simulation(band, material, std::move(state), stepping);
   for (const lattice::Constraint &constraint : constraints)
     simulation.constrain(constraint);
-  FreeMotion motion(input, simulation, checkpoints, run);
+  LatticeMotion motion(input, simulation, checkpoints, run);
   motion.go("motion");
-  run.info().add("divided_steps", static_cast<std::uint64_t>(simulation.n_divided_steps()));
+  run.info().add("divided_steps", simulation.n_divided_steps());
   output::Results results;
   const lattice::EnergyBalance energies = simulation.energies();
-  results.add({"lattice", "elastic energy per thickness", "J/m", energies.elastic, {}, {}, {}, {}});
-  results.add({"lattice", "kinetic energy per thickness", "J/m", energies.kinetic, {}, {}, {}, {}});
-  results.add({"lattice",
-               "energy imbalance over energy exchanged",
-               "1",
-               motion.record().imbalance(),
-               {},
-               {},
-               motion.record().imbalance(),
-               output::allowed_imbalance_of_motion(input.integrator, exchange_steps(input, simulation.state().time)),
-               false,
-               output::RowKind::ledger});
+  const claims::Rows rows(results, "lattice", "");
+  rows.add("elastic energy per thickness", "J/m", claims::of_lattice(energies.elastic));
+  rows.add("kinetic energy per thickness", "J/m", claims::of_lattice(energies.kinetic));
+  const double imbalance = motion.record().imbalance();
+  results.add(
+    ledger_row("lattice", claims::of_lattice(imbalance), imbalance,
+               output::allowed_imbalance_of_motion(input.integrator, exchange_steps(input, simulation.state().time))));
   return results;
 }
 
@@ -131,22 +100,10 @@ support::ExitCode run_lattice(const input::Options &options)
 
   const lattice::TriangularLattice sheet = input.lattice();
   const lattice::Material material = input.material();
-  const resources::RunKind kind = moves ? resources::RunKind::dynamics : resources::RunKind::equilibrium;
-  const resources::MemoryNeed memory = resources::lattice_memory(input, kind);
-  const lattice::TimeStepping stepping = input.lattice_time_stepping();
-  const double seconds = moves ? rough_seconds(input, stepping, input.end_time / stepping.step) : 0.;
-  if (options.dry_run)
-  {
-    print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
-    require_memory(options, memory);
-    if (!options.quiet)
-      print_dry_run(options, lattice_text(input, stepping, kind));
-    require_time(options, seconds);
+  if (!is_to_be_run(options, parameters, input, input.lattice_time_stepping(),
+                    moves ? resources::RunKind::dynamics : resources::RunKind::equilibrium))
     return support::ExitCode::done;
-  }
   output::Checkpoints checkpoints(options, parameters, input, "lattice");
-  require_memory(options, memory);
-  require_time(options, seconds);
   Run run(options, parameters);
   run.record_checkpoint(checkpoints);
   output::Results results;
@@ -165,7 +122,7 @@ support::ExitCode run_lattice(const input::Options &options)
   }
   else if (run.is_root()) // the root rank computes the equilibrium
     results = relaxed(input, sheet, material, state_of(sheet), run);
-  return interrupted() ? run.interrupted(results) : run.finish(results);
+  return run.finish(results);
 }
 
 } // namespace latcon::commands

@@ -12,13 +12,26 @@
 namespace latcon::commands
 {
 
+Motion::Motion(const input::Case &input, output::Checkpoints &checkpoints, Run &run, double time_step,
+               std::size_t signal_interval)
+  : input_(input), run_(run), checkpoints_(checkpoints), time_step_(time_step), signal_interval_(signal_interval),
+    n_steps_(static_cast<std::size_t>(std::ceil(input.end_time / time_step * (1. - 1e-12)))),
+    next_frame_(input.frame_interval)
+{
+}
+
+std::pair<std::string, double> Motion::progress() const
+{
+  return {"/" + std::to_string(n_steps_), static_cast<double>(step_) / static_cast<double>(n_steps_)};
+}
+
 // Checks the state of the motion in a checkpoint before it is used. @throws std::invalid_argument
 void Motion::check_loaded() const
 {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double done = static_cast<double>(step_), frames = static_cast<double>(n_frames());
   // Steps may have been added up one by one.
-  output::require_matching_time(*checkpoints_.found(), step_, time(), time_of_step(),
+  output::require_matching_time(*checkpoints_.found(), step_, time(), done * time_step_,
                                 std::max(4., done) * epsilon * time());
   lattice::require_archived(done == 0. || time() <= input_.end_time + time() / done, "`time` is after the end");
   // One frame at the start and one per interval, but at most one per step.
@@ -97,9 +110,24 @@ void Motion::go(const std::string &phase_name)
   flush();
 }
 
+output::Result ledger_row(const std::string &claim, const claims::Sides &sides, double imbalance,
+                          const output::Tolerance &allowed)
+{
+  return {claim,
+          "energy imbalance over energy exchanged",
+          "1",
+          sides.lattice,
+          sides.continuum,
+          {},
+          imbalance,
+          allowed,
+          false,
+          output::RowKind::ledger};
+}
+
 LatticeMotion::LatticeMotion(const input::Case &input, lattice::Simulation &simulation,
                              output::Checkpoints &checkpoints, Run &run)
-  : Motion(input, checkpoints, run, steps_between_signals), simulation_(simulation),
+  : Motion(input, checkpoints, run, simulation.time_step(), steps_between_signals), simulation_(simulation),
     record_(simulation, input.time_step ? "Time/step" : "Time/safety factor"),
     threads_(run.has_default_threads() ? omp_get_max_threads() : 1),
     frames_(std::make_shared<output::FieldWriter>(simulation.lattice(), simulation.material(), run.directory()))
@@ -134,7 +162,7 @@ void LatticeMotion::write_resumed()
 {
   output::write_files(tables());
   if (run_.is_root())
-    frames_->series().write_collection();
+    frames_->write_collection();
 }
 
 void LatticeMotion::archive(output::CheckpointWriter &archive)

@@ -30,19 +30,14 @@ public:
   void go(const std::string &phase);
 
 protected:
-  /// @param signal_interval number of steps between two polls of signals
-  Motion(const input::Case &input, output::Checkpoints &checkpoints, Run &run, std::size_t signal_interval = 1)
-    : input_(input), run_(run), checkpoints_(checkpoints), signal_interval_(signal_interval),
-      next_frame_(input.frame_interval)
-  {
-  }
-  std::size_t step() const { return step_; } ///< steps done
+  /// @param time_step [s] @param signal_interval number of steps between two polls of signals
+  Motion(const input::Case &input, output::Checkpoints &checkpoints, Run &run, double time_step,
+         std::size_t signal_interval = 1);
 
-  virtual double time() const = 0;            ///< [s]
-  virtual double time_of_step() const = 0;    ///< time [s] after step() steps, from their number
-  virtual bool is_complete() const = 0;       ///< true if there is no further step
-  virtual std::size_t n_frames() const = 0;   ///< written so far
-  virtual std::pair<std::string, double> progress() const = 0; ///< text, and the completed fraction
+  virtual double time() const = 0;                               ///< [s]
+  virtual bool is_complete() const { return step_ >= n_steps_; } ///< true if there is no further step
+  virtual std::size_t n_frames() const = 0;                      ///< written so far
+  virtual std::pair<std::string, double> progress() const;       ///< text, and the completed fraction
   virtual void start() = 0;                   ///< sets and records the state before the first step
   virtual void advance() = 0;                 ///< makes and records a step; throws SolverError on all ranks
   virtual void record_energies() = 0;
@@ -60,9 +55,16 @@ private:
   void check_loaded() const;
 
   output::Checkpoints &checkpoints_;
-  std::size_t signal_interval_, step_ = 0;
-  double next_frame_; // [s]
+  double time_step_;                       // [s]
+  std::size_t signal_interval_, step_ = 0; // steps done
+  std::size_t n_steps_;                    // until the end time
+  double next_frame_;                      // [s]
 };
+
+/// Returns the row about the energies of a run. @param sides with the imbalance @param imbalance
+/// output::LedgerCheck::imbalance() [-] @param allowed with which it holds
+output::Result ledger_row(const std::string &claim, const claims::Sides &sides, double imbalance,
+                          const output::Tolerance &allowed);
 
 /// Motion of the lattice. The root rank writes frames and tables on a thread of its own, while the sheet moves on. A
 /// default number of threads is adjusted to the load of the machine.
@@ -76,8 +78,7 @@ public:
 
 protected:
   double time() const override { return simulation_.state().time; }
-  double time_of_step() const override { return static_cast<double>(step()) * simulation_.time_step(); }
-  std::size_t n_frames() const override { return frames_->series().n_frames(); }
+  std::size_t n_frames() const override { return frames_->times().size(); }
   void start() override { record_.start(); }
   void advance() override;
   void record_energies() override { record_.energies(); }

@@ -1,9 +1,12 @@
 // Commands above one simulation are Python (python/latcon): this program replaces itself by the interpreter.
-#include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <string>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 #include <mpi.h>
@@ -14,9 +17,9 @@
 #include "support/errors.h"
 #include "support/ranks.h"
 #include "verification/commands/command.h"
-#include "verification/commands/python.h"
 #include "verification/commands/signals.h"
-#include "verification/input/data_folder.h"
+#include "verification/input/files.h"
+#include "verification/output/progress.h"
 
 namespace latcon::commands
 {
@@ -26,29 +29,109 @@ namespace
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-Json json_of(const input::Options &options, const SweepOptions &sweep)
+// Returns the folder that contains the Python package: in the data folder, or in the source tree. @throws OutputError
+std::string package_folder()
 {
-  return {{"arguments", options.arguments},
-          {"sweeps", sweep.sweeps},
-          {"seeds", sweep.seeds},
-          {"overrides", options.overrides},
-          {"threads", options.threads},
-          {"quick", options.quick},
-          {"quiet", options.quiet},
-          {"verbose", options.verbose},
-          {"dry_run", options.dry_run},
-          {"yes", options.yes},
-          {"skip_verification", options.skip_verification},
-          {"no_report", options.no_report},
-          {"resume", options.resume}};
+  const fs::path data = input::data_folder();
+  for (const fs::path &folder : {data / "python", data.parent_path() / "python"})
+    if (fs::exists(folder / "latcon" / "study"))
+      return folder;
+  throw support::Error(support::ExitCode::output_failed,
+                       (data / "python").string() + " is missing: a copy of the program needs share/latcon beside its "
+                                                    "bin, a symbolic link to the program does not");
 }
 
-// Paths are words of their own: they need not be UTF-8.
-support::ExitCode continue_in_python(const std::string &command, const input::Options &chosen,
-                                     const std::vector<std::string> &names, const Json &options)
+// Returns the environment of the user without variables that would change the interpreter or matplotlib, and with the
+// path of the package.
+std::vector<std::string> environment_of_python(const std::string &package)
 {
+  std::vector<std::string> kept{"PYTHONPATH=" + package};
+  for (char **variable = environ; *variable != nullptr; ++variable)
+  {
+    const std::string text = *variable;
+    if (text.rfind("PYTHON", 0) != 0 && text.rfind("MPLBACKEND=", 0) != 0)
+      kept.push_back(text);
+  }
+  return kept;
+}
+
+// Returns the path of the Python interpreter: the environment variable LATCON_PYTHON, or that of Debian.
+std::string python_interpreter()
+{
+  // Debian's interpreter, which finds the packages that the scripts need.
+  const char *const chosen = std::getenv("LATCON_PYTHON");
+  return chosen != nullptr && *chosen != '\0' ? chosen : "/usr/bin/python3";
+}
+
+// Waits for a child with a progress line. @return its exit status
+int wait_with_progress(pid_t child, const std::string &what)
+{
+  using Clock = std::chrono::steady_clock;
+  output::Progress progress(true);
+  const Clock::time_point start = Clock::now();
+  while (true)
+  {
+    const int status = support::poll_child(child);
+    if (status != -1)
+      return status;
+    if (progress.due())
+      progress.show(what + ", " +
+                      std::to_string(std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - start).count()) +
+                      " s so far",
+                    0.);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
+
+// Exit status of the script after it has named missing Debian packages: PACKAGES_MISSING of report/__main__.py.
+constexpr int packages_missing = 69;
+
+// Draws report.html by python/latcon/report. @return the exit code of the script @param options of the script
+support::ExitCode run_report(const std::string &directory, const std::vector<std::string> &options, bool shows_progress)
+{
+  const std::string python = python_interpreter(), package = package_folder(), page = directory + "/report.html";
+  std::vector<std::string> command{python, "-sP", package + "/latcon/report/__main__.py", "report", directory};
+  command.insert(command.end(), options.begin(), options.end());
+  const pid_t child = support::start_child({command, environment_of_python(package)});
+  const int status = shows_progress ? wait_with_progress(child, "drawing report.html") : support::wait_for_child(child);
+  if (status == support::not_started)
+    throw support::OutputError(page, "cannot start " + python);
+  if (status > 128)
+    throw support::OutputError(page, "the report script was killed");
+  if (status == packages_missing)
+  {
+    std::cerr << "latcon: no report; every other file is complete. With these packages, draw it by: latcon report "
+              << directory << std::endl;
+    return support::ExitCode::output_failed;
+  }
+  // The script uses the exit codes of this program.
+  for (const support::ExitCode known : {support::ExitCode::done, support::ExitCode::bad_input,
+                                        support::ExitCode::claim_failed, support::ExitCode::output_failed})
+    if (status == static_cast<int>(known))
+      return known;
+  throw support::OutputError(page, "the report script failed");
+}
+
+} // namespace
+
+support::ExitCode continue_in_python(const input::Options &options, const std::string &command,
+                                     const std::vector<std::string> &names, Json chosen)
+{
+  if (command == "compare" && !support::is_root_rank())
+    return support::ExitCode::done; // the first rank does all the work
   if (support::n_ranks() > 1 && command != "compare")
     throw support::InputError("`latcon " + command + "` is one process; run it without mpirun");
+  chosen.update({{"arguments", options.arguments},
+                 {"overrides", options.overrides},
+                 {"threads", options.threads},
+                 {"quick", options.quick},
+                 {"quiet", options.quiet},
+                 {"verbose", options.verbose},
+                 {"dry_run", options.dry_run},
+                 {"yes", options.yes},
+                 {"skip_verification", options.skip_verification},
+                 {"no_report", options.no_report},
+                 {"resume", options.resume}});
   const std::string python = python_interpreter();
   if (access(python.c_str(), X_OK) != 0)
     throw support::Error(support::ExitCode::output_failed,
@@ -60,11 +143,11 @@ support::ExitCode continue_in_python(const std::string &command, const input::Op
                                  "latcon",
                                  "--parsed",
                                  command,
-                                 chosen.output_dir,
+                                 options.output_dir,
                                  fs::read_symlink("/proc/self/exe"),
                                  input::data_folder()};
-  words.insert(words.end(), names.begin(), names.end());
-  words.push_back(options.dump(-1, ' ', false, Json::error_handler_t::replace));
+  words.insert(words.end(), names.begin(), names.end()); // words of their own: paths need not be UTF-8
+  words.push_back(chosen.dump(-1, ' ', false, Json::error_handler_t::replace));
   std::vector<std::string> environment = environment_of_python(package);
   const std::vector<char *> arguments = support::pointers(words), variables = support::pointers(environment);
   std::cout << std::flush;
@@ -78,80 +161,32 @@ support::ExitCode continue_in_python(const std::string &command, const input::Op
   std::_Exit(static_cast<int>(support::ExitCode::output_failed));
 }
 
-} // namespace
-
-std::string package_folder()
+support::ExitCode report(const input::Options &options, const std::string &directory, const bool animation)
 {
-  const fs::path data = input::data_folder();
-  for (const fs::path &folder : {data / "python", data.parent_path() / "python"})
-    if (fs::exists(folder / "latcon" / "study"))
-      return folder;
-  throw support::Error(support::ExitCode::output_failed,
-                       (data / "python").string() + " is missing: a copy of the program needs share/latcon beside its "
-                                                    "bin, a symbolic link to the program does not");
-}
-
-std::vector<std::string> environment_of_python(const std::string &package)
-{
-  std::vector<std::string> kept{"PYTHONPATH=" + package};
-  for (char **variable = environ; *variable != nullptr; ++variable)
-  {
-    const std::string text = *variable;
-    if (text.rfind("PYTHON", 0) != 0 && text.rfind("MPLBACKEND=", 0) != 0)
-      kept.push_back(text);
-  }
-  return kept;
-}
-
-std::string python_interpreter()
-{
-  // Debian's interpreter, which finds the packages that the scripts need.
-  const char *const chosen = std::getenv("LATCON_PYTHON");
-  return chosen != nullptr && *chosen != '\0' ? chosen : "/usr/bin/python3";
-}
-
-std::vector<std::string> shipped_studies()
-{
-  std::vector<std::string> names;
-  std::error_code status;
-  for (const auto &file : std::filesystem::directory_iterator(input::data_folder() + "/studies", status))
-    if (file.path().extension() == ".json")
-      names.push_back(file.path().stem());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen)
-{
-  Json all = json_of(options, chosen.sweep);
-  all["shard"] = chosen.shard;
-  all["collect"] = chosen.collect;
-  return continue_in_python("study", options, {chosen.study}, all);
-}
-
-support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen)
-{
-  Json all = json_of(options, chosen.sweep);
-  all["submit"] = chosen.submit;
-  all["tasks"] = chosen.tasks;
-  all["cpus_per_task"] = chosen.cpus_per_task;
-  all["time"] = chosen.time;
-  all["partition"] = chosen.partition;
-  return continue_in_python("batch", options, {chosen.study}, all);
-}
-
-support::ExitCode compare(const input::Options &options, const CompareOptions &chosen)
-{
+  if (!std::filesystem::is_directory(directory))
+    throw support::InputError(directory + " is not a directory");
   if (!support::is_root_rank())
-    return support::ExitCode::done; // the first rank does all the work
-  Json all = json_of(options, {});
-  all["time"] = chosen.time;
-  all["lattice_time"] = chosen.lattice_time;
-  all["continuum_time"] = chosen.continuum_time;
-  all["tolerances"] = chosen.tolerances;
-  all["overlap"] = chosen.overlap;
-  all["excluded"] = chosen.excluded;
-  return continue_in_python("compare", options, {chosen.first, chosen.second}, all);
+    return support::ExitCode::done;
+  std::vector<std::string> words;
+  if (options.quiet)
+    words.emplace_back("--quiet");
+  if (animation)
+    words.emplace_back("--animation");
+  if (!options.output_dir.empty())
+  {
+    std::error_code error;
+    std::filesystem::create_directories(options.output_dir, error);
+    if (error)
+      throw support::OutputError(options.output_dir, error.message());
+    words.insert(words.end(), {"--output-dir", options.output_dir});
+  }
+  const auto lock = lock_directory(options.output_dir.empty() ? directory : options.output_dir);
+  return run_report(directory, words, false);
+}
+
+support::ExitCode draw_report(const std::string &directory, const bool shows_progress)
+{
+  return run_report(directory, {"--quiet"}, shows_progress);
 }
 
 } // namespace latcon::commands

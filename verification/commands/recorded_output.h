@@ -1,17 +1,17 @@
 #pragma once
 
-#include <memory>
+#include <streambuf>
 #include <string>
 
 namespace latcon::commands
 {
 
 /// Keeps a copy of what is printed to std::cout while it exists, for log.txt of a run.
-class RecordedOutput
+class RecordedOutput : private std::streambuf
 {
 public:
-  RecordedOutput();  ///< begins with an empty text; at most one at a time
-  ~RecordedOutput(); ///< std::cout is as before
+  RecordedOutput();           ///< begins with an empty text; at most one at a time
+  ~RecordedOutput() override; ///< std::cout is as before
 
   RecordedOutput(const RecordedOutput &) = delete;
   RecordedOutput &operator=(const RecordedOutput &) = delete;
@@ -20,8 +20,11 @@ public:
   [[nodiscard]] static std::string text();
 
 private:
-  class Copy;
-  std::unique_ptr<Copy> copy_;
+  int_type overflow(int_type c) override;
+  std::streamsize xsputn(const char *text, std::streamsize length) override;
+  int sync() override { return original_->pubsync(); }
+
+  std::streambuf *original_; // gets everything
 };
 
 } // namespace latcon::commands

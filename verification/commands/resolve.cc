@@ -14,7 +14,7 @@
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
-#include "verification/input/input_file.h"
+#include "verification/input/files.h"
 #include "verification/input/sha256.h"
 #include "verification/input/spelling.h"
 #include "verification/input/units.h"

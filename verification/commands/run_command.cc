@@ -1,4 +1,4 @@
-#include "verification/commands/run_command.h"
+#include "verification/commands/command_line.h"
 
 #include <chrono>
 #include <cstdio>

@@ -8,7 +8,7 @@
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/input/case_text.h"
-#include "verification/input/shipped_cases.h"
+#include "verification/input/files.h"
 
 namespace latcon::commands
 {
@@ -93,8 +93,8 @@ Json range_of(const input::Declaration &entry)
     else
       place = bound.value;
   };
-  put(entry.range->lower(), "minimum", "exclusive_minimum");
-  put(entry.range->upper(), "maximum", "exclusive_maximum");
+  put(entry.range->lower, "minimum", "exclusive_minimum");
+  put(entry.range->upper, "maximum", "exclusive_maximum");
   if (entry.largest_whole)
     range["maximum"] = *entry.largest_whole;
   return range;
@@ -163,7 +163,7 @@ nlohmann::ordered_json schema_document(const input::Options &options)
   {
     Json values = Json::object();
     for (const input::Declaration &entry : entries)
-      values[entry.section + "/" + entry.name] = value_of(entry, parameters.value(entry.section + "/" + entry.name));
+      values[entry.key()] = value_of(entry, parameters.value(entry.key()));
     document["case"] = {
       {"file", options.case_file}, {"values", std::move(values)}, {"resolved", parameters.resolved_text()}};
   }

@@ -24,12 +24,6 @@ std::string option_name(const std::string &word)
   return word.substr(0, word.find('='));
 }
 
-std::string nearest_text(const std::string &given, const std::vector<std::string> &known)
-{
-  const std::string nearest = input::nearest_word(given, known);
-  return nearest.empty() ? "" : "; nearest: " + nearest;
-}
-
 void append_options(std::vector<std::string> &names, const CLI::App &app)
 {
   for (const CLI::Option *option : app.get_options())
@@ -45,9 +39,8 @@ std::string problem(const CLI::App &app, const CLI::App *command, const CLI::Par
   if (command == nullptr && word != left.end())
   {
     const std::vector<std::string> names = command_names(app);
-    const std::string nearest = nearest_text(*word, names);
     return "unknown command '" + input::printable(*word) + "'" +
-           (nearest.empty() ? "; commands: " + input::comma_separated(names) : nearest);
+           input::nearest_hint(*word, names, "; commands: " + input::comma_separated(names));
   }
   if (option != left.end())
   {
@@ -55,7 +48,8 @@ std::string problem(const CLI::App &app, const CLI::App *command, const CLI::Par
     append_options(names, app);
     if (command != nullptr)
       append_options(names, *command);
-    return "unknown option " + input::printable(option_name(*option)) + nearest_text(option_name(*option), names);
+    return "unknown option " + input::printable(option_name(*option)) +
+           input::nearest_hint(option_name(*option), names);
   }
   if (dynamic_cast<const CLI::ExtrasError *>(&error) != nullptr && word != left.end())
     return "unexpected argument '" + input::printable(*word) + "'";

@@ -1,3 +1,5 @@
+#include <nlohmann/json.hpp>
+
 #include "verification/claims/claim_inputs.h"
 #include "verification/claims/verdict_store.h"
 #include "verification/commands/claim_registry.h"

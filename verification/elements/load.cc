@@ -4,7 +4,7 @@
 
 #include <dlfcn.h>
 
-#include "verification/input/data_folder.h"
+#include "verification/input/files.h"
 
 namespace latcon::elements
 {

@@ -1,5 +1,3 @@
-#include "verification/input/breaking_case.h"
-
 #include <algorithm>
 #include <string>
 

@@ -8,7 +8,6 @@
 #include "lattice/contact.h"
 #include "lattice/seed.h"
 #include "support/dense.h"
-#include "verification/input/case_limits.h"
 #include "verification/input/sha256.h"
 
 namespace latcon::input
@@ -125,7 +124,7 @@ void Case::declare(Parameters &p)
   p.add("Output", "energy interval", energy_interval, AtLeast{1.}, "number of time steps between rows of energy.csv");
   p.add("Checkpoints", "steps", checkpoint_steps, AtLeast{0.},
         "number of time steps between checkpoints of a motion; 0: not by steps");
-  p.add("Checkpoints", "interval", checkpoint_interval, NonNegative{}, "s",
+  p.add("Checkpoints", "interval", checkpoint_interval, AtLeast{0.}, "s",
         "wall time between checkpoints of a motion; 0: not by time");
 
   p.add("Near tip", "ahead", near_tip_ahead, MagnitudeOrZero{}, "m",
@@ -229,6 +228,37 @@ lattice::Toughening Case::toughening_rule() const
   default:
     return lattice::NoToughening{};
   }
+}
+
+lattice::ContactLaw Case::contact_law() const
+{
+  return lattice::contact_like_nearest_bond(sheet(), material(), contact_distance * spacing, contact_stiffness,
+                                            contact_viscosity);
+}
+
+double Case::chebyshev_step(const bool breaks) const
+{
+  if (breaks && has_contact)
+    return safety_factor * lattice::chebyshev_step(sheet(), material(), smallest_chebyshev_stretch, contact_law());
+  return safety_factor * lattice::chebyshev_step(sheet(), material(), smallest_chebyshev_stretch);
+}
+
+lattice::TimeStepping Case::time_stepping(const bool breaks) const
+{
+  const lattice::TimeStepLimits limits = time_step_limits(breaks);
+  if (integrator == Integrator::velocity_verlet)
+    return time_step ? *time_step : safety_factor * limits.combined;
+  const double step = time_step ? *time_step : chebyshev_step(breaks);
+  if (time_step && stages > 0)
+    return {step, stages};
+  return lattice::chebyshev_time_stepping(step, limits, stages);
+}
+
+lattice::TimeStepLimits Case::time_step_limits(const bool breaks) const
+{
+  if (breaks && has_contact)
+    return lattice::time_step_limits(sheet(), material(), smallest_stable_stretch, contact_law());
+  return lattice::time_step_limits(sheet(), material(), smallest_stable_stretch);
 }
 
 std::string case_lines(const Parameters &parameters)

@@ -1,19 +1,23 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "lattice/breaking_rule.h"
+#include "lattice/constraint.h"
+#include "lattice/disorder.h"
+#include "lattice/end_loads.h"
 #include "lattice/fracture.h"
 #include "lattice/material.h"
 #include "lattice/time_step.h"
-#include "verification/input/breaking_case.h"
+#include "lattice/triangular_lattice.h"
 #include "verification/input/continuum_case.h"
-#include "verification/input/disorder_case.h"
-#include "verification/input/loading_history.h"
-#include "verification/input/nonlocal_case.h"
 #include "verification/input/parameters.h"
 #include "verification/input/user_law.h"
 
@@ -24,6 +28,94 @@ struct ContactLaw;
 
 namespace latcon::input
 {
+
+struct Case;
+
+/// Entries of a case for the rule by which bonds break, besides lam_f.
+struct BreakingCase
+{
+  enum class Rule
+  {
+    critical_stretch,
+    rate_stretch,
+    bond_energy
+  };
+
+  Rule rule = Rule::critical_stretch;
+  std::vector<double> shell_factors = {}; ///< of lam_f, by shell; empty: all 1
+  double rate_factor = 1.;                ///< of lam_f at high rates [-]
+  double rate_time = 1e-4;                ///< tau [s]
+
+  void declare(Parameters &parameters);
+  void check(const Case &input, Parameters &parameters) const;
+  /// Largest limit of a bond that has not toughened over lam_f, for rules that do not ask for the law of the bonds.
+  double largest_factor() const;
+  /// The rule. @param input with a breaking stretch; bond-energy needs its material
+  std::shared_ptr<const lattice::BreakingRule> make(const Case &input) const;
+};
+
+/// Entries of a case for the disorder of bonds.
+struct DisorderCase
+{
+  /// A distribution as entries give it.
+  struct Factors
+  {
+    lattice::Distribution::Kind kind = lattice::Distribution::Kind::none;
+    double width = 0.1; ///< standard deviation [-]
+
+    /// Returns whether the distribution allows the width, as distribution() requires.
+    bool is_valid() const;
+    /// Returns the distribution; none also if the width is not valid.
+    lattice::Distribution distribution() const;
+  };
+
+  Factors strength;
+  Factors stiffness;
+  std::uint64_t seed = 1;
+
+  void declare(Parameters &parameters);
+  /// Reports widths that their distribution does not allow.
+  void check(Parameters &parameters) const;
+  lattice::Disorder disorder() const { return {strength.distribution(), stiffness.distribution(), seed}; }
+};
+
+/// Entries of a case for strains of its edges that change during a motion of the lattice: piecewise linear in time,
+/// from the loading at the start through the strains of each instant, and constant from the last one on.
+struct LoadingHistory
+{
+  std::vector<double> times;    ///< [s]
+  std::vector<double> strain_x; ///< [-]; empty: that of the loading
+  std::vector<double> strain_y; ///< [-], likewise
+
+  bool empty() const { return times.empty(); }
+  void declare(Parameters &parameters);
+  void check(Parameters &parameters) const;
+  /// Deformations F at the start and at each instant; surplus strains, which check() refuses, are left out.
+  std::vector<Eigen::Matrix2d> deformations(const Eigen::Matrix2d &start) const;
+};
+
+/// Entries of a case for the nonlocal continuum, whose bonds have the lengths of the lattice's shells.
+struct NonlocalCase
+{
+  /// Whether the sheet of the case is the continuum. Not an entry: one case describes both sides.
+  bool is_used = false;
+
+  lattice::Grid::Kind grid = lattice::Grid::Kind::square;
+  double refinement = 2.;        ///< m [-]: spacing of the lattice over that of the grid
+  double half_width = M_PI / 6.; ///< of the arcs about the lattice's six directions [rad]
+  double scatter = 0.;           ///< largest displacement of a point over the spacing of the grid [-]
+
+  void declare(Parameters &parameters);
+  /// Reports what the continuum cannot be, if it is used: a grid whose points the bonds do not join, among others.
+  void check(const Case &input, Parameters &parameters) const;
+  /// Returns the sheet of a case. @throws std::invalid_argument if there is none
+  lattice::TriangularLattice sheet(const Case &input) const;
+
+private:
+  lattice::TriangularLattice new_sheet(const Case &input) const;
+  /// The last sheet of scattered points, whose weights take long, and what it is made of.
+  mutable std::shared_ptr<const std::pair<std::vector<double>, lattice::TriangularLattice>> last_;
+};
 
 /// Entries of a case for one shell of bonds.
 struct ShellCase
@@ -148,12 +240,7 @@ struct Case
   double seed_offset = 0.;     ///< Y of the seed's centre line [m]
   double stop_position = 0.93; ///< of the length [-]
   /// Boundary condition at a short end of a sheet that breaks.
-  enum class End
-  {
-    held,
-    free,     ///< pulled as in the loaded, unbroken sheet
-    absorbing ///< like free, with dashpots that absorb waves
-  };
+  using End = lattice::EndLoads::End;
   End left_end = End::held;
   End right_end = End::held;
 
@@ -247,9 +334,9 @@ struct Case
   }
 
   /// Time stepping of the lattice: the given step, or the safety factor times the limit.
-  lattice::TimeStepping lattice_time_stepping() const;
+  lattice::TimeStepping lattice_time_stepping() const { return time_stepping(false); }
   /// Time stepping of a sheet that breaks, whose sites may touch.
-  lattice::TimeStepping fracture_time_stepping() const;
+  lattice::TimeStepping fracture_time_stepping() const { return time_stepping(true); }
 
   /// Automatic step of Runge-Kutta-Chebyshev [s]. @param breaks whether bonds break, so that sites may touch
   double chebyshev_step(bool breaks) const;
@@ -257,6 +344,11 @@ struct Case
 private:
   lattice::TimeStepping time_stepping(bool breaks) const;
 };
+
+/// More spacings along an edge exceed any sheet of rubber, and the integers of some indices.
+inline constexpr double most_spacings = 1e6;
+/// More force evaluations per step gain nothing: the stable step grows as their square, limited by accuracy.
+inline constexpr unsigned int most_stages = 200;
 
 /// Stretch down to which the automatic time step is stable [-]; shorter bonds do not occur in a sheet under tension.
 inline constexpr double smallest_stable_stretch = 0.3;
@@ -268,7 +360,15 @@ inline constexpr double smallest_chebyshev_stretch = 0.45;
 /// a mesh file. Their SHA-256 is `case_hash` in run.json and in checkpoints.
 [[nodiscard]] std::string case_lines(const Parameters &parameters);
 
+/// Refuses strains that change, for a `reason`.
+void require_constant_loading(const Case &input, Parameters &parameters, const std::string &reason);
+
 /// Refuses bonds with plastic stretch, for a `reason`.
 void require_no_plasticity(const Case &input, Parameters &parameters, const std::string &reason);
+
+/// Constraints of the edges of a case: its rollers, and the motion of all held sites.
+/// @param state of the sheet, which tells the held sites
+std::vector<lattice::Constraint> edge_constraints(const Case &input, const lattice::State &state,
+                                                  const lattice::TriangularLattice &sheet);
 
 } // namespace latcon::input

@@ -8,7 +8,6 @@
 #include "lattice/contact.h"
 #include "lattice/seed.h"
 #include "support/full_precision.h"
-#include "verification/input/case_limits.h"
 
 namespace latcon::input
 {

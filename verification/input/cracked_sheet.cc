@@ -4,23 +4,6 @@
 
 namespace latcon::input
 {
-namespace
-{
-
-lattice::EndLoads::End end_load(Case::End end)
-{
-  switch (end)
-  {
-  case Case::End::free:
-    return lattice::EndLoads::End::free;
-  case Case::End::absorbing:
-    return lattice::EndLoads::End::absorbing;
-  default:
-    return lattice::EndLoads::End::held;
-  }
-}
-
-} // namespace
 
 std::unique_ptr<lattice::Simulation> cracked_sheet(const Case &input, const lattice::RowPartition &band)
 {
@@ -38,7 +21,7 @@ std::unique_ptr<lattice::Simulation> cracked_sheet(const Case &input, const latt
   for (const lattice::Constraint &constraint : constraints)
     simulation->constrain(constraint);
   if (!edges.left || !edges.right)
-    simulation->load_ends(input.deformation(), end_load(input.left_end), end_load(input.right_end));
+    simulation->load_ends(input.deformation(), input.left_end, input.right_end);
   if (input.has_contact)
     simulation->enable_contact(input.contact_law());
   const lattice::TriangularLattice &sheet = band.lattice();

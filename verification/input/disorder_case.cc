@@ -1,10 +1,8 @@
-#include "verification/input/disorder_case.h"
-
 #include <utility>
 #include <vector>
 
 #include "support/full_precision.h"
-#include "verification/input/parameters.h"
+#include "verification/input/case.h"
 
 namespace latcon::input
 {

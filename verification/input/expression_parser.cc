@@ -117,8 +117,7 @@ std::string problem_with(const mu::Parser::exception_type &error, const std::str
     const std::string word = text.substr(position, std::max<std::size_t>(end - position, 1));
     if (!word.empty() && std::find(functions.begin(), functions.end(), word) != functions.end())
       return "a '(' is missing after '" + word + "'" + at;
-    const std::string nearest = nearest_word(word, names);
-    return "unknown '" + printable(word) + "'" + at + (nearest.empty() ? "" : "; nearest: " + nearest);
+    return "unknown '" + printable(word) + "'" + at + nearest_hint(word, names);
   }
   case mu::ecMISSING_PARENS:
     return "a ')' is missing" + at;

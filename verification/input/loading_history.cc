@@ -1,5 +1,3 @@
-#include "verification/input/loading_history.h"
-
 #include <algorithm>
 #include <functional>
 #include <string>

@@ -1,5 +1,3 @@
-#include "verification/input/nonlocal_case.h"
-
 #include <algorithm>
 #include <stdexcept>
 

@@ -43,18 +43,18 @@ ParsedNumber number_in(const std::string &text, const Range &range, const std::s
 
 bool Range::contains(const double value) const
 {
-  return std::isfinite(value) && (value > lower_.value || (lower_.included && value == lower_.value)) &&
-         (value < upper_.value || (upper_.included && value == upper_.value));
+  return std::isfinite(value) && (value > lower.value || (lower.included && value == lower.value)) &&
+         (value < upper.value || (upper.included && value == upper.value));
 }
 
 std::string Range::text() const
 {
   std::string text;
-  if (std::isfinite(lower_.value))
-    text = (lower_.included ? ">= " : "> ") + support::full_precision(lower_.value);
-  if (std::isfinite(upper_.value))
-    text += (text.empty() ? "" : " and ") + std::string(upper_.included ? "<= " : "< ") +
-            support::full_precision(upper_.value);
+  if (std::isfinite(lower.value))
+    text = (lower.included ? ">= " : "> ") + support::full_precision(lower.value);
+  if (std::isfinite(upper.value))
+    text +=
+      (text.empty() ? "" : " and ") + std::string(upper.included ? "<= " : "< ") + support::full_precision(upper.value);
   return text;
 }
 
@@ -80,35 +80,22 @@ void Parameters::declare(Entry entry)
   entries_.push_back(std::move(entry));
 }
 
-void Parameters::add(const std::string &section, const std::string &name, double &member, const Range &range,
-                     const std::string &unit, const std::string &documentation, const Presence presence)
+template <typename Number>
+void Parameters::add_number(const std::string &section, const std::string &name, Number &member, const Range &range,
+                            const std::string &unit, const std::string &documentation, const Presence presence)
 {
-  Entry entry{{section, name, documentation, unit, range.text(), presence, ValueType::number, range},
-              allowed_numbers("a number", range, unit)};
-  entry.read = [&member, range, unit](const std::string &text)
-  {
-    const ParsedNumber quantity = number_in(text, range, unit);
-    if (quantity.wrong.empty())
-      member = quantity.value;
-    return quantity.wrong;
-  };
-  entry.write = [&member] { return support::full_precision(member); };
-  declare(std::move(entry));
-}
-
-void Parameters::add(const std::string &section, const std::string &name, std::optional<double> &member,
-                     const Range &range, const std::string &unit, const std::string &documentation,
-                     const Presence presence)
-{
-  const std::string rule = range.text().empty() ? "a number, or auto" : range.text() + ", or auto";
+  constexpr bool may_be_auto = std::is_same_v<Number, std::optional<double>>;
+  std::string rule = range.text();
+  if (may_be_auto)
+    rule += rule.empty() ? "a number, or auto" : ", or auto";
   Entry entry{{section, name, documentation, unit, rule, presence, ValueType::number, range},
-              allowed_numbers("auto, or a number", range, unit)};
-  entry.may_be_auto = true;
+              allowed_numbers(may_be_auto ? "auto, or a number" : "a number", range, unit)};
+  entry.may_be_auto = may_be_auto;
   entry.read = [&member, range, unit](const std::string &text) -> std::string
   {
-    if (text == "auto")
+    if (may_be_auto && text == "auto")
     {
-      member.reset();
+      member = Number();
       return "";
     }
     const ParsedNumber quantity = number_in(text, range, unit);
@@ -116,8 +103,25 @@ void Parameters::add(const std::string &section, const std::string &name, std::o
       member = quantity.value;
     return quantity.wrong;
   };
-  entry.write = [&member] { return member ? support::full_precision(*member) : "auto"; };
+  entry.write = [&member]
+  {
+    const std::optional<double> value = member;
+    return value ? support::full_precision(*value) : "auto";
+  };
   declare(std::move(entry));
+}
+
+void Parameters::add(const std::string &section, const std::string &name, double &member, const Range &range,
+                     const std::string &unit, const std::string &documentation, const Presence presence)
+{
+  add_number(section, name, member, range, unit, documentation, presence);
+}
+
+void Parameters::add(const std::string &section, const std::string &name, std::optional<double> &member,
+                     const Range &range, const std::string &unit, const std::string &documentation,
+                     const Presence presence)
+{
+  add_number(section, name, member, range, unit, documentation, presence);
 }
 
 void Parameters::add(const std::string &section, const std::string &name, std::vector<double> &member,
@@ -161,9 +165,9 @@ void Parameters::add(const std::string &section, const std::string &name, std::v
   declare(std::move(entry));
 }
 
-template <typename Integer>
-void Parameters::add_integer(const std::string &section, const std::string &name, Integer &member, const Range &range,
-                             const std::string &documentation, const Presence presence)
+template <typename Integer, typename>
+void Parameters::add(const std::string &section, const std::string &name, Integer &member, const Range &range,
+                     const std::string &documentation, const Presence presence)
 {
   std::string rule = allowed_numbers("a whole number", range, "1");
   constexpr Integer largest = std::numeric_limits<Integer>::max();
@@ -197,23 +201,12 @@ void Parameters::add_integer(const std::string &section, const std::string &name
   declare(std::move(entry));
 }
 
-void Parameters::add(const std::string &section, const std::string &name, int &member, const Range &range,
-                     const std::string &documentation, const Presence presence)
-{
-  add_integer(section, name, member, range, documentation, presence);
-}
-
-void Parameters::add(const std::string &section, const std::string &name, unsigned int &member, const Range &range,
-                     const std::string &documentation, const Presence presence)
-{
-  add_integer(section, name, member, range, documentation, presence);
-}
-
-void Parameters::add(const std::string &section, const std::string &name, std::uint64_t &member, const Range &range,
-                     const std::string &documentation, const Presence presence)
-{
-  add_integer(section, name, member, range, documentation, presence);
-}
+template void Parameters::add(const std::string &, const std::string &, int &, const Range &, const std::string &,
+                              Presence);
+template void Parameters::add(const std::string &, const std::string &, unsigned int &, const Range &,
+                              const std::string &, Presence);
+template void Parameters::add(const std::string &, const std::string &, std::uint64_t &, const Range &,
+                              const std::string &, Presence);
 
 void Parameters::add_words(const std::string &section, const std::string &name, const std::vector<std::string> &words,
                            const std::function<void(std::size_t)> &set, const std::function<std::size_t()> &get,
@@ -247,16 +240,6 @@ void Parameters::add(const std::string &section, const std::string &name, bool &
   add_words(
     section, name, {"false", "true"}, [&member](const std::size_t i) { member = i == 1; },
     [&member] { return std::size_t(member ? 1 : 0); }, documentation, presence, ValueType::boolean);
-}
-
-void Parameters::add(const std::string &section, const std::string &name, std::string &member,
-                     const std::vector<std::string> &words, const std::string &documentation, const Presence presence)
-{
-  add_words(
-    section, name, words, [&member, words](const std::size_t i) { member = words[i]; },
-    [&member, words]
-    { return static_cast<std::size_t>(std::find(words.begin(), words.end(), member) - words.begin()); },
-    documentation, presence);
 }
 
 void Parameters::add(const std::string &section, const std::string &name, std::string &member,

@@ -3,8 +3,7 @@
 #include "support/errors.h"
 #include "support/text_wrap.h"
 #include "verification/input/case_text.h"
-#include "verification/input/input_file.h"
-#include "verification/input/shipped_cases.h"
+#include "verification/input/files.h"
 #include "verification/input/spelling.h"
 
 #include <algorithm>
@@ -92,34 +91,16 @@ void Parameters::enter(const SectionStart &start)
   // Reported once, not for each entry in the section.
   if (!has_section(start.section))
     report(start.place, "unknown subsection '" + printable(start.section) + "'" + nearest_section(start.section) +
-                          "; known: " + known_sections());
+                          "; known: " + comma_separated(sections()));
 }
 
 void Parameters::take(const Assignment &assignment)
 {
-  const std::string &section = assignment.section;
-  const auto found = keys_.find(section + "/" + assignment.name);
   const std::string shown = printable(assignment.name) + " = " + printable(assignment.value) + ": ";
-  if (found != keys_.end())
-  {
-    Entry &entry = entries_[found->second];
-    if (entry.file_place.empty())
-    {
-      entry.file_place = assignment.place;
-      assign(entry, assignment.value);
-    }
-    else
-    {
-      entry.wrong = true;
-      report(assignment.place,
-             section + "/" + shown + "set twice, first at " + entry.file_place + " to " + printable(entry.text));
-    }
-  }
-  else if (section.empty())
+  if (assignment.section.empty())
     report(assignment.place, shown + "outside of any subsection" + nearest_key("", assignment.name));
-  else if (has_section(section))
-    report(assignment.place, section + "/" + shown + "unknown key" + nearest_key(section, assignment.name) +
-                               "; known in " + section + ": " + known_entries(section));
+  else if (has_section(assignment.section))
+    set(assignment, assignment.section + "/" + shown, false);
 }
 
 void Parameters::take_override(const std::string &text)
@@ -133,43 +114,47 @@ void Parameters::take_override(const std::string &text)
            "not understood: '" + printable(text) + "'" + nearest_key("", name) + "; allowed: --set Section/Name=value");
     return;
   }
-  const std::string section = trimmed(text.substr(0, slash));
-  const std::string name = trimmed(text.substr(slash + 1, equals - slash - 1));
-  const std::string value = trimmed(text.substr(equals + 1));
-  const auto found = keys_.find(section + "/" + name);
-  const std::string shown = printable(section + "/" + name) + " = " + printable(value) + ": ";
-  if (found != keys_.end())
-  {
-    Entry &entry = entries_[found->second];
-    if (entry.overridden)
-    {
-      entry.wrong = true;
-      report("--set", shown + "set twice, first to " + printable(entry.text));
-    }
-    else
-    {
-      entry.overridden = true;
-      assign(entry, value);
-    }
-  }
-  else if (has_section(section))
-    report("--set", shown + "unknown key" + nearest_key(section, name) + "; known in " + section + ": " +
-                      known_entries(section));
+  const Assignment assignment{"--set", trimmed(text.substr(0, slash)),
+                              trimmed(text.substr(slash + 1, equals - slash - 1)), trimmed(text.substr(equals + 1))};
+  const std::string &section = assignment.section;
+  const std::string shown = printable(section + "/" + assignment.name) + " = " + printable(assignment.value) + ": ";
+  if (has_section(section))
+    set(assignment, shown, true);
   else
-    report("--set", shown + "unknown subsection '" + printable(section) + "'" + nearest_key(section, name) +
-                      "; known: " + known_sections());
+    report("--set", shown + "unknown subsection '" + printable(section) + "'" + nearest_key(section, assignment.name) +
+                      "; known: " + comma_separated(sections()));
 }
 
-void Parameters::assign(Entry &entry, const std::string &value)
+// Gives a value to an entry of a section that exists. @param shown key and value for messages
+void Parameters::set(const Assignment &assignment, const std::string &shown, const bool is_override)
 {
-  entry.text = value;
-  std::string wrong = unwritable(value);
+  const auto found = keys_.find(assignment.section + "/" + assignment.name);
+  if (found == keys_.end())
+  {
+    report(assignment.place, shown + "unknown key" + nearest_key(assignment.section, assignment.name) + "; known in " +
+                               assignment.section + ": " + known_entries(assignment.section));
+    return;
+  }
+  Entry &entry = entries_[found->second];
+  if (is_override ? entry.overridden : !entry.file_place.empty())
+  {
+    entry.wrong = true;
+    report(assignment.place, shown + "set twice, first " + (is_override ? "" : "at " + entry.file_place + " ") + "to " +
+                               printable(entry.text));
+    return;
+  }
+  if (is_override)
+    entry.overridden = true;
+  else
+    entry.file_place = assignment.place;
+  entry.text = assignment.value;
+  std::string wrong = unwritable(entry.text);
   if (wrong.empty())
-    wrong = entry.read(value);
+    wrong = entry.read(entry.text);
   if (!wrong.empty())
   {
     entry.wrong = true;
-    report(entry.place(), entry.key() + " = " + printable(value) + ": " + wrong + "; allowed: " + entry.allowed);
+    report(entry.place(), entry.key() + " = " + printable(entry.text) + ": " + wrong + "; allowed: " + entry.allowed);
   }
 }
 
@@ -186,11 +171,6 @@ const Parameters::Entry &Parameters::find(const std::string &key) const
   if (found == keys_.end())
     throw std::logic_error("parameters: '" + key + "' is not declared");
   return entries_[found->second];
-}
-
-bool Parameters::is_set(const std::string &key) const
-{
-  return find(key).is_set();
 }
 
 void Parameters::error(const std::string &key, const std::string &text, const std::vector<std::string> &also)
@@ -253,11 +233,6 @@ std::vector<std::string> Parameters::sections() const
   return sections;
 }
 
-std::string Parameters::known_sections() const
-{
-  return comma_separated(sections());
-}
-
 std::string Parameters::known_entries(const std::string &section) const
 {
   std::vector<std::string> names;
@@ -271,8 +246,7 @@ std::string Parameters::nearest_section(const std::string &section) const
 {
   if (const auto found = replaced_sections.find(section); found != replaced_sections.end())
     return "; replaced by " + found->second;
-  const std::string nearest = nearest_word(section, sections());
-  return nearest.empty() ? "" : "; nearest: " + nearest;
+  return nearest_hint(section, sections());
 }
 
 std::string Parameters::nearest_key(const std::string &section, const std::string &name) const
@@ -299,12 +273,8 @@ std::string Parameters::nearest_key(const std::string &section, const std::strin
 std::string Parameters::resolved_text() const
 {
   // The layout is that of dealii::ParameterHandler::print_parameters().
-  std::vector<std::string> sections; // in the order of their first entries
-  for (const Entry &entry : entries_)
-    if (std::find(sections.begin(), sections.end(), entry.section) == sections.end())
-      sections.push_back(entry.section);
   std::string text = "# Listing of Parameters\n# ---------------------\n";
-  for (const std::string &section : sections)
+  for (const std::string &section : sections())
   {
     std::size_t longest_name = 0, longest_value = 0;
     for (const Entry &entry : entries_)

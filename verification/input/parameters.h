@@ -19,9 +19,8 @@ struct Assignment;
 struct SectionStart;
 
 /// Range of numbers that an entry allows, in its SI unit.
-class Range
+struct Range
 {
-public:
   /// One end of a range.
   struct Bound
   {
@@ -29,7 +28,9 @@ public:
     bool included; ///< whether the value itself is allowed
   };
 
-  Range(Bound lower, Bound upper) : lower_(lower), upper_(upper) {}
+  Bound lower, upper;
+
+  Range(Bound from, Bound to) : lower(from), upper(to) {}
 
   /// Not-a-number and infinities are in no range.
   [[nodiscard]] bool contains(double value) const;
@@ -37,33 +38,13 @@ public:
   /// For a message, e.g. "> 0 and <= 1"; empty if every number is allowed.
   [[nodiscard]] std::string text() const;
 
-  [[nodiscard]] const Bound &lower() const { return lower_; }
-  [[nodiscard]] const Bound &upper() const { return upper_; }
-
-protected:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-
-private:
-  Bound lower_;
-  Bound upper_;
 };
 
 /// Every finite number.
 struct Any : Range
 {
   Any() : Range({-infinity, false}, {infinity, false}) {}
-};
-
-/// x > 0
-struct Positive : Range
-{
-  Positive() : Range({0., false}, {infinity, false}) {}
-};
-
-/// x >= 0
-struct NonNegative : Range
-{
-  NonNegative() : Range({0., true}, {infinity, false}) {}
 };
 
 /// 1e-20 <= x <= 1e20: positive quantities in any system of units. Products of a dozen such numbers are finite.
@@ -129,6 +110,8 @@ struct Declaration
   bool may_be_auto = false;                     ///< whether the word `auto` is allowed
   std::vector<std::string> words{};             ///< of ValueType::word
   std::string default_text{};                   ///< as a case file would hold it; meaningless if required
+
+  [[nodiscard]] std::string key() const { return section + "/" + name; }
 };
 
 /// The entries of a case, each declared once, beside the member it fills.
@@ -153,7 +136,7 @@ public:
   Parameters(const Parameters &) = delete;
   Parameters &operator=(const Parameters &) = delete;
 
-  /// A real number.
+  /// A real number or, as std::optional, one that the program derives if it is the word `auto` (no value).
   /// @param section       section of the entry, at least one word; neither `/`, `#`, `=` nor line breaks
   /// @param name          name within the section, same rule; key of the entry is `section/name`
   /// @param member        filled, in SI; its present value is the default
@@ -162,8 +145,6 @@ public:
   /// @param documentation what it is, in words and symbol
   void add(const std::string &section, const std::string &name, double &member, const Range &range,
            const std::string &unit, const std::string &documentation, Presence presence = Presence::optional);
-
-  /// A real number, or the word `auto` (no value) for one that the program derives.
   void add(const std::string &section, const std::string &name, std::optional<double> &member, const Range &range,
            const std::string &unit, const std::string &documentation, Presence presence = Presence::optional);
 
@@ -172,11 +153,9 @@ public:
            const std::string &unit, const std::string &documentation, Presence presence = Presence::optional);
 
   /// Whole numbers. The range is compared in double precision, so bounds beyond 2^53 are blurred.
-  void add(const std::string &section, const std::string &name, int &member, const Range &range,
-           const std::string &documentation, Presence presence = Presence::optional);
-  void add(const std::string &section, const std::string &name, unsigned int &member, const Range &range,
-           const std::string &documentation, Presence presence = Presence::optional);
-  void add(const std::string &section, const std::string &name, std::uint64_t &member, const Range &range,
+  /// @param member int, unsigned int or std::uint64_t
+  template <typename Integer, typename = std::enable_if_t<std::is_integral_v<Integer>>>
+  void add(const std::string &section, const std::string &name, Integer &member, const Range &range,
            const std::string &documentation, Presence presence = Presence::optional);
 
   /// `true` or `false`.
@@ -185,11 +164,6 @@ public:
 
   /// A text on one line, without `#`, not ending in `\`; blanks around it are lost. Not empty if required.
   void add(const std::string &section, const std::string &name, std::string &member, const std::string &documentation,
-           Presence presence = Presence::optional);
-
-  /// One word out of several.
-  void add(const std::string &section, const std::string &name, std::string &member,
-           const std::vector<std::string> &words, const std::string &documentation,
            Presence presence = Presence::optional);
 
   /// One word out of several, each standing for a value of an enumeration.
@@ -210,9 +184,6 @@ public:
   /// Reads options of the form `Section/Name=value`; to be called after read_file(), whose values they replace. The
   /// same key twice among them is a problem. Problems are kept for finish().
   void read_overrides(const std::vector<std::string> &overrides);
-
-  /// Returns whether the file or an override gave this entry a value, valid or not.
-  [[nodiscard]] bool is_set(const std::string &key) const;
 
   /// Reports that an entry is wrong in combination with others. Ignored if `key` or one of `also` is itself wrong or
   /// missing: the cause is then already reported.
@@ -235,15 +206,15 @@ public:
   /// All keys and the values of the members as they now stand, as text that reads back to them bit for bit; by key.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> values() const;
 
+  /// Names of all sections, in the order of their first entries.
+  [[nodiscard]] std::vector<std::string> sections() const;
+
   /// All entries, in the order of declaration.
   [[nodiscard]] std::vector<Declaration> declarations() const;
 
   /// Value of an entry as it now stands in its member, as a case file would hold it. @throws std::logic_error for no
   /// entry
   [[nodiscard]] std::string value(const std::string &key) const { return find(key).write(); }
-
-  /// SI unit of an entry; "1" for a pure number, empty for what is no quantity. @throws std::logic_error for no entry
-  [[nodiscard]] std::string unit(const std::string &key) const { return find(key).unit; }
 
   /// A line `key = value` for each of values(), those of one section left out. Does not depend on how the case was
   /// written down (order, comments, units, file or override), nor on the order of declaration, nor on the machine.
@@ -261,27 +232,25 @@ private:
     bool overridden = false;
     bool wrong = false; // something about it has been reported
 
-    [[nodiscard]] std::string key() const { return section + "/" + name; }
+    // Whether the file or an override gave a value, valid or not.
     [[nodiscard]] bool is_set() const { return overridden || !file_place.empty(); }
     [[nodiscard]] std::string place() const; // where the value comes from
   };
 
   void declare(Entry entry);
-  template <typename Integer>
-  void add_integer(const std::string &section, const std::string &name, Integer &member, const Range &range,
-                   const std::string &documentation, Presence presence);
+  template <typename Number>
+  void add_number(const std::string &section, const std::string &name, Number &member, const Range &range,
+                  const std::string &unit, const std::string &documentation, Presence presence);
   void add_words(const std::string &section, const std::string &name, const std::vector<std::string> &words,
                  const std::function<void(std::size_t)> &set, const std::function<std::size_t()> &get,
                  const std::string &documentation, Presence presence, ValueType type = ValueType::word);
   void enter(const SectionStart &start);
   void take(const Assignment &assignment);
   void take_override(const std::string &text);
-  void assign(Entry &entry, const std::string &value);
+  void set(const Assignment &assignment, const std::string &shown, bool is_override);
   void report(const std::string &place, const std::string &text);
   [[nodiscard]] const Entry &find(const std::string &key) const;
   [[nodiscard]] bool has_section(const std::string &section) const;
-  [[nodiscard]] std::vector<std::string> sections() const;
-  [[nodiscard]] std::string known_sections() const;
   [[nodiscard]] std::string known_entries(const std::string &section) const;
   [[nodiscard]] std::string nearest_section(const std::string &section) const;
   [[nodiscard]] std::string nearest_key(const std::string &section, const std::string &name) const;

@@ -51,4 +51,10 @@ std::string nearest_word(const std::string &given, const std::vector<std::string
   return nearest;
 }
 
+std::string nearest_hint(const std::string &given, const std::vector<std::string> &known, const std::string &otherwise)
+{
+  const std::string nearest = nearest_word(given, known);
+  return nearest.empty() ? otherwise : "; nearest: " + nearest;
+}
+
 } // namespace latcon::input

@@ -18,4 +18,8 @@ namespace latcon::input
 /// Returns the known word nearest to the given one, the first of several; empty if none may have been meant.
 [[nodiscard]] std::string nearest_word(const std::string &given, const std::vector<std::string> &known);
 
+/// Returns "; nearest: WORD" for a message, or `otherwise` if there is none.
+[[nodiscard]] std::string nearest_hint(const std::string &given, const std::vector<std::string> &known,
+                                       const std::string &otherwise = "");
+
 } // namespace latcon::input

@@ -95,10 +95,7 @@ const LoadedLibrary &loaded_library(const std::string &path)
 
 std::string list_of(const std::vector<std::string> &names)
 {
-  std::string text;
-  for (const std::string &name : names)
-    text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none" : text;
+  return names.empty() ? "none" : comma_separated(names);
 }
 
 std::vector<double> in_order_of_library(const std::vector<std::string> &names, const Values &given)

@@ -71,23 +71,24 @@ struct Columns
 };
 
 /// Archive that copies the members of one record to or from row `row` of columns.
-template <bool loading>
+/// @tparam Read function of the name of a column and of its values, which it reads for the first row
+template <bool loading, class Read>
 class RecordArchive
 {
 public:
   static constexpr bool loads = loading;
-  RecordArchive(Columns &columns, std::size_t row) : columns_(columns), row_(row) {}
+  RecordArchive(Columns &columns, std::size_t row, const Read &read) : columns_(columns), row_(row), read_(read) {}
 
   template <class T>
   void operator()(const std::string &name, T &value)
   {
     if constexpr (std::is_same_v<T, double>)
-      exchange(columns_.reals[prefix_ + name], value);
+      exchange(columns_.reals, name, value);
     else if constexpr (std::is_same_v<T, std::size_t> || std::is_same_v<T, std::uint64_t>)
-      exchange(columns_.wholes[prefix_ + name], value);
+      exchange(columns_.wholes, name, value);
     else if constexpr (is_matrix<T>)
       for (Eigen::Index i = 0; i < value.size(); ++i)
-        exchange(columns_.reals[prefix_ + name + "_" + std::to_string(i)], value.data()[i]);
+        exchange(columns_.reals, name + "_" + std::to_string(i), value.data()[i]);
     else
     {
       static_assert(HasArchive<T, RecordArchive>::value, "a record consists of numbers and of records");
@@ -100,16 +101,22 @@ public:
 
 private:
   template <class Number>
-  void exchange(std::vector<Number> &column, Number &value)
+  void exchange(std::map<std::string, std::vector<Number>> &columns, const std::string &name, Number &value)
   {
+    std::vector<Number> &column = columns[prefix_ + name];
     if constexpr (loading)
+    {
+      if (row_ == 0)
+        read_(prefix_ + name, column);
       value = column.at(row_);
+    }
     else
       column.push_back(value);
   }
 
   Columns &columns_;
   std::size_t row_;
+  const Read &read_;
   std::string prefix_;
 };
 
@@ -158,31 +165,18 @@ public:
     (*this)(name + "/n", n);
     if constexpr (Archive::loads)
       all.clear();
-    if (n == 0)
-      return;
     Columns columns;
-    if constexpr (Archive::loads)
+    // Columns that have this size are not larger than the file.
+    const auto read = [&](const std::string &column, auto &values)
     {
-      // A default record lists the columns.
-      Record record{};
-      Columns names;
-      RecordArchive<false> list(names, 0);
-      record.archive(list);
-      const auto read = [&](auto &to, const auto &of)
-      {
-        for (const auto &[column, unused] : of)
-        {
-          (*this)(name + "/" + column, to[column]);
-          require(to[column].size() == n, name + "/" + column, "has a length other than `n`");
-        }
-      };
-      read(columns.reals, names.reals);
-      read(columns.wholes, names.wholes);
-      all.resize(n); // the columns have this size, so it is not larger than the file
-    }
+      (*this)(name + "/" + column, values);
+      require(values.size() == n, name + "/" + column, "has a length other than `n`");
+    };
     for (std::size_t row = 0; row < n; ++row)
     {
-      RecordArchive<Archive::loads> archive(columns, row);
+      if constexpr (Archive::loads)
+        all.emplace_back();
+      RecordArchive<Archive::loads, decltype(read)> archive(columns, row, read);
       all[row].archive(archive);
     }
     if constexpr (!Archive::loads)

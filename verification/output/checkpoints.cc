@@ -100,21 +100,15 @@ Checkpoints::Checkpoints(const input::Options &options, const input::Parameters 
   CheckpointPlace best;
   if (first_rank_)
   {
-    std::string path_of_best;
-    std::vector<CheckpointPlace> good;
     for (const fs::path &path : files())
     {
       CheckpointPlace place;
       const std::string problem = problem_of(path, place);
-      if (problem.empty())
-        good.push_back(place);
-      else
+      if (!problem.empty())
         problems += (problems.empty() ? "" : "\n") + path.string() + ": " + problem;
+      else if (best.file.empty() || place.step > best.step)
+        best = place;
     }
-    const auto last =
-      std::max_element(good.begin(), good.end(), [](const auto &a, const auto &b) { return a.step < b.step; });
-    if (last != good.end())
-      best = *last;
   }
   const auto told = [](const auto &value) { return support::broadcast(value); };
   best.file = told(best.file.string());
@@ -181,13 +175,19 @@ std::string Checkpoints::problem_of(const fs::path &path, CheckpointPlace &place
   }
 }
 
-void Checkpoints::load(const std::function<void(CheckpointReader &)> &parts) const
+bool Checkpoints::resume(const std::function<void(CheckpointReader &)> &parts) const
 {
+  if (!found_)
+  {
+    archive_stale_checkpoints();
+    return false;
+  }
   try
   {
     const Hdf5File file(found_->file.string());
     CheckpointReader archive(file);
     parts(archive);
+    return true;
   }
   // Any error of the parts is an error of the file, because the run itself has been set up.
   catch (const std::exception &error)
@@ -207,7 +207,7 @@ bool Checkpoints::due(std::size_t step)
   return by_steps || by_time;
 }
 
-void Checkpoints::save(std::size_t step, double time, const std::function<void(CheckpointWriter &)> &parts)
+void Checkpoints::write(std::size_t step, double time, const std::function<void(CheckpointWriter &)> &parts)
 {
   std::optional<Hdf5Image> image;
   if (first_rank_)

@@ -63,37 +63,19 @@ public:
 
   /// Loads the parts of a run, which must be set up as for its first step, from the checkpoint that was found. Without
   /// a checkpoint, only moves checkpoints of an earlier run to `checkpoints.old`. Collective.
-  /// @param parts function that is called with an archive
   /// @return true if there was a checkpoint. @throws UnusableCheckpoint if the parts do not match it, OutputError
-  template <class Parts>
-  bool resume(const Parts &parts)
-  {
-    if (!found_)
-    {
-      archive_stale_checkpoints();
-      return false;
-    }
-    load([&](CheckpointReader &archive) { parts(archive); });
-    return true;
-  }
+  bool resume(const std::function<void(CheckpointReader &)> &parts) const;
 
   /// Returns true if a checkpoint is due, by the number of steps or by the wall time since the last one. To be called
   /// at least every `steps_between_signals` steps. Collective, with the same result on all ranks.
   bool due(std::size_t step);
 
   /// Writes a checkpoint, and deletes all but the last two. Collective; the root rank writes.
-  /// @param parts function that is called with an archive @throws OutputError
-  template <class Parts>
-  void write(std::size_t step, double time, const Parts &parts)
-  {
-    save(step, time, [&](CheckpointWriter &archive) { parts(archive); });
-  }
+  /// @throws OutputError
+  void write(std::size_t step, double time, const std::function<void(CheckpointWriter &)> &parts);
 
 private:
-  void find(const input::Parameters &parameters);
   std::string problem_of(const std::filesystem::path &path, CheckpointPlace &place) const;
-  void load(const std::function<void(CheckpointReader &)> &parts) const;
-  void save(std::size_t step, double time, const std::function<void(CheckpointWriter &)> &parts);
   void archive_stale_checkpoints() const;
   std::vector<std::filesystem::path> files() const;
 

@@ -25,7 +25,7 @@ void CrackFilm::begin(bool resumed)
     next_frame_ = due_beyond(record_.tip().X(), next_frame_);
   }
   else if (is_enabled_ && simulation_.band().is_first())
-    frames_->series().write_collection();
+    frames_->write_collection();
 }
 
 void CrackFilm::end()
@@ -65,7 +65,7 @@ void CrackFilm::check_loaded(double first) const
     }
   lattice::require_archived(next_frame_ == next, "`next_frame` is not the next frame that is due");
   if (is_enabled_)
-    lattice::require_archived(frames_->series().times() == times, "`times` of frames do not match the record of the tip");
+    lattice::require_archived(frames_->times() == times, "`times` of frames do not match the record of the tip");
 }
 
 void CrackFilm::add_frame()

@@ -6,25 +6,6 @@
 
 namespace latcon::output
 {
-namespace
-{
-
-std::string text_of(const double value)
-{
-  return support::full_precision(value);
-}
-
-std::string text_of(const std::uint64_t value)
-{
-  return std::to_string(value);
-}
-
-std::string text_of(const std::string &value)
-{
-  return csv_field(value);
-}
-
-} // namespace
 
 std::string csv_field(const std::string &text)
 {
@@ -61,7 +42,12 @@ std::string Table::csv() const
   for (const std::vector<Cell> &row : rows_)
   {
     for (const Cell &cell : row)
-      text += std::visit([](const auto &value) { return text_of(value); }, cell) + ',';
+      if (const auto *word = std::get_if<std::string>(&cell))
+        text += csv_field(*word) + ',';
+      else if (const auto *number = std::get_if<double>(&cell))
+        text += support::full_precision(*number) + ',';
+      else
+        text += std::to_string(std::get<std::uint64_t>(cell)) + ',';
     end_line();
   }
   return text;

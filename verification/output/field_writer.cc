@@ -1,28 +1,113 @@
 #include "verification/output/field_writer.h"
 
+#include <cstdio>
 #include <limits>
 #include <optional>
+#include <system_error>
+#include <type_traits>
+#include <utility>
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
+#include <vtkErrorCode.h>
+#include <vtkFieldData.h>
 #include <vtkFloatArray.h>
 #include <vtkIdTypeArray.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkInformationStringKey.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkUnsignedCharArray.h>
+#include <vtkXMLImageDataWriter.h>
+#include <vtkXMLPolyDataWriter.h>
 
 #include "lattice/site_fields.h"
 #include "lattice/strain_gradient.h"
+#include "support/atomic_file.h"
+#include "support/pvd.h"
 #include "verification/analysis/fragments.h"
-#include "verification/output/point_data.h"
 
 namespace latcon::output
 {
 namespace
 {
+
+// Sets the unit of a field according to its name, as VTK's `UNITS_LABEL`. Fields that are not quantities get none.
+void set_unit(vtkDataArray &field)
+{
+  static constexpr std::pair<const char *, const char *> units[] = {{"displacement", "m"},
+                                                                    {"excess_displacement", "m"},
+                                                                    {"velocity", "m/s"},
+                                                                    {"deformation_gradient", "1"},
+                                                                    {"first_piola_stress", "Pa"},
+                                                                    {"cauchy_stress", "Pa"},
+                                                                    {"strain_gradient_x", "1/m"},
+                                                                    {"strain_gradient_y", "1/m"},
+                                                                    {"strain_energy_density", "J/m^3"},
+                                                                    {"damage", "1"},
+                                                                    {"stretch", "1"},
+                                                                    {"occupancy", "1"},
+                                                                    {"TimeValue", "s"},
+                                                                    {"SheetBounds", "m"}};
+  for (const auto &[name, unit] : units)
+    if (field.GetName() == std::string(name))
+      field.GetInformation()->Set(vtkDataArray::UNITS_LABEL(), unit);
+}
+
+// Appends a field with its unit to the data of n points, cells, or a whole frame. ParaView expects three components of
+// vectors and nine of tensors.
+// @param value called with a point's index; returns a number, Eigen::Vector2d or Eigen::Matrix2d
+template <class Array, class Value>
+void add_field(vtkFieldData &data, const char *name, std::size_t n, const Value &value)
+{
+  using T = std::decay_t<decltype(value(n))>;
+  constexpr bool is_vector = std::is_same_v<T, Eigen::Vector2d>, is_tensor = std::is_same_v<T, Eigen::Matrix2d>;
+  vtkNew<Array> field;
+  field->SetName(name);
+  field->SetNumberOfComponents(is_tensor ? 9 : is_vector ? 3 : 1);
+  field->SetNumberOfTuples(static_cast<vtkIdType>(n));
+  set_unit(*field);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const T v = value(i);
+    const auto id = static_cast<vtkIdType>(i);
+    if constexpr (is_tensor)
+      field->SetTuple9(id, v(0, 0), v(0, 1), 0., v(1, 0), v(1, 1), 0., 0., 0., 0.);
+    else if constexpr (is_vector)
+      field->SetTuple3(id, v.x(), v.y(), 0.);
+    else
+      field->SetValue(id, static_cast<typename Array::ValueType>(v));
+  }
+  data.AddArray(field);
+}
+
+// Error codes of VTK start after those of the system.
+std::string reason(unsigned long code)
+{
+  if (code == vtkErrorCode::OutOfDiskSpaceError)
+    return std::make_error_code(std::errc::no_space_on_device).message();
+  return code > 0 && code < vtkErrorCode::FirstVTKErrorCode ? std::generic_category().message(static_cast<int>(code))
+                                                            : "VTK error " + std::to_string(code);
+}
+
+// Writes the input of a VTK writer as appended binary data, compressed by LZ4; replaces the file atomically.
+// @throws support::OutputError
+void write_vtk_file(vtkXMLWriter &writer, const std::filesystem::path &path)
+{
+  support::AtomicFile file(path);
+  writer.SetFileName(file.name().c_str());
+  writer.SetDataModeToAppended();
+  writer.EncodeAppendedDataOff();
+  // A tenth of the time of zlib, which took a sixth of a crack run, for files that are half as large again.
+  writer.SetCompressorTypeToLZ4();
+  if (writer.Write() != 1 || writer.GetErrorCode() != 0)
+    throw support::OutputError(path, reason(writer.GetErrorCode()));
+  file.commit(support::Sync::no);
+}
 
 using Slots = std::vector<std::size_t>; // of the points, in their order
 
@@ -105,7 +190,7 @@ void add_bonds(vtkPolyData &frame, const lattice::State &state, const lattice::T
 
 FieldWriter::FieldWriter(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                          std::filesystem::path directory, std::string name, FrameFields fields)
-  : lattice_(lattice), material_(material), fields_(fields), series_(std::move(directory), std::move(name))
+  : lattice_(lattice), material_(material), directory_(std::move(directory)), name_(std::move(name)), fields_(fields)
 {
 }
 
@@ -150,7 +235,62 @@ void FieldWriter::add_frame(const lattice::State &state)
   }
   // Array that ParaView shows by default; velocities are zero at the start.
   data.SetActiveVectors("displacement");
-  series_.add(*frame, state.time);
+  vtkNew<vtkDoubleArray> time_value;
+  time_value->SetName("TimeValue");
+  set_unit(*time_value);
+  time_value->InsertNextValue(state.time);
+  frame->GetFieldData()->AddArray(time_value);
+
+  if (!times_.empty() && times_.back() == state.time)
+    times_.pop_back();
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetInputData(frame);
+  write_vtk_file(*writer, directory_ / file_name(times_.size()));
+  times_.push_back(state.time);
+  write_collection();
+}
+
+std::string FieldWriter::file_name(std::size_t frame) const
+{
+  char number[32];
+  std::snprintf(number, sizeof(number), "-%04zu.vtp", frame);
+  return name_ + number;
+}
+
+void FieldWriter::write_collection() const
+{
+  std::vector<support::PvdFile> files;
+  for (std::size_t frame = 0; frame < times_.size(); ++frame)
+    files.push_back({times_[frame], file_name(frame)});
+  support::write_atomically(directory_ / (name_ + ".pvd"), support::pvd_text(files), support::Sync::no);
+}
+
+void write_near_tip_field(const analysis::NearTipField &field, const std::filesystem::path &path)
+{
+  const analysis::NearTipGrid &grid = field.grid;
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(grid.columns(), grid.rows(), 1);
+  image->SetSpacing(grid.pitch_X, grid.pitch_Y, 1.);
+  image->SetOrigin(-grid.behind * grid.pitch_X, -grid.half_height * grid.pitch_Y, 0.);
+  const auto add = [&](const char *name, const auto &values)
+  { add_field<vtkDoubleArray>(*image->GetPointData(), name, grid.size(), [&](std::size_t i) { return values[i]; }); };
+  add("displacement", field.displacement);
+  add("excess_displacement", field.excess_displacement);
+  add("velocity", field.velocity);
+  add("deformation_gradient", field.deformation_gradient);
+  add("first_piola_stress", field.first_piola_stress);
+  add("cauchy_stress", field.cauchy_stress);
+  add("strain_gradient_x", field.strain_gradient_x);
+  add("strain_gradient_y", field.strain_gradient_y);
+  add("occupancy", field.occupancy);
+  vtkNew<vtkDoubleArray> samples;
+  samples->SetName("Samples");
+  samples->InsertNextValue(static_cast<double>(field.samples));
+  image->GetFieldData()->AddArray(samples);
+
+  vtkNew<vtkXMLImageDataWriter> writer;
+  writer->SetInputData(image);
+  write_vtk_file(*writer, path);
 }
 
 } // namespace latcon::output

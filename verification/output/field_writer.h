@@ -1,7 +1,15 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lattice/archive_rows.h"
 #include "lattice/state.h"
-#include "verification/output/frame_series.h"
+#include "verification/analysis/near_tip_fields.h"
 
 namespace latcon::output
 {
@@ -35,20 +43,42 @@ public:
   /// a file cannot be written
   void add_frame(const lattice::State &state);
 
-  const FrameSeries &series() const { return series_; }
+  /// Writes `NAME.pvd` with the current list of frames. @throws support::OutputError
+  void write_collection() const;
 
-  /// Saves or loads the list of frames; see Simulation.
+  /// Returns the times of the frames [s].
+  const std::vector<double> &times() const { return times_; }
+
+  /// Saves or loads the list of frames; see Simulation. @throws std::invalid_argument if their times do not increase
   template <class Archive>
   void archive(Archive &archive)
   {
-    series_.archive(archive);
+    archive("times", times_);
+    if constexpr (Archive::loads)
+      lattice::require_archived(std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>()) ==
+                                    times_.end() &&
+                                  (times_.empty() || times_.front() >= 0.),
+                                "`times` of frames do not increase from 0");
   }
 
 private:
+  std::string file_name(std::size_t frame) const;
+
   const lattice::TriangularLattice &lattice_;
   lattice::Material material_;
+  std::filesystem::path directory_;
+  std::string name_;
   FrameFields fields_;
-  FrameSeries series_;
+  std::vector<double> times_; // of the frames [s]
 };
+
+/// Writes the means around a tip as an image for ParaView (.vti), which replaces `path` atomically.
+///
+/// Points are those of the grid, in the reference configuration relative to the tip [m]; warp by `displacement` for the
+/// current one. Arrays, units and index order as in FieldWriter, and in addition excess_displacement [m],
+/// strain_gradient_x, strain_gradient_y [1/m] and occupancy [-]; NaN at points without a site. The field data array
+/// Samples is the number of samples.
+/// @throws support::OutputError if the file cannot be written
+void write_near_tip_field(const analysis::NearTipField &field, const std::filesystem::path &path);
 
 } // namespace latcon::output

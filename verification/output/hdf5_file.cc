@@ -11,24 +11,7 @@ namespace
 
 static_assert(std::is_same_v<hid_t, std::int64_t>);
 
-// Owner of an HDF5 handle.
-class Handle
-{
-public:
-  Handle(hid_t id, herr_t (*close)(hid_t), const std::string &what) : id_(id), close_(close)
-  {
-    if (id < 0)
-      throw Hdf5Error(what);
-  }
-  ~Handle() { close_(id_); }
-  Handle(const Handle &) = delete;
-  Handle &operator=(const Handle &) = delete;
-  operator hid_t() const { return id_; }
-
-private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
+using Handle = Hdf5Handle;
 
 void require(herr_t status, const std::string &what)
 {
@@ -42,46 +25,25 @@ void disable_error_messages()
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-hid_t type_in_file(ElementType type)
+hid_t open_file(const std::string &path)
 {
-  switch (type)
-  {
-  case ElementType::float64:
-    return H5T_IEEE_F64LE;
-  case ElementType::int32:
-    return H5T_STD_I32LE;
-  case ElementType::int64:
-    return H5T_STD_I64LE;
-  case ElementType::uint8:
-    return H5T_STD_U8LE;
-  case ElementType::uint16:
-    return H5T_STD_U16LE;
-  case ElementType::uint32:
-    return H5T_STD_U32LE;
-  default:
-    return H5T_STD_U64LE;
-  }
+  disable_error_messages();
+  return H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
 }
 
-hid_t type_in_memory(ElementType type)
+// Type of the elements in the file and in memory.
+struct NumberType
 {
-  switch (type)
-  {
-  case ElementType::float64:
-    return H5T_NATIVE_DOUBLE;
-  case ElementType::int32:
-    return H5T_NATIVE_INT32;
-  case ElementType::int64:
-    return H5T_NATIVE_INT64;
-  case ElementType::uint8:
-    return H5T_NATIVE_UINT8;
-  case ElementType::uint16:
-    return H5T_NATIVE_UINT16;
-  case ElementType::uint32:
-    return H5T_NATIVE_UINT32;
-  default:
-    return H5T_NATIVE_UINT64;
-  }
+  hid_t in_file, in_memory;
+};
+
+NumberType type_of(ElementType type)
+{
+  const NumberType types[] = {{H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE}, {H5T_STD_I32LE, H5T_NATIVE_INT32},
+                              {H5T_STD_I64LE, H5T_NATIVE_INT64},   {H5T_STD_U8LE, H5T_NATIVE_UINT8},
+                              {H5T_STD_U16LE, H5T_NATIVE_UINT16},  {H5T_STD_U32LE, H5T_NATIVE_UINT32},
+                              {H5T_STD_U64LE, H5T_NATIVE_UINT64}};
+  return types[static_cast<std::size_t>(type)];
 }
 
 // Links to other files are not followed: arrays must be in the file itself.
@@ -134,6 +96,13 @@ void write_array(hid_t file, const std::string &path, hid_t in_file, hid_t in_me
 
 } // namespace
 
+Hdf5Handle::Hdf5Handle(std::int64_t id, int (*close)(std::int64_t), const std::string &otherwise)
+  : id_(id), close_(close)
+{
+  if (id < 0)
+    throw Hdf5Error(otherwise);
+}
+
 Hdf5Image::Hdf5Image()
 {
   disable_error_messages();
@@ -143,20 +112,12 @@ Hdf5Image::Hdf5Image()
   require(H5Pset_fapl_core(access, increment, 0), what);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, what);
   require(H5Pset_userblock(creation, user_block), what);
-  file_ = H5Fcreate("checkpoint", H5F_ACC_TRUNC, creation, access);
-  if (file_ < 0)
-    throw Hdf5Error(what);
-}
-
-Hdf5Image::~Hdf5Image()
-{
-  if (file_ >= 0)
-    H5Fclose(file_);
+  file_.emplace(H5Fcreate("checkpoint", H5F_ACC_TRUNC, creation, access), H5Fclose, what);
 }
 
 void Hdf5Image::write(const std::string &path, ElementType type, const void *elements, std::size_t n)
 {
-  write_array(file_, path, type_in_file(type), type_in_memory(type), elements, n);
+  write_array(*file_, path, type_of(type).in_file, type_of(type).in_memory, elements, n);
 }
 
 void Hdf5Image::write_text(const std::string &path, const std::string &text)
@@ -164,37 +125,25 @@ void Hdf5Image::write_text(const std::string &path, const std::string &text)
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "cannot write `" + path + "`");
   require(H5Tset_size(type, text.size() + 1), "cannot write `" + path + "`"); // including the terminating zero
   require(H5Tset_cset(type, H5T_CSET_UTF8), "cannot write `" + path + "`");
-  write_array(file_, path, type, type, text.c_str(), 1);
+  write_array(*file_, path, type, type, text.c_str(), 1);
 }
 
 std::string Hdf5Image::take_bytes()
 {
   const std::string what = "HDF5 cannot return the bytes of a file in memory";
-  require(H5Fflush(file_, H5F_SCOPE_GLOBAL), what);
-  const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
+  require(H5Fflush(*file_, H5F_SCOPE_GLOBAL), what);
+  const ssize_t size = H5Fget_file_image(*file_, nullptr, 0);
   if (size < 0)
     throw Hdf5Error(what);
   // The image starts after the user block.
   std::string bytes(user_block + static_cast<std::size_t>(size), '\0');
-  if (H5Fget_file_image(file_, &bytes[user_block], static_cast<std::size_t>(size)) != size)
+  if (H5Fget_file_image(*file_, &bytes[user_block], static_cast<std::size_t>(size)) != size)
     throw Hdf5Error(what);
-  H5Fclose(file_);
-  file_ = H5I_INVALID_HID;
+  file_.reset();
   return bytes;
 }
 
-Hdf5File::Hdf5File(const std::string &path)
-{
-  disable_error_messages();
-  file_ = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file_ < 0)
-    throw Hdf5Error("it is not an HDF5 file");
-}
-
-Hdf5File::~Hdf5File()
-{
-  H5Fclose(file_);
-}
+Hdf5File::Hdf5File(const std::string &path) : file_(open_file(path), H5Fclose, "it is not an HDF5 file") {}
 
 std::size_t Hdf5File::size(const std::string &path) const
 {
@@ -205,12 +154,12 @@ void Hdf5File::read(const std::string &path, ElementType type, void *elements, s
 {
   const Handle array = open_array(file_, path);
   const Handle stored(H5Dget_type(array), H5Tclose, "`" + path + "` has no type");
-  if (H5Tequal(stored, type_in_file(type)) <= 0)
+  if (H5Tequal(stored, type_of(type).in_file) <= 0)
     throw Hdf5Error("`" + path + "` has another type");
   if (size_of(file_, array, path) != n)
     throw Hdf5Error("`" + path + "` has another size");
   if (n > 0)
-    require(H5Dread(array, type_in_memory(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, elements),
+    require(H5Dread(array, type_of(type).in_memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, elements),
             "cannot read `" + path + "`");
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -48,15 +49,28 @@ constexpr ElementType element_type()
                             : ElementType::uint64;
 }
 
+/// Owner of a handle of HDF5.
+class Hdf5Handle
+{
+public:
+  /// @throws Hdf5Error with this text if the handle is invalid
+  Hdf5Handle(std::int64_t id, int (*close)(std::int64_t), const std::string &otherwise);
+  ~Hdf5Handle() { close_(id_); }
+  Hdf5Handle(const Hdf5Handle &) = delete;
+  Hdf5Handle &operator=(const Hdf5Handle &) = delete;
+  operator std::int64_t() const { return id_; }
+
+private:
+  std::int64_t id_;
+  int (*close_)(std::int64_t);
+};
+
 /// HDF5 file in memory, so that a full disk is an error of the caller, who writes the bytes, and never of HDF5. Creates
 /// the groups of a path when necessary.
 class Hdf5Image
 {
 public:
   Hdf5Image();
-  ~Hdf5Image();
-  Hdf5Image(const Hdf5Image &) = delete;
-  Hdf5Image &operator=(const Hdf5Image &) = delete;
 
   /// Size of the HDF5 user block: bytes before the HDF5 part, for use by the caller.
   static constexpr std::size_t user_block = 512;
@@ -69,7 +83,7 @@ public:
   std::string take_bytes();
 
 private:
-  std::int64_t file_;
+  std::optional<Hdf5Handle> file_; // none once its bytes are taken
 };
 
 /// HDF5 file for reading.
@@ -78,9 +92,6 @@ class Hdf5File
 public:
   /// @throws Hdf5Error
   explicit Hdf5File(const std::string &path);
-  ~Hdf5File();
-  Hdf5File(const Hdf5File &) = delete;
-  Hdf5File &operator=(const Hdf5File &) = delete;
 
   /// Returns the number of elements of an array. @throws Hdf5Error, also if the array is larger than the file or stored
   /// in another file
@@ -92,7 +103,7 @@ public:
   std::string read_text(const std::string &path) const;
 
 private:
-  std::int64_t file_;
+  Hdf5Handle file_;
 };
 
 } // namespace latcon::output

@@ -8,7 +8,7 @@
 
 #include "verification/bridge/plane_waves.h"
 #include "verification/bridge/small_strain.h"
-#include "verification/output/near_tip_writer.h"
+#include "verification/output/field_writer.h"
 #include "verification/output/output_file.h"
 
 namespace latcon::output

@@ -1,8 +1,6 @@
 /// Atomic writing of text files.
 #pragma once
 
-#include <functional>
-#include <iosfwd>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,11 +12,6 @@ namespace latcon::output
 /// to the list of its folder (output_list.h).
 /// @throws OutputError with `path` and the reason given by the system; the old file is unchanged
 void write_file(const std::string &path, const std::string &text);
-
-/// Replaces the file `path` by the output of `writer`. If `writer` throws, nothing is written and the exception is
-/// propagated. The whole text is in memory. The stream prints doubles with six digits by default; see full_precision().
-/// @throws OutputError as above, and if `writer` leaves the stream in a failed state
-void write_file(const std::string &path, const std::function<void(std::ostream &)> &writer);
 
 /// Paths and texts of files.
 using TextFiles = std::vector<std::pair<std::string, std::string>>;

@@ -168,15 +168,21 @@ std::vector<std::pair<std::string, RowKind>> Results::failed_rows() const
   return failed;
 }
 
-std::string Results::verdict_text(const std::size_t most) const
+std::string Results::count_text() const
 {
   const std::size_t failing = count(Verdict::fails), judged = failing + count(Verdict::holds);
-  const auto checks = [](const std::size_t n) { return std::to_string(n) + (n == 1 ? " check" : " checks"); };
   if (judged == 0)
-    return "nothing was checked\n";
+    return "nothing was checked";
+  const std::string checks = std::to_string(judged) + (judged == 1 ? " check" : " checks");
   if (failing == 0)
-    return checks(judged) + (judged == 1 ? " holds\n" : " hold\n");
-  std::string text = std::to_string(failing) + " of " + checks(judged) + (failing == 1 ? " fails:\n" : " fail:\n");
+    return checks + (judged == 1 ? " holds" : " hold");
+  return std::to_string(failing) + " of " + checks + (failing == 1 ? " fails" : " fail");
+}
+
+std::string Results::verdict_text(const std::size_t most) const
+{
+  const std::size_t failing = count(Verdict::fails);
+  std::string text = count_text() + (failing > 0 ? ":\n" : "\n");
   std::size_t named = 0;
   for (const Result &row : rows_)
     if (row.verdict() == Verdict::fails && named++ < most)
@@ -259,11 +265,6 @@ void Results::print(std::ostream &out) const
     others += (i == 1 ? 0 : width[i]) + (i == 0 ? 0 : gap);
   width[1] = std::min(width[1], widest - others);
 
-  const auto padded = [](const std::string &text, const std::size_t columns, const bool right)
-  {
-    const std::string fill(columns - std::min(columns, support::width_of(text)), ' ');
-    return right ? fill + text : text + fill;
-  };
   for (std::size_t r = 0; r < table.size(); ++r)
   {
     std::array<std::vector<std::string>, n_words> words;
@@ -283,17 +284,15 @@ void Results::print(std::ostream &out) const
           cell = l < words[i].size() ? words[i][l] : "";
         else if (l == 0)
           cell = table[r][i];
-        const bool is_number = i >= n_words && i + 1 < n_columns;
-        line += std::string(i == 0 ? 0 : gap, ' ') + padded(cell, width[i], is_number);
+        const bool is_number = i >= n_words && i + 1 < n_columns; // of ASCII alone
+        line += std::string(gap * (i > 0) + (is_number ? width[i] - cell.size() : 0), ' ');
+        line += is_number ? cell : support::padded(cell, width[i]);
       }
       line.erase(line.find_last_not_of(' ') + 1);
       out << line << '\n';
     }
     if (r == 0)
-    {
-      std::size_t total = others + width[1];
-      out << std::string(total, '-') << '\n';
-    }
+      out << std::string(others + width[1], '-') << '\n';
   }
 }
 

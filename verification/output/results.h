@@ -101,8 +101,11 @@ public:
   /// Returns "CLAIM: QUANTITY" and kind of each row that fails, in order.
   [[nodiscard]] std::vector<std::pair<std::string, RowKind>> failed_rows() const;
 
-  /// Returns a summary: "98 checks hold", or the number of failures with a line for each: claim, quantity, error,
-  /// tolerance. @param most largest number of listed rows
+  /// Returns "98 checks hold", "1 of 98 checks fails" or "nothing was checked".
+  [[nodiscard]] std::string count_text() const;
+
+  /// Returns count_text() with a line for each failure: claim, quantity, error, tolerance.
+  /// @param most largest number of listed rows
   [[nodiscard]] std::string verdict_text(std::size_t most) const;
 
   /// Returns the rows as JSON: {"claims": [{"claim": ..., "quantity": ..., "unit": ..., "lattice": ..., "continuum":

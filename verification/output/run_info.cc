@@ -1,7 +1,7 @@
 #include "verification/output/run_info.h"
 
 #include "support/full_precision.h"
-#include "verification/input/data_folder.h"
+#include "verification/input/files.h"
 #include "verification/input/sha256.h"
 #include "verification/output/output_file.h"
 
@@ -61,23 +61,11 @@ int n_threads()
 #endif
 }
 
-// JSON has no numbers that are not finite.
-Json number(const double value)
-{
-  return std::isfinite(value) ? Json(value) : Json(support::full_precision(value));
-}
+} // namespace
 
-Json json_of(const RunInfo::Scalar &value)
+Json RunInfo::standard_facts(const std::optional<support::ExitCode> exit_code, const std::string &verdict) const
 {
-  if (const double *real = std::get_if<double>(&value))
-    return number(*real);
-  return std::visit([](const auto &v) { return Json(v); }, value);
-}
-
-Json common_facts(const std::vector<std::string> &command_line, const int n_threads, const int n_ranks,
-                  const Stopwatch &stopwatch, const double total, const std::optional<support::ExitCode> exit_code,
-                  const std::string &verdict)
-{
+  const std::chrono::duration<double> total = std::chrono::steady_clock::now() - start_;
   Json document;
   document["program"] = "latcon";
   document["version"] = program_version();
@@ -95,21 +83,18 @@ Json common_facts(const std::vector<std::string> &command_line, const int n_thre
     {"Eigen", LATCON_EIGEN_VERSION},
     {"MPI", mpi_version()}};
   document["hardware_threads"] = std::thread::hardware_concurrency();
-  document["threads"] = n_threads;
-  document["mpi_ranks"] = n_ranks;
-  document["command_line"] = command_line;
-  Json phases = Json::object();
-  for (const auto &[name, seconds] : stopwatch.times())
-    phases[name] = number(seconds);
-  document["wall_time_total_s"] = number(total);
-  document["wall_time_s"] = std::move(phases);
+  document["threads"] = n_threads_;
+  document["mpi_ranks"] = n_ranks_;
+  document["command_line"] = command_line_;
+  document["wall_time_total_s"] = total.count();
+  Json &phases = document["wall_time_s"] = Json::object();
+  for (const auto &[name, seconds] : stopwatch_.times())
+    phases[name] = seconds;
   document["peak_memory_bytes"] = peak_memory();
   document["verdict"] = verdict.empty() ? Json(nullptr) : Json(verdict);
   document["exit_code"] = exit_code ? Json(static_cast<int>(*exit_code)) : Json(nullptr);
   return document;
 }
-
-} // namespace
 
 Stopwatch::Phase::Phase(Stopwatch &stopwatch, std::string name)
   : stopwatch_(&stopwatch), name_(std::move(name)), start_(std::chrono::steady_clock::now())
@@ -179,65 +164,25 @@ std::uint64_t peak_memory()
 
 RunInfo::RunInfo(std::vector<std::string> command_line)
   : command_line_(std::move(command_line)), start_(std::chrono::steady_clock::now()), n_threads_(n_threads()),
-    n_ranks_(n_ranks())
+    n_ranks_(n_ranks()), facts_(std::make_shared<Json>(Json::object()))
 {
 }
 
-void RunInfo::add(const std::string &key, const bool value)
+void RunInfo::add(const std::string &key, const Json &value)
 {
-  add_value(key, Scalar(value));
-}
-void RunInfo::add(const std::string &key, const int value)
-{
-  add_value(key, Scalar(value));
-}
-void RunInfo::add(const std::string &key, const std::uint64_t value)
-{
-  add_value(key, Scalar(value));
-}
-void RunInfo::add(const std::string &key, const double value)
-{
-  add_value(key, Scalar(value));
-}
-void RunInfo::add(const std::string &key, const char *value)
-{
-  add_value(key, Scalar(std::string(value)));
-}
-void RunInfo::add(const std::string &key, const std::string &value)
-{
-  add_value(key, Scalar(value));
-}
-void RunInfo::add(const std::string &key, const Object &object)
-{
-  add_value(key, object);
-}
-
-void RunInfo::add_value(const std::string &key, Value value)
-{
-  if (common_facts(command_line_, n_threads_, n_ranks_, stopwatch_, 0., {}, "").contains(key))
+  if (standard_facts({}, "").contains(key))
     throw std::logic_error("'" + key + "' is a standard key of run.json");
   const std::lock_guard lock(mutex_);
-  const auto found = std::find_if(facts_.begin(), facts_.end(), [&key](const auto &fact) { return fact.first == key; });
-  if (found == facts_.end())
-    facts_.emplace_back(key, std::move(value));
-  else
-    found->second = std::move(value);
+  // JSON has no numbers that are not finite.
+  const bool is_number = !value.is_number_float() || std::isfinite(value.get<double>());
+  (*facts_)[key] = is_number ? value : Json(support::full_precision(value.get<double>()));
 }
 
 std::string RunInfo::json(const std::optional<support::ExitCode> exit_code, const std::string &verdict) const
 {
-  const std::chrono::duration<double> total = std::chrono::steady_clock::now() - start_;
-  Json document = common_facts(command_line_, n_threads_, n_ranks_, stopwatch_, total.count(), exit_code, verdict);
+  Json document = standard_facts(exit_code, verdict);
   const std::lock_guard lock(mutex_);
-  for (const auto &[key, value] : facts_)
-    if (const auto *object = std::get_if<Object>(&value))
-    {
-      document[key] = Json::object();
-      for (const auto &[name, member] : *object)
-        document[key][name] = json_of(member);
-    }
-    else
-      document[key] = json_of(std::get<Scalar>(value));
+  document.update(*facts_);
   // Arguments and texts may contain bytes that are not UTF-8.
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

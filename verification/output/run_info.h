@@ -5,12 +5,14 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
+
+#include <nlohmann/json_fwd.hpp>
 
 namespace latcon::output
 {
@@ -77,21 +79,10 @@ public:
   /// Returns the wall times of the phases of this run.
   [[nodiscard]] Stopwatch &stopwatch() { return stopwatch_; }
 
-  /// Adds a value under a new key, for example add("skip_verification", true). A repeated key replaces the value.
+  /// Adds a value or an object under a new key, for example add("skip_verification", true). A repeated key replaces the
+  /// value. A number that is not finite becomes "nan", "inf" or "-inf".
   /// @throws std::logic_error if the key is a standard key of run.json
-  void add(const std::string &key, bool value);
-  void add(const std::string &key, int value);
-  void add(const std::string &key, std::uint64_t value);
-  void add(const std::string &key, double value);
-  void add(const std::string &key, const char *value);
-  void add(const std::string &key, const std::string &value);
-
-  /// Value of a key, or of a member of an object.
-  using Scalar = std::variant<bool, int, std::uint64_t, double, std::string>;
-  using Object = std::vector<std::pair<std::string, Scalar>>;
-
-  /// Adds an object, whose members are written in their order.
-  void add(const std::string &key, const Object &object);
+  void add(const std::string &key, const nlohmann::ordered_json &value);
 
   /// Returns the current content of run.json.
   /// @param exit_code exit code of the run; empty (null in the file) while it is running
@@ -104,15 +95,14 @@ public:
              const std::string &verdict = "") const;
 
 private:
-  using Value = std::variant<Scalar, Object>;
-  void add_value(const std::string &key, Value value);
+  nlohmann::ordered_json standard_facts(std::optional<support::ExitCode> exit_code, const std::string &verdict) const;
 
   std::vector<std::string> command_line_;
   std::chrono::steady_clock::time_point start_;
   Stopwatch stopwatch_;
   int n_threads_, n_ranks_;  // as seen by the constructing thread
   mutable std::mutex mutex_; // of facts_
-  std::vector<std::pair<std::string, Value>> facts_;
+  std::shared_ptr<nlohmann::ordered_json> facts_; // added by the run
 };
 
 } // namespace latcon::output

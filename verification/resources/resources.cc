@@ -185,7 +185,7 @@ void require_memory(const MemoryNeed &need)
   text << std::fixed << "not enough memory: the run would take about " << numbers[0] << " bytes ("
        << support::readable_bytes(numbers[0]) << ") in addition to the current memory of latcon, and this machine has "
        << numbers[1] << " bytes (" << support::readable_bytes(numbers[1])
-       << ") available; use a smaller or coarser sheet, or more machines";
+       << ") available; use a smaller or coarser sheet, or more machines; use --yes to run it anyway";
   throw support::InputError(text.str());
 }
 

@@ -109,10 +109,10 @@ TEST(Parameters, OldSectionsNameWhatReplacedThem)
 
 TEST(Parameters, RangesHoldAtTheirEnds)
 {
-  EXPECT_TRUE(Positive().contains(5e-324));
-  EXPECT_FALSE(Positive().contains(0.));
-  EXPECT_TRUE(NonNegative().contains(0.));
-  EXPECT_FALSE(NonNegative().contains(-5e-324));
+  EXPECT_TRUE(Above(0.).contains(5e-324));
+  EXPECT_FALSE(Above(0.).contains(0.));
+  EXPECT_TRUE(AtLeast(0.).contains(0.));
+  EXPECT_FALSE(AtLeast(0.).contains(-5e-324));
   EXPECT_FALSE(Above(1.).contains(1.));
   EXPECT_TRUE(AtLeast(1.).contains(1.));
   EXPECT_TRUE(Between(0., 1.).contains(0.));

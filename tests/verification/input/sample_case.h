@@ -19,6 +19,12 @@ namespace sample_case
 
 using namespace latcon::input;
 
+enum class Law
+{
+  mooney_rivlin,
+  linear
+};
+
 enum class Rule
 {
   none,
@@ -36,7 +42,7 @@ struct Sample
   std::uint64_t seed = 7;
   bool periodic = false;
   std::string title = "sample";
-  std::string law = "mooney-rivlin";
+  Law law = Law::mooney_rivlin;
   Rule rule = Rule::none;
   std::vector<double> stretches = {1., 2.};
   std::optional<double> time_step;
@@ -44,12 +50,12 @@ struct Sample
 
   void declare(Parameters &p)
   {
-    p.add("Lattice", "spacing", spacing, Positive(), "m", "Distance d of nearest sites", Presence::required);
+    p.add("Lattice", "spacing", spacing, Above(0.), "m", "Distance d of nearest sites", Presence::required);
     p.add("Lattice", "nearest neighbour area factor", area_factor, Between(0., 1.), "1", "Share s of the area");
     p.add("Lattice", "rows", rows, AtLeast(2), "Rows of sites");
     p.add("Lattice", "periodic", periodic, "Whether the ends are joined");
-    p.add("Lattice", "law", law, {"mooney-rivlin", "linear"}, "Law of the bonds");
-    p.add("Lattice", "density", density, Positive(), "kg/m^2", "Mass per area");
+    p.add("Lattice", "law", law, {{"mooney-rivlin", Law::mooney_rivlin}, {"linear", Law::linear}}, "Law of the bonds");
+    p.add("Lattice", "density", density, Above(0.), "kg/m^2", "Mass per area");
     p.add("Fracture", "rule", rule,
           {{"none", Rule::none}, {"behind-tip", Rule::behind_tip}, {"retraction", Rule::retraction}},
           "Toughening rule");
@@ -57,7 +63,7 @@ struct Sample
     p.add("Run", "steps", steps, Any(), "Number of steps");
     p.add("Run", "seed", seed, Any(), "Seed of the noise");
     p.add("Run", "title", title, "Title of the output");
-    p.add("Run", "time step", time_step, Positive(), "s", "Time step");
+    p.add("Run", "time step", time_step, Above(0.), "s", "Time step");
   }
 };
 

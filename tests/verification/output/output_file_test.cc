@@ -1,12 +1,10 @@
-// write_file, in addition to support/atomic_file.h: writers, and the list of outputs.
+// write_file, in addition to support/atomic_file.h.
 #include "tests/support/temporary_folder.h"
 
 #include "support/errors.h"
 #include "verification/output/output_file.h"
 
 #include <gtest/gtest.h>
-
-#include <ostream>
 
 namespace output_file_test
 {
@@ -35,9 +33,9 @@ TEST(WriteFile, WritesAndReplaces)
 {
   const TemporaryFolder folder;
   const std::string path = folder / "a.txt";
-  write_file(path, std::string("old and longer"));
+  write_file(path, "old and longer");
   EXPECT_EQ(content_of(path), "old and longer");
-  write_file(path, [](std::ostream &out) { out << "new\n"; });
+  write_file(path, "new\n");
   EXPECT_EQ(content_of(path), "new\n");
 }
 
@@ -46,28 +44,6 @@ TEST(WriteFile, MissingFolderIsNamedWithTheReason)
   const TemporaryFolder folder;
   const std::string path = folder / "missing/a.txt";
   EXPECT_EQ(complaint(path), "cannot write " + path + ": No such file or directory");
-}
-
-TEST(WriteFile, WriterThatFailsOrThrowsLeavesTheOldFile)
-{
-  const TemporaryFolder folder;
-  const std::string path = folder / "a.txt";
-  write_file(path, std::string("old"));
-  EXPECT_THROW(write_file(path,
-                          [](std::ostream &out)
-                          {
-                            out << "half";
-                            out.setstate(std::ios::failbit);
-                          }),
-               OutputError);
-  EXPECT_THROW(write_file(path,
-                          [](std::ostream &out)
-                          {
-                            out << "half";
-                            throw std::runtime_error("stop");
-                          }),
-               std::runtime_error);
-  EXPECT_EQ(content_of(path), "old");
 }
 
 } // namespace output_file_test

@@ -101,7 +101,7 @@ TEST(RunInfo, HoldsWhatTheRunAdds)
   run.add("time_step_s", 0.1);
   run.add("residual", std::numeric_limits<double>::infinity());
   run.add("case", "fig1.prm");
-  run.add("verification", RunInfo::Object{{"hash", "abc"}, {"reused", true}, {"residual", 0.1}});
+  run.add("verification", {{"hash", "abc"}, {"reused", true}, {"residual", 0.1}});
   EXPECT_THROW(run.add("version", "mine"), std::logic_error);
   const nlohmann::json document = nlohmann::json::parse(run.json(ExitCode::done));
   EXPECT_EQ(document["skip_verification"], true);
