@@ -11,6 +11,7 @@
 #include <omp.h>
 
 #include "support/largest_error.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/rows.h"
 
 namespace latcon::claims
@@ -33,18 +34,15 @@ Rows crack_rows(ClaimOutcome &outcome)
 struct TheoryComparison
 {
   TheoryComparison(const CrackRunOptions &options, const std::function<void(CrackRunOptions &)> &planted)
-    : run(run_crack(spoiled(options, planted))), driving(options.driving / run.breaking_elongation()),
-      speed(steady_speed(options.strip, driving, fastest))
   {
+    CrackRunOptions spoiled = options;
+    planted(spoiled);
+    run = run_crack(spoiled);
+    driving = options.driving / run.breaking_elongation();
+    speed = steady_speed(options.strip, driving, fastest);
     const double released_exact = options.driving * options.driving;
     errors = {std::log(steady_driving(options.strip, run.speed) / driving), run.released / released_exact - 1.,
               run.viscous / (released_exact - run.broken) - 1.};
-  }
-
-  static CrackRunOptions spoiled(CrackRunOptions options, const std::function<void(CrackRunOptions &)> &planted)
-  {
-    planted(options);
-    return options;
   }
 
   CrackRun run;
@@ -231,6 +229,11 @@ ClaimOutcome steady_crack_claim(bool quick)
   if (!quick)
     crack_rows(outcome).attempt("curves of the exact solution", [&] { add_curves(outcome, every); });
   return outcome;
+}
+
+ClaimOutcome check_steady_crack(const ClaimInput &input)
+{
+  return steady_crack_claim(input.quick);
 }
 
 } // namespace latcon::claims
