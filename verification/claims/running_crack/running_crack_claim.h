@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -72,7 +71,6 @@ struct CrackSides
 {
   CrackDrive drive;
   HalfSheet half; ///< the continuum's sheet
-  std::vector<std::shared_ptr<const continuum::Viscosity>> viscosities;
   /// "local", the network, which is judged; "gradient", with its gradient energy and micro-inertia;
   /// "viscous-gradient", with gradient viscosity as well; if asked for, "bonds-local", "bonds-gradient" and
   /// "bonds-viscous-gradient", the same with the Cauchy-Born law and gradient energy of the lattice.

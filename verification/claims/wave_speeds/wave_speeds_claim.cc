@@ -158,11 +158,9 @@ void damping_orders(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
     if (lattice::Shell *shell = material.in_shell(number))
       shell->viscosity *= 0.33 / ratio.error();
 
-  const auto kelvin = bridge::homogenised_viscosity(sheet, material),
-             viscosity = bridge::homogenised_viscosity(sheet, material, subject.lengths.lattice);
   SubjectContinua media(subject);
-  media.local.viscosity = kelvin.get();
-  media.gradient.viscosity = viscosity.get();
+  media.local.viscosity = bridge::homogenised_viscosity(sheet, material);
+  media.gradient.viscosity = bridge::homogenised_viscosity(sheet, material, subject.lengths.lattice);
   CommonOrder local_order, gradient_order;
   support::LargestError elements_against_closed;
   const Rows rows(outcome.results, "wave-speeds",
@@ -222,10 +220,8 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
   const WaveCell cell = wave_cell(subject.spacing, subject.orientation, {1, 0}, kd);
   const double k = cell.K.norm();
 
-  const auto viscosity = bridge::homogenised_viscosity(any, material, subject.lengths.lattice);
-  const WaveContinuum medium{{subject.cauchy_born, *subject.lattice_gradient},
-                             {subject.material.density, subject.lengths.lattice},
-                             viscosity.get()};
+  WaveContinuum medium = SubjectContinua(subject).gradient;
+  medium.viscosity = bridge::homogenised_viscosity(any, material, subject.lengths.lattice);
   const std::array<bridge::PlaneWave, 2> theory = damped(cell.K), kelvin = continuum_waves(medium, F, cell.K);
   std::ostringstream where;
   where << subject.name << ", " << state_name(F) << ", kd = " << std::round(1e4 * k * subject.spacing) / 1e4 << ": ";
