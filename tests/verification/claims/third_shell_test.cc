@@ -5,7 +5,6 @@
 #include "tests/verification/claims/small_sheet.h"
 #include "verification/claims/claim_inputs.h"
 #include "verification/claims/energy/energy_claim.h"
-#include "verification/claims/intrinsic_length/dispersion.h"
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 #include "verification/claims/prestretch/prestretch_claim.h"
 
