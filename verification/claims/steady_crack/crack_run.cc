@@ -1,11 +1,8 @@
 #include "verification/claims/steady_crack/steady_crack_claim.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
-#include <vector>
 
 #include "lattice/relaxation.h"
 #include "lattice/simulation.h"

@@ -1,8 +1,6 @@
 #include "verification/claims/steady_crack/steady_crack_claim.h"
 
-#include <cmath>
 #include <stdexcept>
-#include <vector>
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>

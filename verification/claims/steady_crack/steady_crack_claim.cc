@@ -1,8 +1,6 @@
 #include "verification/claims/steady_crack/steady_crack_claim.h"
 
 #include <array>
-#include <cmath>
-#include <functional>
 #include <future>
 #include <limits>
 #include <sstream>
@@ -12,7 +10,6 @@
 
 #include "support/largest_error.h"
 #include "verification/claims/claim_list.h"
-#include "verification/claims/rows.h"
 
 namespace latcon::claims
 {
@@ -177,14 +174,14 @@ void add_curves(ClaimOutcome &outcome, const std::vector<SteadyCrackSeries> &ser
     }
 }
 
-} // namespace
-
 std::vector<SteadyCrackSeries> steady_crack_series(bool quick)
 {
   if (quick)
     return {{0.5, {1.57, 1.75, 1.92}, 2.2}, {3., {1.95, 2.3, 3.}, 0.}};
   return {{0.5, {1.57, 1.65, 1.75, 1.85, 1.92}, 2.2}, {3., {1.88, 1.95, 2.1, 2.3, 2.6, 3.}, 0.}};
 }
+
+} // namespace
 
 ClaimOutcome steady_cracks(const SteadyCrackSeries &series)
 {

@@ -168,9 +168,6 @@ struct SteadyCrackSeries
   std::function<void(CrackRunOptions &)> planted = [](CrackRunOptions &) {};
 };
 
-/// The series of the claim. @param quick fewer drivings
-std::vector<SteadyCrackSeries> steady_crack_series(bool quick);
-
 /// Steady cracks of the simulator against the exact solution of the linear lattice (theory-comparison.md, section "A
 /// steady crack in a linear lattice"): speed, elastic energy released and energy dissipated for each broken bond (eq.
 /// (S.9)), under several drivings and for a weak and a strong viscosity. Besides, the exact solution against the
