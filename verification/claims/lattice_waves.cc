@@ -4,13 +4,11 @@
 #include <cmath>
 #include <complex>
 #include <numeric>
-#include <stdexcept>
 #include <variant>
 
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
-#include "verification/bridge/plane_waves.h"
 #include "verification/claims/sites_and_bonds.h"
 #include "verification/claims/spectrum.h"
 

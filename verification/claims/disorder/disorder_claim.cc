@@ -12,7 +12,6 @@
 #include "lattice/relaxation.h"
 #include "support/largest_error.h"
 #include "verification/claims/claim_list.h"
-#include "verification/claims/rows.h"
 #include "verification/claims/sites_and_bonds.h"
 
 namespace latcon::claims

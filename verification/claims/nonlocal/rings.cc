@@ -8,7 +8,6 @@
 #include "lattice/simulation.h"
 #include "lattice/site_fields.h"
 #include "support/largest_error.h"
-#include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/nonlocal_continuum.h"
 #include "verification/bridge/plane_waves.h"
 #include "verification/claims/order_fit.h"

@@ -5,14 +5,12 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 
 #include "continuum/mooney_rivlin.h"
 #include "lattice/energy.h"
 #include "lattice/forces.h"
 #include "support/largest_error.h"
-#include "verification/bridge/equivalent_sheet.h"
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/claims/sites_and_bonds.h"
 

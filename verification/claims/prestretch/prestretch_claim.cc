@@ -7,13 +7,9 @@
 
 #include "continuum/rectangle.h"
 #include "continuum/static_solver.h"
-#include "lattice/relaxation.h"
-#include "lattice/site_fields.h"
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"
-#include "verification/bridge/subject.h"
 #include "verification/claims/claim_list.h"
-#include "verification/claims/rows.h"
 #include "verification/claims/sites_and_bonds.h"
 #include "verification/claims/states.h"
 

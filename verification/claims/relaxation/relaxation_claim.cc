@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <memory>
 #include <variant>
 
 #include "continuum/dynamic_solver.h"
@@ -19,8 +18,6 @@
 #include "verification/bridge/homogenisation.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/continuum_waves.h"
-#include "verification/claims/lattice_waves.h"
-#include "verification/claims/rows.h"
 #include "verification/claims/sites_and_bonds.h"
 
 namespace latcon::claims
@@ -175,7 +172,7 @@ public:
     }
   }
 
-  // @param elastic energy that is stored in laws, and whatever the ledger adds to it before the comparison [J/m]
+  // @param elastic energy from which that of the branches is told apart, as a difference [J/m]
   void add_rows(const Rows &rows, bool on_lattice, std::size_t n_steps, double elastic) const
   {
     const auto sides = [&](const support::LargestError &error)

@@ -53,12 +53,6 @@ struct RunningCrackOptions
   std::string frames;       ///< folder for a frame of each side at the end of the drive; empty: none
 };
 
-/// The full version.
-inline RunningCrackOptions full_running_crack()
-{
-  return {66., 48., 18., 30., 12., 0.5, 3, true, {}};
-}
-
 /// A continuum with its name in rows and tables.
 struct NamedContinuum
 {

@@ -9,7 +9,6 @@
 #include "verification/claims/claim_list.h"
 #include "verification/claims/continuum_waves.h"
 #include "verification/claims/lattice_waves.h"
-#include "verification/claims/rows.h"
 #include "verification/claims/states.h"
 
 namespace latcon::claims
@@ -93,8 +92,8 @@ public:
     outside_.add(
       support::largest_of({support::one_sided(lowest / frequency - 1.), support::one_sided(frequency / highest - 1.)}));
     imbalance_.add(run.imbalance / run.imbalance_tolerance);
-    table_->add({subject_.name, F_(0, 0), F_(1, 1), part, std::string(wave_names[w]), cell.K.norm() * subject_.spacing,
-                 scaled_time, lowest, highest, wave.frequency(), wave.decay(), frequency, decay});
+    table_->add({subject_.name, F_(0, 0), F_(1, 1), part, wave_names[w], cell.K.norm() * subject_.spacing, scaled_time,
+                 lowest, highest, wave.frequency(), wave.decay(), frequency, decay});
     return run.oscillation;
   }
 

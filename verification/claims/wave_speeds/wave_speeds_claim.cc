@@ -78,8 +78,8 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
           longest[w][i] = run[w] / k;
           longest_kd[i] = k * d;
         }
-        table.add({subject.name, F(0, 0), F(1, 1), angle(direction, subject.orientation), std::string(wave_names[w]),
-                   k * d, local[w] / k, bloch[w] / k, run[w] / k, gradient[w] / k, isotropic[w] / k, elements[w] / k});
+        table.add({subject.name, F(0, 0), F(1, 1), angle(direction, subject.orientation), wave_names[w], k * d,
+                   local[w] / k, bloch[w] / k, run[w] / k, gradient[w] / k, isotropic[w] / k, elements[w] / k});
       }
     }
     const Eigen::Vector2d K = compared_kd / d * N;
@@ -110,9 +110,8 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
     "next term of the series of v(k), its coefficient below 1/20 (at most (4^2/360)/2 + (4/12)^2/8 for bonds up to 2 d "
     "long), and time stepping"};
   for (std::size_t w = 0; w < 2; ++w)
-    rows.add(std::string("long-wave speed, ") + wave_names[w] +
-               ", lattice run against closed form, worst of 4 directions",
-             "m/s", of_lattice(long_waves[w]), long_waves[w], remainder);
+    rows.add("long-wave speed, " + wave_names[w] + ", lattice run against closed form, worst of 4 directions", "m/s",
+             of_lattice(long_waves[w]), long_waves[w], remainder);
   if (F.isIdentity(1e-12))
   {
     // Takes nothing from the side that moves: neither its cross-sections nor its masses.
@@ -244,9 +243,8 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
     const Eigen::Vector2d K = fraction * cell.K;
     const auto exact = damped(K), closed = continuum_waves(medium, F, K);
     for (std::size_t w = 0; w < 2; ++w)
-      table.add({subject.name, F(0, 0), F(1, 1), 0., std::string(wave_names[w]), fraction * k * subject.spacing,
-                 exact[w].frequency, exact[w].decay, unknown, unknown, closed[w].frequency, closed[w].decay, unknown,
-                 unknown});
+      table.add({subject.name, F(0, 0), F(1, 1), 0., wave_names[w], fraction * k * subject.spacing, exact[w].frequency,
+                 exact[w].decay, unknown, unknown, closed[w].frequency, closed[w].decay, unknown, unknown});
   }
   const bool chebyshev = options.integrator == input::Case::Integrator::runge_kutta_chebyshev;
   const output::Tolerance tolerance{1e-4, "average acceleration with 28 steps a period, extrapolated: (w h)^4 / 300, "
@@ -254,10 +252,10 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
                                           "the lattice less"};
   for (std::size_t w = 0; w < 2; ++w)
   {
-    table.add({subject.name, F(0, 0), F(1, 1), 0., std::string(wave_names[w]), k * subject.spacing, theory[w].frequency,
+    table.add({subject.name, F(0, 0), F(1, 1), 0., wave_names[w], k * subject.spacing, theory[w].frequency,
                theory[w].decay, run[w].frequency, run[w].decay, kelvin[w].frequency, kelvin[w].decay,
                elements[w].frequency, elements[w].decay});
-    const Rows of_wave = rows.about(wave_names[w] + std::string(", "));
+    const Rows of_wave = rows.about(wave_names[w] + ", ");
     const auto add = [&](const std::string &quantity, const std::string &unit, double lattice_value,
                          double element_value, double bloch, double closed)
     {
