@@ -262,7 +262,7 @@ output::Results contact_rows(const bridge::Subject &subject, const input::Case &
   const std::size_t left = sheet.index(sheet.rows() / 2, sheet.sites_in_row(0) / 2), right = left + 1;
   lattice::State state = lattice::homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), lattice::Edges::free);
   const double inverse_mass = state.inverse_mass[left];
-  state.bonds.clear(sheet.n_places());
+  state.bonds.clear(sheet.n_places(), material.n_kinds(sheet));
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
   {
     const bool stays = place == left || place == right;
