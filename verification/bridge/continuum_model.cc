@@ -1,7 +1,6 @@
 #include "verification/bridge/continuum_model.h"
 
 #include <algorithm>
-#include <memory>
 #include <sstream>
 
 #include <deal.II/base/bounding_box.h>

@@ -68,20 +68,12 @@ Eigen::Matrix2d on_path(const Eigen::Matrix2d &F, int point)
 
 dealii::Tensor<2, 2> to_continuum(const Eigen::Matrix2d &F)
 {
-  dealii::Tensor<2, 2> result;
-  for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int J = 0; J < 2; ++J)
-      result[i][J] = F(i, J);
-  return result;
+  return dealii::Tensor<2, 2>({{F(0, 0), F(0, 1)}, {F(1, 0), F(1, 1)}});
 }
 
 Eigen::Matrix2d to_lattice(const dealii::Tensor<2, 2> &F)
 {
-  Eigen::Matrix2d result;
-  for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int J = 0; J < 2; ++J)
-      result(i, J) = F[i][J];
-  return result;
+  return Eigen::Matrix2d{{F[0][0], F[0][1]}, {F[1][0], F[1][1]}};
 }
 
 std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattice &lattice,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include "lattice/material.h"
@@ -9,12 +10,18 @@ namespace latcon::bridge
 
 /// Returns the name of the shells of a lattice in results: "NN", then "+NNN" with next-nearest neighbours and "+3NN"
 /// with third-nearest ones.
-[[nodiscard]] std::string shells_name(const lattice::Material &material);
+[[nodiscard]] inline std::string shells_name(const lattice::Material &material)
+{
+  return std::string("NN") + (material.next_nearest ? "+NNN" : "") + (material.third_nearest ? "+3NN" : "");
+}
 
 /// Returns c = A0 l / V [-] of one bond direction, with the reference volume V of a site: there is one bond of each
 /// direction per site.
-[[nodiscard]] double bond_weight(const lattice::TriangularLattice &lattice, const lattice::Shell &shell,
-                                 std::size_t kind);
+[[nodiscard]] inline double bond_weight(const lattice::TriangularLattice &lattice, const lattice::Shell &shell,
+                                        std::size_t kind)
+{
+  return lattice::cross_section(shell, lattice) * lattice.rest_length(kind) / lattice.site_area();
+}
 
 /// Small-strain constants of the continuum of a lattice (theory-comparison.md, eqs. (H.2) and (H.3)): isotropic, lambda
 /// = mu.
@@ -26,6 +33,16 @@ struct SmallStrain
 };
 
 /// Returns the small-strain constants of a lattice at F = I.
-[[nodiscard]] SmallStrain small_strain(const lattice::TriangularLattice &lattice, const lattice::Material &material);
+[[nodiscard]] inline SmallStrain small_strain(const lattice::TriangularLattice &lattice,
+                                              const lattice::Material &material)
+{
+  // Three unit vectors 60 degrees apart have sum N N N N = (3/8) (dd + dd + dd).
+  double mu = 0.;
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (const lattice::Shell *shell = material.in_shell(number))
+      mu += 3. / 8. * bond_weight(lattice, *shell, number * lattice::n_kinds_per_shell) *
+            lattice::stiffness(shell->law, 1.);
+  return {mu, std::sqrt(mu / material.density), std::sqrt(3. * mu / material.density)};
+}
 
 } // namespace latcon::bridge

@@ -6,7 +6,6 @@
 #include "continuum/isotropic_gradient.h"
 #include "continuum/network_gradient.h"
 #include "support/dense.h"
-#include "verification/bridge/homogeneous_response.h"
 
 namespace latcon::bridge
 {

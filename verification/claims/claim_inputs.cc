@@ -1,6 +1,5 @@
 #include "verification/claims/claim_inputs.h"
 
-#include <algorithm>
 #include <array>
 #include <set>
 #include <stdexcept>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "continuum/constitution.h"
 #include "continuum/dynamic_solver.h"
 #include "continuum/fibre_memory.h"
@@ -11,13 +13,13 @@
 namespace latcon::claims
 {
 
-/// A continuum in which waves travel. The laws must outlive it.
+/// A continuum in which waves travel. The laws of its constitution must outlive it.
 struct WaveContinuum
 {
   continuum::Constitution constitution;
   continuum::Inertia inertia;
-  const continuum::Viscosity *viscosity = nullptr; ///< none: elastic
-  const continuum::FibreMemory *memory = nullptr;  ///< none: no Maxwell branches
+  std::shared_ptr<const continuum::Viscosity> viscosity = {}; ///< none: elastic
+  std::shared_ptr<const continuum::FibreMemory> memory = {};  ///< none: no Maxwell branches
 };
 
 /// The continua of a subject, without viscosity. The subject must outlive them.

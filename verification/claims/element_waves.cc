@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <stdexcept>
@@ -128,8 +127,8 @@ struct MovingSheet
   MovingSheet(const WaveContinuum &medium, const Eigen::Vector2d &K, const WaveMesh &resolution,
               const continuum::DynamicSettings &settings)
     : rectangle(one_wavelength(K, resolution.cells)), mesh(MPI_COMM_SELF),
-      solver(made(mesh, rectangle), medium.constitution, periodic_edges(), medium.inertia, settings, medium.viscosity,
-             {}, medium.memory)
+      solver(made(mesh, rectangle), medium.constitution, periodic_edges(), medium.inertia, settings,
+             medium.viscosity.get(), {}, medium.memory.get())
   {
   }
   static const continuum::Sheet::Mesh &made(continuum::Sheet::Mesh &mesh, const continuum::Rectangle &rectangle)
@@ -152,8 +151,8 @@ continuum::DynamicSettings settings_for(double time_step, const WaveMesh &resolu
 }
 
 // Both standing waves, released from rest.
-std::vector<Oscillation> measure(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
-                                 const WaveMesh &resolution, double time_step)
+std::array<Oscillation, 2> measure(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
+                                   const WaveMesh &resolution, double time_step)
 {
   MovingSheet moving(medium, K, resolution, settings_for(time_step, resolution, 1e-9));
   continuum::DynamicSolver &solver = moving.solver;
@@ -166,26 +165,17 @@ std::vector<Oscillation> measure(const WaveContinuum &medium, const Eigen::Matri
   u.add(amplitude, shapes[0], amplitude, shapes[1]);
   solver.start(u, solver.sheet().make_owned());
 
-  WaveRecord record(2);
   Vector difference = solver.sheet().make_owned();
-  const auto observe = [&]
+  const auto amplitudes = [&]() -> std::array<double, 2>
   {
     difference = solver.displacement();
     difference -= at_rest.base;
-    for (std::size_t w = 0; w < 2; ++w)
-      record.add(w, at_rest.form(at_rest.mass, shapes[w], difference) /
-                      (amplitude * at_rest.form(at_rest.mass, shapes[w], shapes[w])));
+    const auto of = [&](const Vector &shape)
+    { return at_rest.form(at_rest.mass, shape, difference) / (amplitude * at_rest.form(at_rest.mass, shape, shape)); };
+    return {of(shapes[0]), of(shapes[1])};
   };
-  observe();
   constexpr std::size_t max_steps = 2000;
-  for (std::size_t step = 0; !record.have_turned(); ++step)
-  {
-    if (step == max_steps)
-      throw std::runtime_error("a wave of the finite element sheet did not oscillate: it is overdamped, or unstable");
-    solver.step();
-    observe();
-  }
-  return record.fit(time_step);
+  return followed_to_turns(time_step, 1, max_steps, "the finite element sheet", amplitudes, [&] { solver.step(); });
 }
 
 // Amplitude of the wave; nonlinear terms change frequencies by its square.
@@ -291,7 +281,7 @@ RitzMatrices ritz_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F
   // The errors of the eigenvalues in the space of the two vectors are the squares of those of the vectors.
   continuum::Sheet::Matrix damping;
   sheet.make_matrix(sheet.conformity_constraints(), damping);
-  continuum::ViscousForces(sheet, medium.viscosity)
+  continuum::ViscousForces(sheet, medium.viscosity.get())
     .add_tangent(u, sheet.make_ghosted(), 0., 1., sheet.conformity_constraints(), damping);
   RitzMatrices ritz;
   for (std::size_t v = 0; v < 2; ++v)
@@ -341,8 +331,7 @@ std::array<Oscillation, 2> finite_element_waves(const WaveContinuum &medium, con
 {
   // The error of average acceleration is (w h)^2 / 12 before extrapolation, which leaves some (w h)^4 / 300 of it.
   const double time_step = 2. * M_PI / 28. / bridge::fastest_frequency(continuum_waves(medium, F, K));
-  const auto whole = measure(medium, F, K, mesh, time_step), half = measure(medium, F, K, mesh, 0.5 * time_step);
-  return {extrapolated(whole[0], half[0]), extrapolated(whole[1], half[1])};
+  return extrapolated(measure(medium, F, K, mesh, time_step), measure(medium, F, K, mesh, 0.5 * time_step));
 }
 
 ElementWave element_wave(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,

@@ -4,13 +4,12 @@
 #include <cmath>
 #include <complex>
 #include <numeric>
-#include <stdexcept>
 #include <variant>
 
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
-#include "verification/bridge/plane_waves.h"
+#include "verification/claims/sites_and_bonds.h"
 #include "verification/claims/spectrum.h"
 
 namespace latcon::claims
@@ -30,7 +29,8 @@ constexpr double phase_per_step = 0.12;
 lattice::Field cosine_of(const WaveCell &cell)
 {
   lattice::Field shape(cell.sheet.n_places(), 0.);
-  for_each_site(cell, [&](std::size_t place, double phase) { shape[place] = std::cos(phase); });
+  for (const std::size_t place : sites(cell.sheet))
+    shape[place] = std::cos(cell.phase(place));
   return shape;
 }
 
@@ -44,9 +44,9 @@ Eigen::Vector2d project(const lattice::Field &shape, const lattice::State &now, 
 }
 
 // Both standing waves, released from rest.
-std::vector<Oscillation> measure(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
-                                 const std::array<bridge::PlaneWave, 2> &waves, const lattice::TimeStepping &stepping,
-                                 std::size_t stride)
+std::array<Oscillation, 2> measure(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
+                                   const std::array<bridge::PlaneWave, 2> &waves, const lattice::TimeStepping &stepping,
+                                   std::size_t stride)
 {
   const double time_step = stepping.step;
   const lattice::State at_rest = lattice::homogeneous_state(cell.sheet, material, F, lattice::Edges::free);
@@ -57,28 +57,17 @@ std::vector<Oscillation> measure(const WaveCell &cell, const lattice::Material &
   lattice::Simulation simulation(cell.sheet, material, std::move(state), stepping);
   const lattice::Field shape = cosine_of(cell);
   const double norm = std::inner_product(shape.begin(), shape.end(), shape.begin(), 0.);
-  WaveRecord record(2);
-  const auto observe = [&]
-  {
-    const Eigen::Vector2d sum = project(shape, simulation.state(), at_rest);
-    for (std::size_t w = 0; w < 2; ++w)
-      record.add(w, waves[w].polarisation.dot(sum) / (amplitude * norm));
-  };
-  observe();
   // The undamped period tells overdamped waves apart, in as many steps as dashpots leave time for.
   constexpr double most_periods = 2., most_steps = 5e6;
   const double slowest = support::smallest_of({waves[0].frequency, waves[1].frequency});
   const auto max_steps =
     static_cast<std::size_t>(support::smallest_of({most_steps, most_periods * 2. * M_PI / (slowest * time_step)}));
-  for (std::size_t step = 1; !record.have_turned(); ++step)
+  const auto amplitudes = [&]() -> std::array<double, 2>
   {
-    if (step > max_steps)
-      throw std::runtime_error("a wave of the lattice did not oscillate: it is overdamped, or unstable");
-    simulation.step();
-    if (step % stride == 0)
-      observe();
-  }
-  return record.fit(static_cast<double>(stride) * time_step);
+    const Eigen::Vector2d sum = project(shape, simulation.state(), at_rest);
+    return {waves[0].polarisation.dot(sum) / (amplitude * norm), waves[1].polarisation.dot(sum) / (amplitude * norm)};
+  };
+  return followed_to_turns(time_step, stride, max_steps, "the lattice", amplitudes, [&] { simulation.step(); });
 }
 
 // Largest w h and h / tau. Velocity Verlet has sin(w' h / 2) = w h / 2, so extrapolation leaves (3 / 2560) of the
@@ -104,38 +93,34 @@ lattice::State excited(const WaveCell &cell, const lattice::Material &material, 
   const lattice::TriangularLattice &sheet = cell.sheet;
   const double amplitude = strain / cell.K.norm();
   lattice::State state = at_rest;
-  for_each_site(cell,
-                [&](std::size_t place, double phase)
-                {
-                  const double shape = amplitude * std::cos(phase);
-                  const Eigen::Vector2cd u = shape * wave.polarisation, v = wave.rate * u;
-                  state.x[place] += u.x().real();
-                  state.y[place] += u.y().real();
-                  state.vx[place] += v.x().real();
-                  state.vy[place] += v.y().real();
-                });
+  for (const std::size_t place : sites(sheet))
+  {
+    const double shape = amplitude * std::cos(cell.phase(place));
+    const Eigen::Vector2cd u = shape * wave.polarisation, v = wave.rate * u;
+    state.x[place] += u.x().real();
+    state.y[place] += u.y().real();
+    state.vx[place] += v.x().real();
+    state.vy[place] += v.y().real();
+  }
   lattice::update_images(state, lattice::RowPartition(sheet));
   lattice::relax_memory(state, sheet, material);
-  lattice::for_each_bond(
-    at_rest, sheet,
-    [&](const lattice::Bond &bond)
+  for (const auto &[place, kind, far] : bonds(at_rest, sheet))
+  {
+    const auto *memory = std::get_if<lattice::MaxwellMemory>(&material.shell(kind)->memory);
+    if (memory == nullptr)
+      continue;
+    const Eigen::Vector2d X = sheet.reference(place), R = sheet.bond_vector(kind);
+    const Eigen::Vector2d n =
+      Eigen::Vector2d(at_rest.x[far] - at_rest.x[place], at_rest.y[far] - at_rest.y[place]).normalized();
+    const std::complex<double> stretch = amplitude * (std::cos(cell.K.dot(X + R)) - std::cos(cell.K.dot(X))) /
+                                         R.norm() * (n.x() * wave.polarisation.x() + n.y() * wave.polarisation.y());
+    for (std::size_t i = 0; i < memory->branches().size(); ++i)
     {
-      const auto [place, kind, far] = bond;
-      const auto *memory = std::get_if<lattice::MaxwellMemory>(&material.shell(kind)->memory);
-      if (memory == nullptr)
-        return;
-      const Eigen::Vector2d X = sheet.reference(place), R = sheet.bond_vector(kind);
-      const Eigen::Vector2d n =
-        Eigen::Vector2d(at_rest.x[far] - at_rest.x[place], at_rest.y[far] - at_rest.y[place]).normalized();
-      const std::complex<double> stretch = amplitude * (std::cos(cell.K.dot(X + R)) - std::cos(cell.K.dot(X))) /
-                                           R.norm() * (n.x() * wave.polarisation.x() + n.y() * wave.polarisation.y());
-      for (std::size_t i = 0; i < memory->branches().size(); ++i)
-      {
-        const auto &[modulus, time] = memory->branches()[i];
-        state.history.kinds[kind].variables[i][place] =
-          (modulus * wave.rate * time / (1. + wave.rate * time) * stretch).real();
-      }
-    });
+      const auto &[modulus, time] = memory->branches()[i];
+      state.history.kinds[kind].variables[i][place] =
+        (modulus * wave.rate * time / (1. + wave.rate * time) * stretch).real();
+    }
+  }
   return state;
 }
 
@@ -168,16 +153,15 @@ Eigen::Vector2d reciprocal(const WaveDirection &direction, lattice::Orientation 
 
 void add_wave(lattice::State &state, const WaveCell &cell, double amplitude, const Eigen::Vector2d &p, double frequency)
 {
-  for_each_site(cell,
-                [&](std::size_t place, double phase)
-                {
-                  const Eigen::Vector2d u = amplitude * std::cos(phase) * p,
-                                        v = amplitude * frequency * std::sin(phase) * p;
-                  state.x[place] += u.x();
-                  state.y[place] += u.y();
-                  state.vx[place] += v.x();
-                  state.vy[place] += v.y();
-                });
+  for (const std::size_t place : sites(cell.sheet))
+  {
+    const double phase = cell.phase(place);
+    const Eigen::Vector2d u = amplitude * std::cos(phase) * p, v = amplitude * frequency * std::sin(phase) * p;
+    state.x[place] += u.x();
+    state.y[place] += u.y();
+    state.vx[place] += v.x();
+    state.vy[place] += v.y();
+  }
 }
 
 std::array<WaveDirection, 4> wave_directions(lattice::Orientation orientation)
@@ -247,14 +231,10 @@ std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Ma
   const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * phase_per_step / phase));
   constexpr double no_error = 1e-3; // its square over 24 is 4e-8
   if (phase < no_error)
-  {
-    const auto only = measure(cell, material, F, waves, coarsest, stride);
-    return {only[0], only[1]};
-  }
+    return measure(cell, material, F, waves, coarsest, stride);
   // The halves with as many stages, on which the constants of the error depend.
-  const auto whole = measure(cell, material, F, waves, coarsest, stride),
-             half = measure(cell, material, F, waves, {0.5 * time_step, coarsest.stages}, 2 * stride);
-  return {extrapolated(whole[0], half[0]), extrapolated(whole[1], half[1])};
+  return extrapolated(measure(cell, material, F, waves, coarsest, stride),
+                      measure(cell, material, F, waves, {0.5 * time_step, coarsest.stages}, 2 * stride));
 }
 
 Oscillation lattice_wave(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,

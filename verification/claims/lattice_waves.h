@@ -16,19 +16,9 @@ struct WaveCell
 {
   lattice::TriangularLattice sheet;
   Eigen::Vector2d K; ///< referential wave vector [1/m]
-};
 
-/// Calls `visit` for each site of a cell, with its place and K.X.
-template <class Visit>
-void for_each_site(const WaveCell &cell, const Visit &visit)
-{
-  for (std::size_t row = 0; row < cell.sheet.rows(); ++row)
-    for (std::size_t column = 0; column < cell.sheet.sites_in_row(row); ++column)
-    {
-      const std::size_t place = cell.sheet.index(row, column);
-      visit(place, cell.K.dot(cell.sheet.reference(place)));
-    }
-}
+  double phase(std::size_t place) const { return K.dot(sheet.reference(place)); } ///< K.X of a site
+};
 
 /// Adds amplitude p cos(K.X - w t) at t = 0 to the positions of a state, and its rate to the velocities.
 /// @param frequency w [rad/s]

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "support/fits.h"
@@ -15,8 +14,8 @@ namespace latcon::claims
 inline const std::vector<double> order_kd{0.05, 0.1, 0.2};
 /// Tolerance of such an order.
 inline constexpr double order_tolerance = 0.05;
-/// Why that tolerance. The next order of undamped waves is (kd)^2 / 12 of the error; damping mixes the polarisations, by
-/// the square of its ratio to critical damping, which is 0.33 at kd = 0.4 (damping_orders).
+/// Why that tolerance. The next order of undamped waves is (kd)^2 / 12 of the error; damping mixes the polarisations,
+/// by the square of its ratio to critical damping, which is 0.33 at kd = 0.4 (damping_orders).
 inline constexpr const char *reason_of_order =
   "kd from 0.05 to 0.2: the next order is (kd)^2 of the error at most, which bends the line by 0.03";
 

@@ -38,6 +38,13 @@ std::complex<double> recurrence(const std::vector<double> &values, double step, 
   return std::log(root) / (static_cast<double>(stride) * step);
 }
 
+double checked(double amplitude)
+{
+  if (!std::isfinite(amplitude))
+    throw std::runtime_error("a wave has an amplitude that is not finite");
+  return amplitude;
+}
+
 } // namespace
 
 Oscillation extrapolated(const Oscillation &whole, const Oscillation &half)
@@ -46,27 +53,35 @@ Oscillation extrapolated(const Oscillation &whole, const Oscillation &half)
           half.residual};
 }
 
-void WaveRecord::add(std::size_t wave, double value)
+std::array<Oscillation, 2> extrapolated(const std::array<Oscillation, 2> &whole, const std::array<Oscillation, 2> &half)
 {
-  if (!std::isfinite(value))
-    throw std::runtime_error("a wave has an amplitude that is not finite");
-  std::vector<double> &values = amplitudes_[wave];
-  if (!values.empty() && value * values.back() < 0.)
-    ++turns_[wave];
-  values.push_back(value);
+  return {extrapolated(whole[0], half[0]), extrapolated(whole[1], half[1])};
 }
 
-bool WaveRecord::have_turned() const
+std::array<Oscillation, 2> followed_to_turns(double time_step, std::size_t stride, std::size_t max_steps,
+                                             const std::string &sheet,
+                                             const std::function<std::array<double, 2>()> &amplitudes,
+                                             const std::function<void()> &advance)
 {
-  return std::all_of(turns_.begin(), turns_.end(), [](unsigned int turns) { return turns >= 2; });
-}
-
-std::vector<Oscillation> WaveRecord::fit(double step) const
-{
-  std::vector<Oscillation> fits;
-  for (const std::vector<double> &values : amplitudes_)
-    fits.push_back(fit_oscillation(values, step));
-  return fits;
+  std::array<std::vector<double>, 2> values;
+  std::array<unsigned int, 2> turns{};
+  for (std::size_t step = 0; turns[0] < 2 || turns[1] < 2; ++step)
+  {
+    if (step > max_steps)
+      throw std::runtime_error("a wave of " + sheet + " did not oscillate: it is overdamped, or unstable");
+    if (step > 0)
+      advance();
+    if (step % stride != 0)
+      continue;
+    const std::array<double, 2> now = amplitudes();
+    for (std::size_t w = 0; w < 2; ++w)
+    {
+      turns[w] += !values[w].empty() && checked(now[w]) * values[w].back() < 0. ? 1 : 0;
+      values[w].push_back(checked(now[w]));
+    }
+  }
+  const double sampling = static_cast<double>(stride) * time_step;
+  return {fit_oscillation(values[0], sampling), fit_oscillation(values[1], sampling)};
 }
 
 std::size_t sampling_stride(double frequency, double decay, double time_step, double samples_per_period)
@@ -79,18 +94,16 @@ std::size_t sampling_stride(double frequency, double decay, double time_step, do
 Oscillation followed(double frequency, double time_step, std::size_t stride, const std::function<double()> &amplitude,
                      const std::function<void()> &advance)
 {
-  WaveRecord record(1);
-  const double sampling = static_cast<double>(stride) * time_step;
   const auto samples = static_cast<std::size_t>(
     std::ceil(followed_periods * 2. * M_PI / frequency / time_step / static_cast<double>(stride)));
-  record.add(0, amplitude());
-  for (std::size_t sample = 0; sample < samples; ++sample)
+  std::vector<double> values{checked(amplitude())};
+  for (std::size_t step = 1; step <= samples * stride; ++step)
   {
-    for (std::size_t step = 0; step < stride; ++step)
-      advance();
-    record.add(0, amplitude());
+    advance();
+    if (step % stride == 0)
+      values.push_back(checked(amplitude()));
   }
-  return record.fit(sampling)[0];
+  return fit_oscillation(values, static_cast<double>(stride) * time_step);
 }
 
 Oscillation fit_oscillation(const std::vector<double> &values, double step)

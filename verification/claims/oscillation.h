@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace latcon::claims
@@ -18,27 +20,17 @@ struct Oscillation
 /// Returns the oscillation without the error of the time stepping, of second order, from runs with a step and half of
 /// it.
 Oscillation extrapolated(const Oscillation &whole, const Oscillation &half);
+std::array<Oscillation, 2> extrapolated(const std::array<Oscillation, 2> &whole,
+                                        const std::array<Oscillation, 2> &half);
 
-/// Amplitudes of waves on a sheet in motion, at equal intervals of time.
-class WaveRecord
-{
-public:
-  explicit WaveRecord(std::size_t n_waves) : amplitudes_(n_waves), turns_(n_waves, 0) {}
-
-  /// Appends the amplitude of a wave. @throws std::runtime_error if it is not finite
-  void add(std::size_t wave, double value);
-
-  /// Returns true if each wave has changed its sign twice: one does so within three quarters of its damped period, one
-  /// that is overdamped never.
-  bool have_turned() const;
-
-  /// Returns the fits to all waves. @param step between the samples [s] @throws what fit_oscillation() throws
-  std::vector<Oscillation> fit(double step) const;
-
-private:
-  std::vector<std::vector<double>> amplitudes_;
-  std::vector<unsigned int> turns_;
-};
+/// Samples and steps two waves of one sheet until each has changed its sign twice, within three quarters of its damped
+/// period, and fits their amplitudes. @param amplitudes of the present state @param advance one time step
+/// @param stride time steps between samples @param sheet in the message: "the lattice"
+/// @throws std::runtime_error if a wave has not turned in `max_steps`; what fit_oscillation() throws
+std::array<Oscillation, 2> followed_to_turns(double time_step, std::size_t stride, std::size_t max_steps,
+                                             const std::string &sheet,
+                                             const std::function<std::array<double, 2>()> &amplitudes,
+                                             const std::function<void()> &advance);
 
 /// Samples and steps a wave through 0.8 of a period, and fits its amplitude.
 /// @param amplitude of the present state @param advance one time step
@@ -55,7 +47,7 @@ std::size_t sampling_stride(double frequency, double decay, double time_step, do
 /// Least-squares fit to values at the times 0, step, 2 step, ...: a linear recurrence over an eighth of a period for a
 /// start, then Gauss-Newton. No initial guess is needed.
 /// @param values at least half a period of an oscillation that starts near an extreme
-/// @throws std::runtime_error if the values do not oscillate, or the fit does not converge
+/// @throws std::runtime_error if the values do not oscillate or are not finite, or the fit does not converge
 Oscillation fit_oscillation(const std::vector<double> &values, double step);
 
 } // namespace latcon::claims

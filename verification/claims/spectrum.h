@@ -37,16 +37,14 @@ inline lattice::Material with_branches(lattice::Material material, const std::ve
 {
   if (ratios.size() != relaxation_times.size())
     throw std::invalid_argument("branches need as many relaxation times as moduli");
-  const auto give = [&](lattice::Shell &shell)
-  {
-    std::vector<lattice::MaxwellMemory::Branch> branches;
-    for (std::size_t i = 0; i < ratios.size(); ++i)
-      branches.push_back({ratios[i] * lattice::stiffness(shell.law, 1.), relaxation_times[i]});
-    shell.memory = lattice::MaxwellMemory(branches);
-  };
   for (std::size_t number = 0; number < lattice::n_shells; ++number)
     if (lattice::Shell *shell = material.in_shell(number))
-      give(*shell);
+    {
+      std::vector<lattice::MaxwellMemory::Branch> branches;
+      for (std::size_t i = 0; i < ratios.size(); ++i)
+        branches.push_back({ratios[i] * lattice::stiffness(shell->law, 1.), relaxation_times[i]});
+      shell->memory = lattice::MaxwellMemory(branches);
+    }
   return material;
 }
 

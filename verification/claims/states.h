@@ -19,7 +19,7 @@ namespace latcon::claims
 
 /// Names of the waves of a direction, as Bloch matrices and Christoffel tensors order them: quasi-longitudinal,
 /// quasi-shear.
-inline constexpr const char *wave_names[] = {"L", "S"};
+inline const std::string wave_names[] = {"L", "S"};
 
 /// Name of a homogeneous state in rows and plots: "F = I", "F = (2.3, 2.8)", "F = (1, 1, shear 0.5)".
 inline std::string state_name(const Eigen::Matrix2d &F)
@@ -73,18 +73,24 @@ inline double gradient_remainder(const bridge::Subject &subject)
   return subject.material.third_nearest ? 16. / 9. : 1.;
 }
 
-/// Returns a rotation times stretches between 0.7 and 3.5 times a rotation, the same on every machine.
-inline Eigen::Matrix2d random_deformation(std::mt19937_64 &generator)
+/// Returns rotations times stretches between 0.7 and 3.5 times rotations, the same on every machine.
+inline std::vector<Eigen::Matrix2d> random_deformations(unsigned int n)
 {
+  std::mt19937_64 generator(20061111);
   // The same on every machine, unlike std's distributions.
   const auto uniform = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53; };
   const auto rotation = [&] { return Eigen::Rotation2Dd(2. * M_PI * uniform()).toRotationMatrix(); };
   constexpr double smallest = 0.7, range = 2.8;
   static_assert(smallest + range <= largest_stretch);
   const auto stretch = [&] { return smallest + range * uniform(); };
-  const Eigen::Matrix2d outer = rotation(), inner = rotation();
-  const double first = stretch(), second = stretch();
-  return outer * Eigen::Vector2d(first, second).asDiagonal() * inner;
+  std::vector<Eigen::Matrix2d> list;
+  for (unsigned int i = 0; i < n; ++i)
+  {
+    const Eigen::Matrix2d outer = rotation(), inner = rotation();
+    const double first = stretch(), second = stretch();
+    list.emplace_back(outer * Eigen::Vector2d(first, second).asDiagonal() * inner);
+  }
+  return list;
 }
 
 /// Error of stress_derivative().

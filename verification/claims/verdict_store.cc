@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <map>
 #include <set>
 #include <system_error>
 #include <thread>
@@ -37,28 +37,10 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-constexpr int format = 2;                              // of the file
-constexpr std::uintmax_t largest_file = 256UL << 20UL; // [byte]; no check leaves as much
+constexpr int format = 2;                      // of the file
+constexpr off_t largest_file = off_t(1) << 28; // [byte]; no check leaves as much
 
 constexpr mode_t writable_by_others = S_IWGRP | S_IWOTH;
-
-// Content of a file that only this user, or the administrator, can have written; none if it cannot be read.
-std::optional<std::string> content_of_trusted_file(const std::string &path)
-{
-  const int descriptor = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0)
-    return {};
-  const std::string opened = "/proc/self/fd/" + std::to_string(descriptor);
-  struct stat status = {};
-  const bool is_trusted = fstat(descriptor, &status) == 0 && (status.st_uid == geteuid() || status.st_uid == 0) &&
-                          (status.st_mode & writable_by_others) == 0;
-  std::ifstream file(is_trusted ? opened : "", std::ios::binary); // the file whose owner is known, under any name
-  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  close(descriptor);
-  if (!is_trusted)
-    throw UnusableVerdicts("it belongs to another user, or others may write it");
-  return file ? std::optional(bytes) : std::nullopt;
-}
 
 // Names of files in the folder itself, without path components.
 bool is_table_name(const std::string &name)
@@ -276,18 +258,27 @@ std::string VerdictStore::path(const VerdictKey &key) const
 
 std::optional<std::string> VerdictStore::read(const VerdictKey &key) const
 {
-  const std::string name = path(key);
-  std::error_code error;
-  const auto status = std::filesystem::status(name, error);
-  if (status.type() == std::filesystem::file_type::not_found)
+  const int descriptor = open(path(key).c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0 && (errno == ENOENT || errno == ENOTDIR))
     return {};
-  if (!std::filesystem::is_regular_file(status) || std::filesystem::file_size(name, error) > largest_file)
-    throw UnusableVerdicts("it is no file of verdicts");
-  std::optional<std::string> text = content_of_trusted_file(name);
-  if (!text)
-    throw UnusableVerdicts("it cannot be read");
-  if (text->empty())
-    throw UnusableVerdicts("it is empty");
+  struct stat status = {};
+  const char *problem = nullptr;
+  if (descriptor < 0 || fstat(descriptor, &status) != 0)
+    problem = "it cannot be read";
+  else if (!S_ISREG(status.st_mode) || status.st_size > largest_file)
+    problem = "it is no file of verdicts";
+  else if ((status.st_uid != geteuid() && status.st_uid != 0) || (status.st_mode & writable_by_others) != 0)
+    problem = "it belongs to another user, or others may write it";
+  std::string text;
+  if (problem == nullptr) // the file whose owner is known, under any name
+  {
+    std::ifstream file("/proc/self/fd/" + std::to_string(descriptor), std::ios::binary);
+    text.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    problem = !file ? "it cannot be read" : text.empty() ? "it is empty" : nullptr;
+  }
+  close(descriptor);
+  if (problem != nullptr)
+    throw UnusableVerdicts(problem);
   return text;
 }
 

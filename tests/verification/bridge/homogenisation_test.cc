@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/subjects.h"
-#include "verification/claims/intrinsic_length/dispersion.h"
+#include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 
 namespace homogenisation_test
 {

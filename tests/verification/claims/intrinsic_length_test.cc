@@ -1,5 +1,4 @@
 // The intrinsic length of the bonds, and faults that make its claim fail.
-#include "verification/claims/intrinsic_length/dispersion.h"
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 
 #include <gtest/gtest.h>

@@ -132,12 +132,12 @@ TEST(RunningCrack, FailsForWrongViscosity)
   material.nearest.viscosity *= 3.;
   material.next_nearest->viscosity *= 3.;
   const lattice::TriangularLattice sheet(rubber().spacing, 0.01, 0.01, rubber().orientation);
-  const auto viscosity = homogenised_viscosity(sheet, material);
+  const std::shared_ptr<const continuum::Viscosity> viscosity = homogenised_viscosity(sheet, material);
   const Results results = with(
     [&](CrackSides &sides)
     {
       for (NamedContinuum &side : sides.continua)
-        side.medium.viscosity = viscosity.get();
+        side.medium.viscosity = viscosity;
     });
   EXPECT_GE(faults::failing(results, "continuum against lattice"), 1u) << results.verdict_text(10);
 }

@@ -12,7 +12,7 @@
 #include "lattice/relaxation.h"
 #include "support/largest_error.h"
 #include "verification/claims/claim_list.h"
-#include "verification/claims/rows.h"
+#include "verification/claims/sites_and_bonds.h"
 
 namespace latcon::claims
 {
@@ -105,20 +105,18 @@ private:
         sheet_, material_, Eigen::Matrix2d::Identity() + sign * load_strain * load, lattice::Edges::free);
       options_.planted(state);
       if (sign > 0.)
-        lattice::for_each_bond(state, sheet_,
-                               [&](const lattice::Bond &bond)
-                               {
-                                 const double factor = state.stiffness.of(bond.near, bond.kind),
-                                              w = weight(bond.kind, load);
-                                 all += w;
-                                 stiff += w * factor;
-                                 soft += w / factor;
-                                 if (!counts_factors)
-                                   return;
-                                 n_factors_ += 1.;
-                                 sum_ += factor - 1.;
-                                 squares_ += (factor - 1.) * (factor - 1.);
-                               });
+        for (const lattice::Bond &bond : bonds(state, sheet_))
+        {
+          const double factor = state.stiffness.of(bond.near, bond.kind), w = weight(bond.kind, load);
+          all += w;
+          stiff += w * factor;
+          soft += w / factor;
+          if (!counts_factors)
+            continue;
+          n_factors_ += 1.;
+          sum_ += factor - 1.;
+          squares_ += (factor - 1.) * (factor - 1.);
+        }
       result.homogeneous += lattice::elastic_energy(state, sheet_, material_);
       const double force =
         lattice::cross_section(material_.nearest, sheet_) * lattice::stiffness(material_.nearest.law, 1.) * load_strain;

@@ -2,15 +2,11 @@
 
 #include <cmath>
 
-#include <Eigen/LU>
-
 #include "continuum/errors.h"
 #include "lattice/simulation.h"
 #include "support/largest_error.h"
 #include "verification/bridge/homogeneous_response.h"
-#include "verification/bridge/subject.h"
 #include "verification/claims/claim_list.h"
-#include "verification/claims/rows.h"
 #include "verification/claims/states.h"
 
 namespace latcon::claims
@@ -148,14 +144,12 @@ void mooney_rivlin_rows(const bridge::Subject &subject, const lattice::Triangula
 }
 
 // The lattice against its own continuum law.
-void random_deformations(const bridge::Subject &subject, const lattice::TriangularLattice &sheet, unsigned int samples,
-                         const Rows &rows)
+void cauchy_born_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet, unsigned int samples,
+                      const Rows &rows)
 {
   support::LargestError energy_error, stress_error;
-  std::mt19937_64 generator(20061111);
-  for (unsigned int sample = 0; sample < samples; ++sample)
+  for (const Eigen::Matrix2d &F : random_deformations(samples))
   {
-    Eigen::Matrix2d F = random_deformation(generator);
     const bridge::LatticeResponse measured = bridge::homogeneous_response(sheet, subject.material, F);
     const double energy = subject.cauchy_born.energy(bridge::to_continuum(F));
     const Eigen::Matrix2d stress = bridge::to_lattice(subject.cauchy_born.first_piola_stress(bridge::to_continuum(F)));
@@ -175,10 +169,9 @@ void network_rows(const bridge::Subject &subject, const lattice::TriangularLatti
   moduli_rows(subject, lattice_side, bridge::Law::mooney_rivlin_network, "network",
               continuum_moduli(subject, subject.network), rows);
   support::LargestError energy_from_mean, stress_from_mean, energy_share, stress_share;
-  std::mt19937_64 generator(20061111);
-  for (unsigned int sample = 0; sample < samples; ++sample)
+  for (const Eigen::Matrix2d &F : random_deformations(samples))
   {
-    const bridge::NetworkComparison both(subject, sheet, random_deformation(generator));
+    const bridge::NetworkComparison both(subject, sheet, F);
     energy_from_mean.add(both.energy_from_mean());
     stress_from_mean.add(both.stress_from_mean());
     energy_share.add(both.energy_error() / both.energy_bound());
@@ -236,7 +229,7 @@ output::Results energy_claim(const bridge::Subject &subject, unsigned int sample
   const lattice::TriangularLattice sheet = subject.sheet(12.);
   output::Results results;
   const Rows rows(results, "energy", subject.name + ": ");
-  rows.attempt("homogeneous deformations", [&] { random_deformations(subject, sheet, samples, rows); });
+  rows.attempt("homogeneous deformations", [&] { cauchy_born_rows(subject, sheet, samples, rows); });
   std::optional<Moduli> on_lattice;
   rows.attempt("moduli and wave speeds at F = I",
                [&]
@@ -269,7 +262,7 @@ output::Results contact_rows(const bridge::Subject &subject, const input::Case &
   const std::size_t left = sheet.index(sheet.rows() / 2, sheet.sites_in_row(0) / 2), right = left + 1;
   lattice::State state = lattice::homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), lattice::Edges::free);
   const double inverse_mass = state.inverse_mass[left];
-  state.bonds.clear(sheet.n_places());
+  state.bonds.clear(sheet.n_places(), material.n_kinds(sheet));
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
   {
     const bool stays = place == left || place == right;

@@ -85,7 +85,7 @@ void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
                        sinusoidal_energy(media.gradient, F, cell.K, p, wave_strain / cell.K.norm(), options.mesh);
         lattice_error.add_relative(measured, bloch);
         element_error.add_relative(elements, gradient);
-        table.add({subject.name, F(0, 0), F(1, 1), angle(direction, subject.orientation), std::string(wave_names[w]),
+        table.add({subject.name, F(0, 0), F(1, 1), angle(direction, subject.orientation), wave_names[w],
                    cell.K.norm() * d, measured / local, 1., gradient / local, gradient / inertia / local,
                    elements / local});
       }
@@ -177,8 +177,8 @@ void travelling(const bridge::Subject &subject, const Eigen::Matrix2d &F, double
     const double theory = 0.5 * rho * std::pow(bloch[w].frequency * amplitude, 2),
                  continuum_theory = 0.5 * rho * inertia * std::pow(closed[w].frequency * amplitude, 2);
     const double total = run.elastic + run.kinetic, element_total = elements.elastic + elements.kinetic;
-    table.add({subject.name, F(0, 0), F(1, 1), 0., std::string(wave_names[w]), kd, run.elastic, run.kinetic,
-               elements.elastic, elements.kinetic - elements.micro_inertia, elements.micro_inertia, 0.5 * theory});
+    table.add({subject.name, F(0, 0), F(1, 1), 0., wave_names[w], kd, run.elastic, run.kinetic, elements.elastic,
+               elements.kinetic - elements.micro_inertia, elements.micro_inertia, 0.5 * theory});
     if (wanted_kd != judged_kd)
       continue; // for the plot
     std::ostringstream where;

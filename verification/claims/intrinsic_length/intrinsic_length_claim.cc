@@ -4,8 +4,6 @@
 
 #include "support/largest_error.h"
 #include "verification/claims/claim_list.h"
-#include "verification/claims/intrinsic_length/dispersion.h"
-#include "verification/claims/rows.h"
 #include "verification/claims/states.h"
 
 namespace latcon::claims
@@ -15,7 +13,7 @@ namespace
 
 const output::Tolerance bloch_tolerance{
   1e-7,
-  "extrapolation of Bloch's frequencies to kd = 0 (dispersion.h): 84 (kd)^2 (l/d)^6 / 20160 at kd = 0.01 and below"};
+  "extrapolation of Bloch's frequencies to kd = 0 (bloch_alpha): 84 (kd)^2 (l/d)^6 / 20160 at kd = 0.01 and below"};
 const output::Tolerance equal_closed_forms{1e-10, "two closed forms of the same number"};
 const output::Tolerance sign{0., "a sign"};
 const output::Tolerance positive{1e-12, "round-off of an eigenvalue that may be zero"};
@@ -86,7 +84,7 @@ void dispersion(const bridge::Subject &subject, double angle_step, const Rows &r
     runs.add({subject.name, degrees, run[0], run[1]});
     const Alpha closed = lattice_alpha(sheet, material, I, N), continuum = continuum_alpha(media.gradient, I, N, d);
     for (std::size_t w = 0; w < 2; ++w)
-      rows.add("alpha of " + std::string(wave_names[w]) + " waves" + at + ", lattice run against closed form", "1",
+      rows.add("alpha of " + wave_names[w] + " waves" + at + ", lattice run against closed form", "1",
                of_both(run[w], continuum[w], closed[w]), std::abs(run[w] - closed[w]), run_tolerance(subject));
   }
 
@@ -99,7 +97,7 @@ void dispersion(const bridge::Subject &subject, double angle_step, const Rows &r
   rows.add("largest alpha of any wave", "1", of_lattice(alphas.largest()));
   for (std::size_t w = 0; w < 2; ++w)
   {
-    const std::string name = std::string("alpha of ") + wave_names[w] + " waves, ";
+    const std::string name = "alpha of " + wave_names[w] + " waves, ";
     rows.add(name + "mean over directions, isotropic gradient continuum against lattice", "1",
              of_both(mean[w], isotropic_alpha[w]), std::abs(isotropic_alpha[w] - mean[w]), equal_closed_forms,
              subject.judges(bridge::Law::isotropic_gradient));

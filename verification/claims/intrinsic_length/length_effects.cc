@@ -1,4 +1,4 @@
-#include "verification/claims/intrinsic_length/dispersion.h"
+#include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 
 #include <cmath>
 #include <limits>
@@ -9,7 +9,6 @@
 #include "support/dense.h"
 #include "verification/bridge/homogenisation.h"
 #include "verification/bridge/plane_waves.h"
-#include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 
 namespace latcon::claims
 {

@@ -5,7 +5,6 @@
 
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
-#include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/nonlocal_continuum.h"
 #include "verification/bridge/plane_waves.h"
 #include "verification/claims/claim_list.h"
@@ -190,10 +189,8 @@ private:
     equal_stretches_.add_relative(at_twice.energy_density, equal.energy);
     equal_stretches_.add((at_twice.first_piola_stress - equal.stress).norm() / equal.stress.norm());
 
-    std::mt19937_64 generator(20061111);
-    for (unsigned int sample = 0; sample < options_.samples; ++sample)
+    for (const Eigen::Matrix2d &F : random_deformations(options_.samples))
     {
-      const Eigen::Matrix2d F = random_deformation(generator);
       const NetworkAt network(subject_, F);
       const bridge::LatticeResponse found = sheet.response(F);
       energy_.add(std::abs(found.energy_density - network.energy) / network.energy_bound);
@@ -254,7 +251,7 @@ private:
         const double allowed = bound + 1e-6 * std::pow(network[0].frequency, 2);
         speeds_.add(std::abs(std::pow(found[w].frequency, 2) - exact) / allowed);
         if (degrees == 0.)
-          rows.add(std::string("speed of long ") + wave_names[w] +
+          rows.add("speed of long " + wave_names[w] +
                      " waves along x in the loaded sheet; lattice, nonlocal continuum, network",
                    "m/s", of_both(on_lattice[w].frequency / k, found[w].frequency / k, network[w].frequency / k),
                    support::relative_error(found[w].frequency, network[w].frequency),

@@ -8,10 +8,10 @@
 #include "lattice/simulation.h"
 #include "lattice/site_fields.h"
 #include "support/largest_error.h"
-#include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/nonlocal_continuum.h"
 #include "verification/bridge/plane_waves.h"
 #include "verification/claims/order_fit.h"
+#include "verification/claims/sites_and_bonds.h"
 
 namespace latcon::claims
 {
@@ -35,54 +35,27 @@ using RingErrors = std::array<double, n_ring_quantities>;
 
 constexpr double side = 12., scattered_side = 24.; // of sheets, in spacings of the lattice
 
-template <class Visit>
-void for_each_site(const lattice::TriangularLattice &sheet, const Visit &visit)
-{
-  for (std::size_t row = 0; row < sheet.rows(); ++row)
-    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-      visit(sheet.index(row, column));
-}
-
-// The exact values, and the errors that a stencil makes in them.
-class RingLimit
-{
-public:
-  explicit RingLimit(const bridge::Subject &subject)
-    : subject_(subject), energy_(subject.network.energy(bridge::to_continuum(F_))),
-      stress_(bridge::to_lattice(subject.network.first_piola_stress(bridge::to_continuum(F_)))),
-      K_(ring_kd / subject.spacing * Eigen::Vector2d(0.8, 0.6))
-  {
-    waves_ = bridge::rotation_mean(bridge::rotated_bloch_stiffness(subject.sheet(),
-                                                                   lattice::without_dashpots(subject.material),
-                                                                   Eigen::Matrix2d::Identity(), K_))
-               .mean;
-  }
-
-  RingErrors errors(const std::vector<lattice::HalfBond> &stencil, const lattice::Grid &grid) const
-  {
-    const bridge::NonlocalContinuum sums(stencil, subject_.material, subject_.spacing);
-    const double squared_length = bridge::ring_squared_length(subject_.material, subject_.spacing, grid).limit,
-                 cut_energy = bridge::ring_cut_energy(subject_.material, subject_.spacing, grid, cut_stretch).limit;
-    const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
-    return {sums.energy(F_) / energy_ - 1., (sums.first_piola_stress(F_) - stress_).norm() / stress_.norm(),
-            (sums.wave_stiffness(I, K_).reshaped() - waves_).norm() / waves_.norm(),
-            sums.squared_length() / squared_length - 1., sums.cut_energy(cut_stretch) / cut_energy - 1.};
-  }
-
-private:
-  const bridge::Subject &subject_;
-  Eigen::Matrix2d F_ = Eigen::Vector2d(1.6, 1.2).asDiagonal();
-  double energy_;
-  Eigen::Matrix2d stress_;
-  Eigen::Vector2d K_;
-  Eigen::VectorXd waves_;
-};
-
 } // namespace
 
 void ring_convergence(const bridge::Subject &subject, const NonlocalOptions &options, const Rows &rows)
 {
-  const RingLimit limit(subject);
+  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity(), F = Eigen::Vector2d(1.6, 1.2).asDiagonal();
+  const Eigen::Vector2d K = ring_kd / subject.spacing * Eigen::Vector2d(0.8, 0.6);
+  const double energy = subject.network.energy(bridge::to_continuum(F));
+  const Eigen::Matrix2d stress = bridge::to_lattice(subject.network.first_piola_stress(bridge::to_continuum(F)));
+  const lattice::Material elastic = lattice::without_dashpots(subject.material);
+  const Eigen::VectorXd waves =
+    bridge::rotation_mean(bridge::rotated_bloch_stiffness(subject.sheet(), elastic, I, K)).mean;
+  // Errors that the stencil of a grid makes in the exact values.
+  const auto errors_of = [&](const lattice::Grid &grid) -> RingErrors
+  {
+    const bridge::NonlocalContinuum sums(planted_bonds(subject, grid, options), subject.material, subject.spacing);
+    const double squared_length = bridge::ring_squared_length(subject.material, subject.spacing, grid).limit,
+                 cut_energy = bridge::ring_cut_energy(subject.material, subject.spacing, grid, cut_stretch).limit;
+    return {sums.energy(F) / energy - 1., (sums.first_piola_stress(F) - stress).norm() / stress.norm(),
+            (sums.wave_stiffness(I, K).reshaped() - waves).norm() / waves.norm(),
+            sums.squared_length() / squared_length - 1., sums.cut_energy(cut_stretch) / cut_energy - 1.};
+  };
   std::array<std::vector<double>, n_ring_quantities> rms;
   for (const double middle : middle_ms)
   {
@@ -91,8 +64,7 @@ void ring_convergence(const bridge::Subject &subject, const NonlocalOptions &opt
       for (int i = 0; i < grids_per_middle; ++i)
       {
         const double m = middle * (0.87 + 0.28 * i / (grids_per_middle - 1));
-        const lattice::Grid grid{kind, subject.spacing / m, 0., subject.orientation};
-        const RingErrors errors = limit.errors(planted_bonds(subject, grid, options), grid);
+        const RingErrors errors = errors_of({kind, subject.spacing / m, 0., subject.orientation});
         for (std::size_t q = 0; q < n_ring_quantities; ++q)
           squares[q] += errors[q] * errors[q] / (2. * grids_per_middle);
       }
@@ -145,12 +117,11 @@ bridge::LatticeResponse StencilSheet::response(const Eigen::Matrix2d &F) const
     return bridge::homogeneous_response(sheet_, material_, F);
   const lattice::SiteFields fields = lattice::site_fields(state(F), sheet_, material_);
   bridge::LatticeResponse mean{0., Eigen::Matrix2d::Zero()};
-  for_each_site(sheet_,
-                [&](std::size_t place)
-                {
-                  mean.energy_density += fields.strain_energy_density[place] / static_cast<double>(sheet_.n_sites());
-                  mean.first_piola_stress += fields.first_piola_stress[place] / static_cast<double>(sheet_.n_sites());
-                });
+  for (const std::size_t place : sites(sheet_))
+  {
+    mean.energy_density += fields.strain_energy_density[place] / static_cast<double>(sheet_.n_sites());
+    mean.first_piola_stress += fields.first_piola_stress[place] / static_cast<double>(sheet_.n_sites());
+  }
   return mean;
 }
 
@@ -168,17 +139,15 @@ double StencilSheet::imbalance(const Eigen::Matrix2d &F) const
   lattice::Forces forces(sheet_, material_);
   forces.evaluate(at_rest, at_rest.vx, at_rest.vy);
   double square = 0., tension = 0.;
-  for_each_site(sheet_, [&](std::size_t place)
-                { square += std::pow(forces.fx()[place], 2) + std::pow(forces.fy()[place], 2); });
-  lattice::for_each_bond(at_rest, sheet_,
-                         [&](const lattice::Bond &bond)
-                         {
-                           const lattice::Shell &shell = *material_.shell(sheet_, bond.kind);
-                           tension += 2. * at_rest.stiffness.of(bond.near, bond.kind) *
-                                      lattice::cross_section(shell, sheet_, bond.kind) *
-                                      sheet_.length_ratio(bond.near, bond.kind) *
-                                      std::abs(lattice::force(shell.law, lattice::stretch(at_rest, sheet_, bond)));
-                         });
+  for (const std::size_t place : sites(sheet_))
+    square += std::pow(forces.fx()[place], 2) + std::pow(forces.fy()[place], 2);
+  for (const lattice::Bond &bond : bonds(at_rest, sheet_))
+  {
+    const lattice::Shell &shell = *material_.shell(sheet_, bond.kind);
+    tension += 2. * at_rest.stiffness.of(bond.near, bond.kind) * lattice::cross_section(shell, sheet_, bond.kind) *
+               sheet_.length_ratio(bond.near, bond.kind) *
+               std::abs(lattice::force(shell.law, lattice::stretch(at_rest, sheet_, bond)));
+  }
   const auto n = static_cast<double>(sheet_.n_sites());
   return std::sqrt(square / n) / (tension / n);
 }
@@ -186,6 +155,7 @@ double StencilSheet::imbalance(const Eigen::Matrix2d &F) const
 Eigen::Matrix2d StencilSheet::wave_stiffness(const Eigen::Matrix2d &F, const Eigen::Vector2d &K) const
 {
   const lattice::State at_rest = state(F);
+  const std::vector<std::size_t> all = sites(sheet_);
   const std::size_t crest = sheet_.index(2 * (sheet_.rows() / 4), sheet_.columns() / 2);
   const double amplitude = 1e-5 / K.norm();
   lattice::Forces forces(sheet_, material_);
@@ -195,23 +165,19 @@ Eigen::Matrix2d StencilSheet::wave_stiffness(const Eigen::Matrix2d &F, const Eig
     lattice::State state = at_rest;
     const auto phase = [&](std::size_t place)
     { return std::cos(K.dot(sheet_.reference(place) - sheet_.reference(crest)) + shift); };
-    for_each_site(sheet_,
-                  [&](std::size_t place)
-                  {
-                    state.x[place] += phase(place) * displacement.x();
-                    state.y[place] += phase(place) * displacement.y();
-                  });
+    for (const std::size_t place : all)
+    {
+      state.x[place] += phase(place) * displacement.x();
+      state.y[place] += phase(place) * displacement.y();
+    }
     lattice::update_images(state, sheet_);
     forces.evaluate(state, state.vx, state.vy);
     if (sheet_.scattered() == nullptr)
       return Eigen::Vector2d(forces.fx()[crest], forces.fy()[crest]);
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-    for_each_site(sheet_,
-                  [&](std::size_t place)
-                  {
-                    mean += phase(place) / static_cast<double>(sheet_.n_sites()) *
-                            Eigen::Vector2d(forces.fx()[place], forces.fy()[place]);
-                  });
+    for (const std::size_t place : all)
+      mean +=
+        phase(place) / static_cast<double>(sheet_.n_sites()) * Eigen::Vector2d(forces.fx()[place], forces.fy()[place]);
     return mean;
   };
   Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();

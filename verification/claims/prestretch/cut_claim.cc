@@ -10,6 +10,7 @@
 #include "verification/bridge/equivalent_sheet.h"
 #include "verification/claims/prestretch/prestretch_claim.h"
 #include "verification/claims/rows.h"
+#include "verification/claims/states.h"
 
 namespace latcon::claims
 {
@@ -72,21 +73,13 @@ double geometric_mean(const std::vector<double> &values)
   return std::exp(sum / static_cast<double>(values.size()));
 }
 
-std::string in_words(const Eigen::Matrix2d &F)
-{
-  std::ostringstream text;
-  text.precision(3);
-  text << "(" << F(0, 0) << ", " << F(1, 1) << ")";
-  return text.str();
-}
-
 class Judge
 {
 public:
   Judge(const bridge::Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F,
         const std::vector<CutResult> &results, output::Results &rows)
     : subject_(subject), study_(study), F_(F), results_(results), is_hole_(study.name == "hole"),
-      rows_(rows, "prestretch", subject.name + ": " + study.name + ", F = " + in_words(F) + ", ")
+      rows_(rows, "prestretch", subject.name + ": " + study.name + ", " + state_name(F) + ", ")
   {
   }
 
@@ -318,23 +311,22 @@ private:
     return nullptr;
   }
 
-  // An error, or a distance from another continuum; unknown where there is no equilibrium.
-  double value(const std::string &law, double size, double CutErrors::*error,
-               std::optional<CutErrors> CutResult::*of = &CutResult::errors) const
-  {
-    const CutResult *found = find(law, size);
-    return found != nullptr && found->*of ? (*(found->*of)).*error : unknown;
-  }
+  // An error at the largest size, or a distance from another continuum; unknown where there is no equilibrium.
   double at_largest(const std::string &law, double CutErrors::*error,
                     std::optional<CutErrors> CutResult::*of = &CutResult::errors) const
   {
-    return value(law, study_.sizes.back(), error, of);
+    return value(find(law, study_.sizes.back()), error, of);
+  }
+  static double value(const CutResult *found, double CutErrors::*error,
+                      std::optional<CutErrors> CutResult::*of = &CutResult::errors)
+  {
+    return found != nullptr && found->*of ? (*(found->*of)).*error : unknown;
   }
   std::vector<double> series(double CutErrors::*error) const
   {
     std::vector<double> values;
     for (const double size : study_.sizes)
-      values.push_back(value("local", size, error));
+      values.push_back(value(find("local", size), error));
     return values;
   }
 
@@ -373,7 +365,7 @@ ClaimOutcome cut_claim(const bridge::Subject &subject, const CutStudy &study)
     outcome.results.add(rows);
   };
   for (const Eigen::Matrix2d &F : study.states)
-    outcome.results.attempt("prestretch", subject.name + ": " + study.name + ", F = " + in_words(F),
+    outcome.results.attempt("prestretch", subject.name + ": " + study.name + ", " + state_name(F),
                             [&] { compare_at(F); });
   return outcome;
 }

@@ -5,15 +5,14 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 
 #include "continuum/mooney_rivlin.h"
 #include "lattice/energy.h"
 #include "lattice/forces.h"
 #include "support/largest_error.h"
-#include "verification/bridge/equivalent_sheet.h"
 #include "verification/bridge/homogeneous_response.h"
+#include "verification/claims/sites_and_bonds.h"
 
 namespace latcon::claims
 {
@@ -29,8 +28,8 @@ Eigen::Vector2d reactions(const lattice::TriangularLattice &sheet, const lattice
   lattice::Forces forces(sheet, material);
   forces.evaluate(state, state.vx, state.vy);
   Eigen::Vector2d reaction = Eigen::Vector2d::Zero();
-  for (std::size_t place = 0; place < sheet.n_places(); ++place)
-    if (sheet.is_site(place) && state.held[place] != 0)
+  for (const std::size_t place : sites(sheet))
+    if (state.held[place] != 0)
     {
       const Eigen::Vector2d X = sheet.reference(place);
       const double right = distance(held.right, sheet.length() - X.x());
@@ -58,24 +57,22 @@ double roundest_radius(const bridge::Subject &subject, double R, double length, 
   const Eigen::Vector2d middle(0.5 * lattice.length(), 0.);
   // Moments of the bonds that go with each radius and not with the one before.
   std::array<double, n_radii> moments{};
-  lattice::for_each_bond(whole, lattice,
-                         [&](const lattice::Bond &bond)
-                         {
-                           const lattice::Shell &shell = *subject.material.shell(bond.kind);
-                           const Eigen::Vector2d R = lattice.bond_vector(bond.kind),
-                                                 X = lattice.reference(bond.near) - middle;
-                           const double distance = support::smallest_of({X.norm(), (X + R).norm()});
-                           const Eigen::Vector2d centre = X + 0.5 * R;
-                           const double step = (distance - first) / d * (n_radii - 1);
-                           if (step >= n_radii - 1 || centre.norm() < 0.1 * d)
-                             return;
-                           const Eigen::Vector2d n = centre.normalized();
-                           const double across = std::pow(n.dot(R.normalized()), 2);
-                           const double energy = lattice::stiffness(shell.law, 1.) * shell.area_factor * R.norm() *
-                                                 std::pow(1. - across - across / 3., 2);
-                           const double sixfold = std::pow(std::complex<double>(n.x(), n.y()), 6).real();
-                           moments[step < 0. ? 0 : static_cast<std::size_t>(step) + 1] += energy * sixfold;
-                         });
+  for (const lattice::Bond &bond : bonds(whole, lattice))
+  {
+    const lattice::Shell &shell = *subject.material.shell(bond.kind);
+    const Eigen::Vector2d R = lattice.bond_vector(bond.kind), X = lattice.reference(bond.near) - middle;
+    const double distance = support::smallest_of({X.norm(), (X + R).norm()});
+    const Eigen::Vector2d centre = X + 0.5 * R;
+    const double step = (distance - first) / d * (n_radii - 1);
+    if (step >= n_radii - 1 || centre.norm() < 0.1 * d)
+      continue;
+    const Eigen::Vector2d n = centre.normalized();
+    const double across = std::pow(n.dot(R.normalized()), 2);
+    const double energy =
+      lattice::stiffness(shell.law, 1.) * shell.area_factor * R.norm() * std::pow(1. - across - across / 3., 2);
+    const double sixfold = std::pow(std::complex<double>(n.x(), n.y()), 6).real();
+    moments[step < 0. ? 0 : static_cast<std::size_t>(step) + 1] += energy * sixfold;
+  }
   std::size_t best = 0;
   double sum = 0., smallest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < n_radii; ++i)
@@ -137,10 +134,10 @@ CutSheet sheet_with_notch(const bridge::Subject &subject, double a, const Eigen:
   const lattice::TriangularLattice lattice(subject.spacing, 4. * a, 4. * a, subject.orientation);
   support::Extremes inside;
   inside.add(0.);
-  for (std::size_t place = 0; place < lattice.n_places(); ++place)
+  for (const std::size_t place : sites(lattice))
   {
     const Eigen::Vector2d X = lattice.reference(place);
-    if (lattice.is_site(place) && std::abs(X.y()) < 0.1 * subject.spacing && X.x() < a + 0.1 * subject.spacing)
+    if (std::abs(X.y()) < 0.1 * subject.spacing && X.x() < a + 0.1 * subject.spacing)
       inside.add(X.x());
   }
   return {lattice::Notch{inside.largest() + 0.25 * subject.spacing}, a, 4. * a, 4. * a, {false, true, true, true}, F};
@@ -183,8 +180,8 @@ CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet
   cut.left_of_energy = energy_missing / energy - overhang;
   cut.left_of_force = force_missing / force - overhang;
 
-  for (std::size_t place = 0; place < lattice.n_places(); ++place)
-    if (lattice.is_site(place) && cut.state.inverse_mass[place] > 0.)
+  for (const std::size_t place : sites(lattice))
+    if (cut.state.inverse_mass[place] > 0.)
     {
       unsigned int bonds = 0;
       lattice::for_each_bond_of_site(cut.state, lattice, place, [&](const lattice::Bond &) { ++bonds; });

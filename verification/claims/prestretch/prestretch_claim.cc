@@ -7,13 +7,10 @@
 
 #include "continuum/rectangle.h"
 #include "continuum/static_solver.h"
-#include "lattice/relaxation.h"
-#include "lattice/site_fields.h"
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"
-#include "verification/bridge/subject.h"
 #include "verification/claims/claim_list.h"
-#include "verification/claims/rows.h"
+#include "verification/claims/sites_and_bonds.h"
 #include "verification/claims/states.h"
 
 namespace latcon::claims
@@ -71,8 +68,8 @@ LatticeSide relaxed_lattice(const bridge::Subject &subject, const lattice::Trian
 
   side.fields = lattice::site_fields(side.state, sheet, subject.material);
   side.energy_density = 0.;
-  for (std::size_t place = 0; place < sheet.n_places(); ++place)
-    if (sheet.is_site(place) && side.state.held[place] == 0)
+  for (const std::size_t place : sites(sheet))
+    if (side.state.held[place] == 0)
     {
       side.interior.push_back(place);
       side.energy_density += side.fields.strain_energy_density[place];

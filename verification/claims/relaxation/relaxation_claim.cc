@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <memory>
 #include <variant>
 
 #include "continuum/dynamic_solver.h"
@@ -18,8 +18,7 @@
 #include "verification/bridge/homogenisation.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/continuum_waves.h"
-#include "verification/claims/lattice_waves.h"
-#include "verification/claims/rows.h"
+#include "verification/claims/sites_and_bonds.h"
 
 namespace latcon::claims
 {
@@ -80,8 +79,6 @@ Eigen::Matrix2d mean_stress(const continuum::DynamicSolver &solver, double area)
   return moment / area;
 }
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
 // Branches for lattices without any: moduli over the stiffness of a bond, relaxation times in time steps.
 const std::vector<double> ratios{0.5, 0.3, 0.2}, times_in_steps{30., 100., 300.};
 
@@ -101,18 +98,17 @@ Eigen::Matrix2d strained(const bridge::Subject &subject, const lattice::Triangul
   return is_stretched ? F : 1.2 * Eigen::Matrix2d::Identity();
 }
 
-// A relaxing sheet beside its closed form.
-class HeldSheet
+// The closed form of the branches of a sheet strained suddenly from I to F, and the largest errors of one side in it.
+class RelaxationComparison
 {
 public:
-  HeldSheet(const bridge::Subject &subject, const lattice::TriangularLattice &sheet, const lattice::Material &material,
-            const lattice::Material &planted, const Eigen::Matrix2d &F, const lattice::TimeStepping &stepping)
-    : sheet_(sheet), rows_(sheet), simulation_(rows_, planted, suddenly_strained(rows_, planted, F), stepping),
+  // @param sheet only its bonds matter @param n_bonds of each kind, fractions included
+  RelaxationComparison(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
+                       const lattice::Material &material, const std::array<double, lattice::n_bond_kinds> &n_bonds,
+                       const Eigen::Matrix2d &F)
+    : branches_(relaxing_branches(sheet, material, n_bonds, F)),
       relaxed_(bridge::to_lattice(subject.cauchy_born.first_piola_stress(bridge::to_continuum(F))))
   {
-    std::array<double, lattice::n_bond_kinds> n_bonds{};
-    lattice::for_each_bond(simulation_.state(), sheet, [&](const lattice::Bond &bond) { n_bonds[bond.kind] += 1.; });
-    branches_ = relaxing_branches(sheet, material, n_bonds, F);
     for (const BranchTheory &branch : branches_)
     {
       stored_ += branch.stored;
@@ -120,106 +116,147 @@ public:
     }
   }
 
-  // Compares at the present time.
-  void compare()
+  // Energies of the ledger [J/m].
+  struct Ledger
   {
-    const double t = simulation_.state().time;
+    double stored, of_laws, dissipated, imbalance;
+  };
+
+  // Compares at the time t. @param P first Piola stress @param measured energies of each branch
+  // @param trapezoidal_step of a ledger that integrates by the trapezoidal rule; 0: exactly
+  template <class Energies>
+  void compare(double t, const Eigen::Matrix2d &P, const Energies &measured, const Ledger &ledger,
+               double trapezoidal_step)
+  {
+    const bool is_exact = trapezoidal_step == 0.;
     Eigen::Matrix2d overstress = Eigen::Matrix2d::Zero();
-    const std::vector<lattice::MechanismEnergy> measured = simulation_.mechanism_energies();
-    const lattice::EnergyBalance energies = simulation_.energies();
     double stored_sum = 0., dissipated_sum = 0., stored_theory = 0., dissipated_theory = 0.;
     for (std::size_t i = 0; i < branches_.size(); ++i)
     {
       const auto &[time, at_start, stress] = branches_[i];
       overstress += std::exp(-t / time) * stress;
-      const double stored = std::exp(-2. * t / time) * at_start;
-      // The trapezoidal rule of the ledger on e^(-2t/tau) in steps h, with x = 2h/tau: (x/2) coth(x/2) of the integral.
-      const double half = simulation_.time_step() / time;
-      const double dissipated = -std::expm1(-2. * t / time) * at_start * half / std::tanh(half);
-      const lattice::MechanismEnergy found = i < measured.size() ? measured[i] : lattice::MechanismEnergy{0., 0.};
+      const double stored = std::exp(-2. * t / time) * at_start, integral = -std::expm1(-2. * t / time) * at_start;
+      // The trapezoidal rule on e^(-2t/tau) in steps h, with x = 2h/tau: (x/2) coth(x/2) of the integral.
+      const double half = trapezoidal_step / time, dissipated = is_exact ? integral : integral * half / std::tanh(half);
+      const auto found = i < measured.size() ? measured[i] : typename Energies::value_type{0., 0.};
       stored_error_.add(std::abs(found.stored - stored) / at_start, found.stored, stored);
-      if (t > 0.)
+      if (is_exact)
+        dissipated_error_.add(std::abs(found.dissipated - dissipated) / at_start, found.dissipated, dissipated);
+      else if (t > 0.)
         dissipated_error_.add_relative(found.dissipated, dissipated);
       stored_sum += found.stored;
       dissipated_sum += found.dissipated;
       stored_theory += stored;
       dissipated_theory += dissipated;
     }
-    const Eigen::Matrix2d P = bridge::edge_stress(
-      sheet_, simulation_.material(),
-      [&](std::size_t place) {
-        return simulation_.forces().on_site(simulation_.state(), simulation_.state().vx, simulation_.state().vy, place);
-      });
     const Eigen::Matrix2d expected = relaxed_ + overstress;
     stress_error_.add((P - expected).norm() / overstress_.norm(), P.norm(), expected.norm());
-    const double of_laws = lattice::elastic_energy(simulation_.state(), rows_, simulation_.material());
-    totals_.add(std::abs(energies.elastic - of_laws - stored_sum) / stored_);
-    totals_.add(std::abs(energies.viscous - dissipated_sum) / stored_);
-    imbalance_.add_difference(energies.imbalance() / stored_, (stored_theory + dissipated_theory) / stored_ - 1.);
+    totals_.add(std::abs(ledger.stored - ledger.of_laws - stored_sum) / stored_);
+    totals_.add(std::abs(ledger.dissipated - dissipated_sum) / stored_);
+    imbalance_.add_difference(ledger.imbalance / stored_,
+                              is_exact ? 0. : (stored_theory + dissipated_theory) / stored_ - 1.);
     points_.push_back(
       {t, (P - relaxed_).norm(), overstress.norm(), stored_sum, stored_theory, dissipated_sum, dissipated_theory});
   }
 
-  void run(std::size_t n_steps)
+  // Compares before the first step, after the last, and at some twenty times in between.
+  static void follow(std::size_t n_steps, const std::function<void()> &step, const std::function<void()> &compare)
   {
-    constexpr std::size_t samples = 20;
+    const std::size_t stride = std::max<std::size_t>(1, n_steps / 20);
     compare();
-    for (std::size_t step = 1; step <= n_steps; ++step)
+    for (std::size_t i = 1; i <= n_steps; ++i)
     {
-      simulation_.step();
-      if (step % std::max<std::size_t>(1, n_steps / samples) == 0 || step == n_steps)
+      step();
+      if (i % stride == 0 || i == n_steps)
         compare();
     }
   }
 
-  void add_rows(const bridge::Subject &subject, const std::string &integrator, std::size_t n_steps,
-                ClaimOutcome &outcome) const
+  // @param elastic energy from which that of the branches is told apart, as a difference [J/m]
+  void add_rows(const Rows &rows, bool on_lattice, std::size_t n_steps, double elastic) const
   {
-    const Rows rows(outcome.results, "relaxation",
-                    subject.name + ": held sheet after a step of strain, " + integrator + ", ");
-    const std::string reason = "round-off: 4 roundings in each step and 1000 for sums over bonds, times the quantity "
-                               "over that to which the error is relative";
+    const auto sides = [&](const support::LargestError &error)
+    { return on_lattice ? of_lattice(error) : of_continuum(error); };
+    const std::string reason = std::string("round-off: 4 roundings in each step and 1000 for sums over ") +
+                               (on_lattice ? "bonds" : "quadrature points") +
+                               ", times the quantity over that to which the error is relative";
     // Each update rounds twice, multiplies by an exponential that is off by a rounding, and adds a change of stretch
-    // that is round-off: 4 roundings at most. Sums over the bonds of the sheet round less than 1000 times.
-    const double round_off = (4. * static_cast<double>(n_steps) + 1000.) * epsilon;
+    // that is round-off: 4 roundings at most. In finite elements it is that of the displacement at free nodes, which
+    // Newton's method leaves undetermined to its tolerance. Sums over the bonds of the sheet, or over 36 quadrature
+    // points with gradients of shape functions, round less than 1000 times.
+    const double round_off = (4. * static_cast<double>(n_steps) + 1000.) * std::numeric_limits<double>::epsilon();
     support::Extremes dissipated; // share of the energy at the first sample
-    const double t_first = points_.at(1)[0];
     for (const BranchTheory &branch : branches_)
-      dissipated.add(-std::expm1(-2. * t_first / branch.relaxation_time));
-    const double elastic_over_stored = simulation_.energies().elastic / stored_;
+      dissipated.add(-std::expm1(-2. * points_.at(1)[0] / branch.relaxation_time));
+    const double elastic_over_stored = elastic / stored_;
     // Overstress is a difference to the stress of the laws.
     rows.add("first Piola stress, worst of all times, error over the overstress at the start", "Pa",
-             of_both(stress_error_.value(), stress_error_.reference()), stress_error_,
-             {round_off * (1. + relaxed_.norm() / overstress_.norm()), reason});
+             on_lattice ? of_both(stress_error_.value(), stress_error_.reference()) : of_continuum(stress_error_),
+             stress_error_,
+             {(on_lattice ? 1. : 10.) * round_off * (1. + relaxed_.norm() / overstress_.norm()), reason});
     rows.add("energy stored in a branch, worst of all branches and times, error over that at the start", "J/m",
-             of_lattice(stored_error_), stored_error_, {2. * round_off, reason});
-    rows.add("energy dissipated by a branch, worst of all branches and times", "J/m", of_lattice(dissipated_error_),
-             dissipated_error_, {2. * round_off / dissipated.smallest(), reason});
+             sides(stored_error_), stored_error_, {2. * round_off, reason});
+    rows.add(std::string("energy dissipated by a branch, worst of all branches and times") +
+               (on_lattice ? "" : ", error over that stored at the start"),
+             "J/m", sides(dissipated_error_), dissipated_error_,
+             {2. * round_off / (on_lattice ? dissipated.smallest() : 1.), reason});
     rows.add(
       "branches against the totals of the energy ledger, worst of all times, error over their energy at the start", "1",
       {}, totals_, {round_off * (1. + elastic_over_stored), reason});
-    rows.add(
-      "energy imbalance, worst of all times, against that of the trapezoidal rule, over the energy of the branches at "
-      "the start",
-      "1", of_lattice(imbalance_), imbalance_, {round_off * (2. + elastic_over_stored), reason});
-    output::Table &table =
-      outcome.table("relaxation", {"shells", "integrator", "t [s]", "lattice_overstress [Pa]", "theory_overstress [Pa]",
-                                   "lattice_stored [J/m]", "theory_stored [J/m]", "lattice_dissipated [J/m]",
-                                   "theory_dissipated [J/m]"});
+    rows.add(std::string("energy imbalance, worst of all times, ") +
+               (on_lattice ? "against that of the trapezoidal rule, " : "") +
+               "over the energy of the branches at the start",
+             "1", on_lattice ? of_lattice(imbalance_) : Sides(), imbalance_,
+             {round_off * ((on_lattice ? 2. : 1.) + elastic_over_stored), reason});
+  }
+
+  void add_to(output::Table &table, const std::string &shells, const std::string &integrator) const
+  {
     for (const std::array<double, 7> &p : points_)
-      table.add({subject.name, integrator, p[0], p[1], p[2], p[3], p[4], p[5], p[6]});
+      table.add({shells, integrator, p[0], p[1], p[2], p[3], p[4], p[5], p[6]});
   }
 
 private:
-  const lattice::TriangularLattice &sheet_;
-  lattice::RowPartition rows_;
-  lattice::Simulation simulation_;
   std::vector<BranchTheory> branches_;
   Eigen::Matrix2d relaxed_, overstress_ = Eigen::Matrix2d::Zero(); // of the laws; of the branches at the start [Pa]
   double stored_ = 0.;                                             // in all branches at the start [J/m]
   support::LargestError stress_error_, stored_error_, dissipated_error_, totals_, imbalance_;
   std::vector<std::array<double, 7>> points_; // of the table
 };
+
+// Compares a held sheet of the lattice.
+// @param material of the closed form @param planted of the lattice
+void add_held_lattice(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
+                      const lattice::Material &material, const lattice::Material &planted, const Eigen::Matrix2d &F,
+                      const lattice::TimeStepping &stepping, std::size_t n_steps, const std::string &integrator,
+                      const Rows &rows, ClaimOutcome &outcome)
+{
+  const lattice::RowPartition all(sheet);
+  lattice::Simulation simulation(all, planted, suddenly_strained(all, planted, F), stepping);
+  const lattice::State &state = simulation.state();
+  std::array<double, lattice::n_bond_kinds> n_bonds{};
+  for (const lattice::Bond &bond : bonds(state, sheet))
+    n_bonds[bond.kind] += 1.;
+  RelaxationComparison comparison(subject, sheet, material, n_bonds, F);
+  const auto compare = [&]
+  {
+    const auto force = [&](std::size_t place) { return simulation.forces().on_site(state, state.vx, state.vy, place); };
+    const lattice::EnergyBalance energies = simulation.energies();
+    comparison.compare(state.time, bridge::edge_stress(sheet, simulation.material(), force),
+                       simulation.mechanism_energies(),
+                       {energies.elastic, lattice::elastic_energy(state, all, simulation.material()), energies.viscous,
+                        energies.imbalance()},
+                       simulation.time_step());
+  };
+  RelaxationComparison::follow(
+    n_steps, [&] { simulation.step(); }, compare);
+  comparison.add_rows(rows, true, n_steps, simulation.energies().elastic);
+  comparison.add_to(
+    outcome.table("relaxation", {"shells", "integrator", "t [s]", "lattice_overstress [Pa]", "theory_overstress [Pa]",
+                                 "lattice_stored [J/m]", "theory_stored [J/m]", "lattice_dissipated [J/m]",
+                                 "theory_dissipated [J/m]"}),
+    subject.name, integrator);
+}
 
 bool is_damped(const lattice::Material &material)
 {
@@ -229,16 +266,14 @@ bool is_damped(const lattice::Material &material)
   return true;
 }
 
-// Adds rows that compare a held sheet of finite elements, strained suddenly from I to F, with the closed form of its
-// branches (theory.md, eq. (L.31)), summed over the bonds of a site: first Piola stress, measured as the moment of the
-// nodal reactions, energies of each branch, and their balance. Every rank computes all of it.
-// @param sheet only its bonds matter
-// @param material of the closed form, with Maxwell branches @param planted of the finite elements
+// Compares a held sheet of finite elements with the closed form summed over the bonds of a site; stress is the moment
+// of the nodal reactions. Every rank computes all of it.
+// @param sheet only its bonds matter @param material of the closed form @param planted of the finite elements
 // @param time_step [s] @param n_steps 2 or more
 // @throws what continuum::DynamicSolver throws
 void add_held_elements(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
                        const lattice::Material &material, const lattice::Material &planted, const Eigen::Matrix2d &F,
-                       double time_step, std::size_t n_steps, ClaimOutcome &outcome)
+                       double time_step, std::size_t n_steps, const Rows &rows)
 {
   const double extent = 4. * subject.spacing, area = extent * extent;
   constexpr unsigned int cells = 2;
@@ -257,71 +292,19 @@ void add_held_elements(const bridge::Subject &subject, const lattice::Triangular
 
   std::array<double, lattice::n_bond_kinds> n_bonds;
   n_bonds.fill(area / sheet.site_area()); // one of each kind per site
-  const std::vector<BranchTheory> branches = relaxing_branches(sheet, material, n_bonds, F);
-  const Eigen::Matrix2d relaxed = bridge::to_lattice(subject.cauchy_born.first_piola_stress(bridge::to_continuum(F)));
-  double stored_at_start = 0.;
-  Eigen::Matrix2d overstress_at_start = Eigen::Matrix2d::Zero();
-  for (const BranchTheory &branch : branches)
-  {
-    stored_at_start += branch.stored;
-    overstress_at_start += branch.stress;
-  }
-  support::LargestError stress_error, stored_error, dissipated_error, totals, imbalance;
+  RelaxationComparison comparison(subject, sheet, material, n_bonds, F);
   continuum::Sheet::Vector displacement = solver.sheet().make_ghosted();
   displacement = solver.displacement();
-  const double of_law = solver.sheet().energy(displacement);
-  const auto compare = [&](double t)
+  const double of_laws = solver.sheet().energy(displacement);
+  const auto compare = [&]
   {
-    Eigen::Matrix2d expected = relaxed;
-    double stored_sum = 0., dissipated_sum = 0.;
-    const std::vector<continuum::BranchEnergy> &measured = solver.branch_energies();
-    for (std::size_t i = 0; i < branches.size(); ++i)
-    {
-      const auto &[time, at_start, stress] = branches[i];
-      const double stored = std::exp(-2. * t / time) * at_start, dissipated = -std::expm1(-2. * t / time) * at_start;
-      const continuum::BranchEnergy found = i < measured.size() ? measured[i] : continuum::BranchEnergy{0., 0.};
-      expected += std::exp(-t / time) * stress;
-      stored_error.add(std::abs(found.stored - stored) / at_start, found.stored, stored);
-      dissipated_error.add(std::abs(found.dissipated - dissipated) / at_start, found.dissipated, dissipated);
-      stored_sum += found.stored;
-      dissipated_sum += found.dissipated;
-    }
-    const Eigen::Matrix2d P = mean_stress(solver, area);
-    stress_error.add((P - expected).norm() / overstress_at_start.norm(), P.norm(), expected.norm());
-    totals.add(std::abs(solver.ledger().stored - of_law - stored_sum) / stored_at_start);
-    totals.add(std::abs(solver.ledger().dissipated - dissipated_sum) / stored_at_start);
-    imbalance.add(std::abs(solver.ledger().imbalance) / stored_at_start);
+    const continuum::EnergyLedger &ledger = solver.ledger();
+    comparison.compare(solver.time(), mean_stress(solver, area), solver.branch_energies(),
+                       {ledger.stored, of_laws, ledger.dissipated, ledger.imbalance}, 0.);
   };
-  const std::size_t stride = n_steps > 20 ? n_steps / 20 : 1;
-  compare(0.);
-  for (std::size_t step = 1; step <= n_steps; ++step)
-  {
-    solver.step();
-    if (step % stride == 0 || step == n_steps)
-      compare(solver.time());
-  }
-
-  const Rows rows(outcome.results, "relaxation",
-                  subject.name + ": held sheet after a step of strain, finite elements, ");
-  const std::string reason = "round-off: 4 roundings in each step and 1000 for sums over quadrature points, times the "
-                             "quantity over that to which the error is relative";
-  // An update rounds four times, and adds a change of stretch that is round-off: of the displacement at free nodes,
-  // which Newton's method leaves undetermined to its tolerance. Sums over 36 quadrature points with gradients of shape
-  // functions round less than 1000 times.
-  const double round_off = (4. * static_cast<double>(n_steps) + 1000.) * std::numeric_limits<double>::epsilon();
-  const double elastic_over_stored = of_law / stored_at_start,
-               relaxed_over_stress = relaxed.norm() / overstress_at_start.norm();
-  rows.add("first Piola stress, worst of all times, error over the overstress at the start", "Pa",
-           of_continuum(stress_error), stress_error, {10. * round_off * (1. + relaxed_over_stress), reason});
-  rows.add("energy stored in a branch, worst of all branches and times, error over that at the start", "J/m",
-           of_continuum(stored_error), stored_error, {2. * round_off, reason});
-  rows.add("energy dissipated by a branch, worst of all branches and times, error over that stored at the start", "J/m",
-           of_continuum(dissipated_error), dissipated_error, {2. * round_off, reason});
-  const output::Tolerance of_energies{round_off * (1. + elastic_over_stored), reason};
-  rows.add("branches against the totals of the energy ledger, worst of all times, error over their energy at the start",
-           "1", {}, totals, of_energies);
-  rows.add("energy imbalance, worst of all times, over the energy of the branches at the start", "1", {}, imbalance,
-           of_energies);
+  RelaxationComparison::follow(
+    n_steps, [&] { solver.step(); }, compare);
+  comparison.add_rows(rows, false, n_steps, of_laws);
 }
 
 } // namespace
@@ -357,14 +340,13 @@ ClaimOutcome relaxation_claim(const bridge::Subject &subject, const RelaxationOp
       material = with_branches(material, ratios, times);
     }
     const lattice::Material planted = options.planted(material);
-    HeldSheet held(subject, sheet, material, planted, F, stepping());
     support::Extremes times;
     for (const double time : relaxation_times(material))
       times.add(time);
     const auto n_steps = static_cast<std::size_t>(std::ceil(
       support::smallest_of({static_cast<double>(options.max_steps), 3. * times.largest() / stepping().step})));
-    held.run(n_steps);
-    held.add_rows(subject, integrator, n_steps, outcome);
+    add_held_lattice(subject, sheet, material, planted, F, stepping(), n_steps, integrator,
+                     rows.about(integrator + ", "), outcome);
     if (is_chebyshev)
       return;
     // Over the same time in fewer steps: their updates are exact.
@@ -374,7 +356,7 @@ ClaimOutcome relaxation_claim(const bridge::Subject &subject, const RelaxationOp
                  {
                    add_held_elements(subject, sheet, material, planted, F,
                                      static_cast<double>(n_steps) * stepping().step / element_steps, element_steps,
-                                     outcome);
+                                     rows.about("finite elements, "));
                  });
   };
   const std::string verlet = "velocity Verlet", chebyshev = "Runge-Kutta-Chebyshev";

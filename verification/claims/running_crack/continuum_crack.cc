@@ -178,7 +178,7 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
   settings.linear.direct_limit = 1000000;
   settings.max_step_halvings = 9;
   continuum::DynamicSolver solver(mesh, medium.constitution, conditions(F, medium.constitution.has_gradient()),
-                                  medium.inertia, settings, medium.viscosity);
+                                  medium.inertia, settings, medium.viscosity.get());
   solver.start(std::make_shared<bridge::AffineDisplacement>(F));
 
   TipRun run{TipField(drive), {}};

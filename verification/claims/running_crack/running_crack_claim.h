@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -54,12 +53,6 @@ struct RunningCrackOptions
   std::string frames;       ///< folder for a frame of each side at the end of the drive; empty: none
 };
 
-/// The full version.
-inline RunningCrackOptions full_running_crack()
-{
-  return {66., 48., 18., 30., 12., 0.5, 3, true, {}};
-}
-
 /// A continuum with its name in rows and tables.
 struct NamedContinuum
 {
@@ -72,7 +65,6 @@ struct CrackSides
 {
   CrackDrive drive;
   HalfSheet half; ///< the continuum's sheet
-  std::vector<std::shared_ptr<const continuum::Viscosity>> viscosities;
   /// "local", the network, which is judged; "gradient", with its gradient energy and micro-inertia;
   /// "viscous-gradient", with gradient viscosity as well; if asked for, "bonds-local", "bonds-gradient" and
   /// "bonds-viscous-gradient", the same with the Cauchy-Born law and gradient energy of the lattice.

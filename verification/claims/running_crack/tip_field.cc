@@ -7,6 +7,7 @@
 #include "lattice/site_fields.h"
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
+#include "verification/claims/sites_and_bonds.h"
 #include "verification/output/field_writer.h"
 
 namespace latcon::claims
@@ -26,16 +27,14 @@ std::vector<Crossing> crossings(const CrackDrive &drive, const lattice::Triangul
                                 const lattice::State &state)
 {
   std::vector<Crossing> list;
-  lattice::for_each_bond(state, sheet,
-                         [&](const lattice::Bond &bond)
-                         {
-                           const Eigen::Vector2d from = sheet.reference(bond.near),
-                                                 along = sheet.bond_vector(bond.kind);
-                           const double share = (drive.axis() - from.y()) / along.y();
-                           const double X = from.x() + share * along.x();
-                           if (share > 0. && share < 1. && X > drive.start)
-                             list.push_back({X, {bond.near, bond.kind}});
-                         });
+  for (const lattice::Bond &bond : bonds(state, sheet))
+  {
+    const Eigen::Vector2d from = sheet.reference(bond.near), along = sheet.bond_vector(bond.kind);
+    const double share = (drive.axis() - from.y()) / along.y();
+    const double X = from.x() + share * along.x();
+    if (share > 0. && share < 1. && X > drive.start)
+      list.push_back({X, {bond.near, bond.kind}});
+  }
   std::stable_sort(list.begin(), list.end(), [](const Crossing &a, const Crossing &b) { return a.X < b.X; });
   return list;
 }
@@ -96,17 +95,15 @@ TipValues TipValues::operator*(double factor) const
 std::vector<TipSite> tip_sites(const CrackDrive &drive, const lattice::TriangularLattice &sheet, double X_tip,
                                double reach)
 {
-  std::vector<TipSite> sites;
-  for (std::size_t row = 0; row < sheet.rows(); ++row)
-    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-    {
-      const std::size_t place = sheet.index(row, column);
-      const Eigen::Vector2d X = sheet.reference(place);
-      const double xi = X.x() - X_tip, eta = X.y() - drive.axis();
-      if (std::hypot(xi, eta) <= reach)
-        sites.push_back({place, X.x(), xi, std::abs(eta), eta > 0.});
-    }
-  return sites;
+  std::vector<TipSite> near;
+  for (const std::size_t place : sites(sheet))
+  {
+    const Eigen::Vector2d X = sheet.reference(place);
+    const double xi = X.x() - X_tip, eta = X.y() - drive.axis();
+    if (std::hypot(xi, eta) <= reach)
+      near.push_back({place, X.x(), xi, std::abs(eta), eta > 0.});
+  }
+  return near;
 }
 
 void TipField::add(const TipSite &site, const TipValues &values)

@@ -1,15 +1,15 @@
 #include "verification/claims/steady_crack/steady_crack_claim.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 
 #include "lattice/relaxation.h"
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
+#include "support/fits.h"
 #include "support/largest_error.h"
+#include "verification/claims/sites_and_bonds.h"
 
 namespace latcon::claims
 {
@@ -22,25 +22,6 @@ constexpr double spacing = 1e-3, density = 1e3, modulus = 1e6, area_factor = 2. 
 // In spacings: cut along the middle before the strip comes to rest; cut further at the start, to free a trapped crack;
 // up to here only bonds across the middle may break, since a crack that starts overshoots.
 constexpr double seed = 40., kick = 4., guided = 80.;
-
-// Slope of the least-squares line through points that are added one by one.
-class Slope
-{
-public:
-  void add(double x, double y)
-  {
-    ++n_;
-    const double dx = x - mean_x_;
-    mean_x_ += dx / n_;
-    mean_y_ += (y - mean_y_) / n_;
-    xx_ += dx * (x - mean_x_);
-    xy_ += dx * (y - mean_y_);
-  }
-  double value() const { return xy_ / xx_; }
-
-private:
-  double n_ = 0., mean_x_ = 0., mean_y_ = 0., xx_ = 0., xy_ = 0.;
-};
 
 class Run
 {
@@ -73,7 +54,7 @@ public:
 
     CrackRun run{};
     support::Extremes elsewhere;
-    Slope line;
+    std::vector<double> times, positions; // of the tip
     std::optional<lattice::EnergyBalance> begin;
     std::optional<std::size_t> tip;
     const double patience = 200. * time_; // without a broken bond
@@ -104,13 +85,14 @@ public:
         continue;
       if (!begin)
         begin = simulation.energies();
-      line.add(t / time_, X);
+      times.push_back(t / time_);
+      positions.push_back(X);
     }
     const lattice::EnergyBalance end = simulation.energies();
     const auto per_bond = [&](double difference)
     { return difference / (static_cast<double>(run.bonds_broken) * energy_); };
     run.largest_elsewhere = elsewhere.largest();
-    run.speed = line.value();
+    run.speed = support::slope(times, positions);
     run.broken = per_bond(end.broken - begin->broken);
     run.viscous = per_bond(end.viscous - begin->viscous);
     run.kinetic = per_bond(end.kinetic - begin->kinetic);
@@ -149,23 +131,17 @@ private:
     constexpr double at_rest = 1e-4;
     lattice::relax(state, sheet_, material_, at_rest * force_);
     cut(state, seed + kick);
-    lattice::for_each_bond(state, sheet_,
-                           [&](const lattice::Bond &bond)
-                           {
-                             if (!crosses_crack(bond.near, bond.kind) && midpoint(bond.near, bond.kind) < guided)
-                               state.bonds.toughen(bond.near, bond.kind);
-                           });
+    for (const lattice::Bond &bond : bonds(state, sheet_))
+      if (!crosses_crack(bond.near, bond.kind) && midpoint(bond.near, bond.kind) < guided)
+        state.bonds.toughen(bond.near, bond.kind);
     return state;
   }
 
   void cut(lattice::State &state, double length) const
   {
-    lattice::for_each_bond(state, sheet_,
-                           [&](const lattice::Bond &bond)
-                           {
-                             if (crosses_crack(bond.near, bond.kind) && midpoint(bond.near, bond.kind) < length)
-                               state.bonds.remove(bond.near, bond.kind);
-                           });
+    for (const lattice::Bond &bond : bonds(state, sheet_))
+      if (crosses_crack(bond.near, bond.kind) && midpoint(bond.near, bond.kind) < length)
+        state.bonds.remove(bond.near, bond.kind);
   }
 
   // Largest elongation near the tip of bonds that do not cross the crack, over the breaking one.

@@ -1,8 +1,6 @@
 #include "verification/claims/steady_crack/steady_crack_claim.h"
 
-#include <cmath>
 #include <stdexcept>
-#include <vector>
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
@@ -61,7 +59,6 @@ struct Bond
 // steps in every row.
 std::vector<Bond> patch(std::size_t rows, std::size_t columns)
 {
-  const Eigen::Vector2d along(1., 0.), right(0.5, std::sqrt(3.) / 2.), left(-0.5, std::sqrt(3.) / 2.);
   std::vector<Bond> bonds;
   for (std::size_t row = 0; row < rows; ++row)
     for (std::size_t column = 0; column < columns; ++column)
@@ -89,15 +86,9 @@ HalfStrip::HalfStrip(const CrackStrip &strip, double speed) : strip_(strip), spe
     throw std::invalid_argument("a steady crack needs a free row on each side, viscosity and speed above zero");
 }
 
-// Displacements of the rows under the forces of the bonds across the crack, by elimination from the held row up.
-struct HalfStrip::Rows
-{
-  Complex half_step;            // exp(-i omega / (2 v)): half a spacing to the right
-  Vector2cd across;             // elongation of a bond across the crack for a displacement of row 0
-  std::vector<Vector2cd> moved; // of rows 0 ... N - 1
-};
-
-HalfStrip::Rows HalfStrip::rows(double omega) const
+// From the displacements of the rows under the forces of the bonds across the crack, by elimination from the held row
+// up.
+std::vector<HalfStrip::Layer> HalfStrip::elongations(double omega) const
 {
   const Complex half_step = std::polar(1., -0.5 * omega / speed_);
   const Complex kappa = stiffness(omega);
@@ -124,38 +115,25 @@ HalfStrip::Rows HalfStrip::rows(double omega) const
 
   // The upper crack face is the mirror image (u_x, -u_y) of the lower one. A bond that goes up and to the left has the
   // elongation of one to the right, half a spacing's time earlier; the force on a site of row 0 is that of both.
-  Rows result{half_step, {}, std::vector<Vector2cd>(n)};
   const Vector2cd mirrored(right.x(), -right.y());
-  result.across = half_step * mirrored - right.cast<Complex>();
+  const Vector2cd of_row_0 = half_step * mirrored - right.cast<Complex>();
   const Vector2cd force = right.cast<Complex>() + left.cast<Complex>() * std::conj(half_step);
-  result.moved[0] = pivots[0].inverse() * force;
+  std::vector<Vector2cd> moved(n); // rows 0 ... N - 1
+  moved[0] = pivots[0].inverse() * force;
   for (std::size_t j = 1; j < n; ++j)
-    result.moved[j] = pivots[j].inverse() * (from_above * result.moved[j - 1]);
-  return result;
-}
+    moved[j] = pivots[j].inverse() * (from_above * moved[j - 1]);
 
-Complex HalfStrip::compliance(double omega) const
-{
-  const Rows r = rows(omega);
-  return -(r.across.transpose() * r.moved[0])(0);
-}
-
-std::vector<HalfStrip::Layer> HalfStrip::elongations(double omega) const
-{
-  const Rows r = rows(omega);
-  const std::size_t n = strip_.free_rows;
-  const Complex step = r.half_step * r.half_step - 1.;
+  const Complex step = half_step * half_step - 1.;
   const auto component = [](const Vector2d &direction, const Vector2cd &w)
   { return direction.x() * w.x() + direction.y() * w.y(); };
-
   std::vector<Layer> layers(n + 1);
-  const Complex across = (r.across.transpose() * r.moved[0])(0);
-  layers[0] = {across, across * std::conj(r.half_step), step * r.moved[0].x()};
+  const Complex across = (of_row_0.transpose() * moved[0])(0);
+  layers[0] = {across, across * std::conj(half_step), step * moved[0].x()};
   for (std::size_t j = 1; j <= n; ++j)
   {
-    const Vector2cd below = j < n ? r.moved[j] : Vector2cd(Vector2cd::Zero());
-    layers[j] = {component(right, r.half_step * r.moved[j - 1] - below),
-                 component(left, std::conj(r.half_step) * r.moved[j - 1] - below), step * below.x()};
+    const Vector2cd below = j < n ? moved[j] : Vector2cd(Vector2cd::Zero());
+    layers[j] = {component(right, half_step * moved[j - 1] - below),
+                 component(left, std::conj(half_step) * moved[j - 1] - below), step * below.x()};
   }
   return layers;
 }

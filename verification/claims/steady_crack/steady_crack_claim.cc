@@ -1,8 +1,6 @@
 #include "verification/claims/steady_crack/steady_crack_claim.h"
 
 #include <array>
-#include <cmath>
-#include <functional>
 #include <future>
 #include <limits>
 #include <sstream>
@@ -11,7 +9,7 @@
 #include <omp.h>
 
 #include "support/largest_error.h"
-#include "verification/claims/rows.h"
+#include "verification/claims/claim_list.h"
 
 namespace latcon::claims
 {
@@ -33,18 +31,15 @@ Rows crack_rows(ClaimOutcome &outcome)
 struct TheoryComparison
 {
   TheoryComparison(const CrackRunOptions &options, const std::function<void(CrackRunOptions &)> &planted)
-    : run(run_crack(spoiled(options, planted))), driving(options.driving / run.breaking_elongation()),
-      speed(steady_speed(options.strip, driving, fastest))
   {
+    CrackRunOptions spoiled = options;
+    planted(spoiled);
+    run = run_crack(spoiled);
+    driving = options.driving / run.breaking_elongation();
+    speed = steady_speed(options.strip, driving, fastest);
     const double released_exact = options.driving * options.driving;
     errors = {std::log(steady_driving(options.strip, run.speed) / driving), run.released / released_exact - 1.,
               run.viscous / (released_exact - run.broken) - 1.};
-  }
-
-  static CrackRunOptions spoiled(CrackRunOptions options, const std::function<void(CrackRunOptions &)> &planted)
-  {
-    planted(options);
-    return options;
   }
 
   CrackRun run;
@@ -179,14 +174,14 @@ void add_curves(ClaimOutcome &outcome, const std::vector<SteadyCrackSeries> &ser
     }
 }
 
-} // namespace
-
 std::vector<SteadyCrackSeries> steady_crack_series(bool quick)
 {
   if (quick)
     return {{0.5, {1.57, 1.75, 1.92}, 2.2}, {3., {1.95, 2.3, 3.}, 0.}};
   return {{0.5, {1.57, 1.65, 1.75, 1.85, 1.92}, 2.2}, {3., {1.88, 1.95, 2.1, 2.3, 2.6, 3.}, 0.}};
 }
+
+} // namespace
 
 ClaimOutcome steady_cracks(const SteadyCrackSeries &series)
 {
@@ -231,6 +226,11 @@ ClaimOutcome steady_crack_claim(bool quick)
   if (!quick)
     crack_rows(outcome).attempt("curves of the exact solution", [&] { add_curves(outcome, every); });
   return outcome;
+}
+
+ClaimOutcome check_steady_crack(const ClaimInput &input)
+{
+  return steady_crack_claim(input.quick);
 }
 
 } // namespace latcon::claims

@@ -50,7 +50,7 @@ public:
 
   /// L(omega): the elongation that bonds across the crack lose if each of them pulls its ends together with a force of
   /// transform 1 and nothing else holds the crack together (theory-comparison.md, eqs. (S.3), (S.4)).
-  Complex compliance(double omega) const;
+  Complex compliance(double omega) const { return -elongations(omega).front().right; }
 
   /// Phi(omega) = 1 + kappa L (theory-comparison.md, eq. (S.5)).
   Complex phi(double omega) const { return 1. + stiffness(omega) * compliance(omega); }
@@ -67,9 +67,6 @@ public:
   std::vector<Layer> elongations(double omega) const;
 
 private:
-  struct Rows;
-  Rows rows(double omega) const;
-
   CrackStrip strip_;
   double speed_;
 };
@@ -170,9 +167,6 @@ struct SteadyCrackSeries
   /// Error that a test introduces into the simulator; none otherwise.
   std::function<void(CrackRunOptions &)> planted = [](CrackRunOptions &) {};
 };
-
-/// The series of the claim. @param quick fewer drivings
-std::vector<SteadyCrackSeries> steady_crack_series(bool quick);
 
 /// Steady cracks of the simulator against the exact solution of the linear lattice (theory-comparison.md, section "A
 /// steady crack in a linear lattice"): speed, elastic energy released and energy dissipated for each broken bond (eq.

@@ -1,7 +1,6 @@
 #include "verification/claims/steady_crack/steady_crack_claim.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <unsupported/Eigen/FFT>
 
@@ -22,7 +21,10 @@ constexpr double two_pi = 2. * M_PI;
 class Record
 {
 public:
-  Record(double duration, std::size_t samples) : duration_(duration), samples_(samples) {}
+  Record(double duration, std::size_t samples) : duration_(duration), samples_(samples)
+  {
+    fft_.SetFlag(Eigen::FFT<double>::HalfSpectrum); // of omega >= 0
+  }
 
   std::size_t samples() const { return samples_; }
   double step() const { return duration_ / static_cast<double>(samples_); }
@@ -30,29 +32,24 @@ public:
   double time(std::size_t i) const { return step() * signed_index(i); }
 
   /// Values in time of a transform that is given for omega >= 0.
-  std::vector<double> in_time(const Spectrum &spectrum)
+  std::vector<double> in_time(Spectrum spectrum)
   {
-    Spectrum whole(samples_), values;
-    for (std::size_t i = 0; i <= samples_ / 2; ++i)
-    {
-      whole[i] = spectrum[i] / step();
-      if (i > 0)
-        whole[samples_ - i] = std::conj(whole[i]);
-    }
-    whole[samples_ / 2] = whole[samples_ / 2].real();
-    fft_.inv(values, whole);
-    std::vector<double> real(samples_);
-    std::transform(values.begin(), values.end(), real.begin(), [](const Complex &z) { return z.real(); });
-    return real;
+    for (Complex &z : spectrum)
+      z /= step();
+    spectrum.back() = spectrum.back().real();
+    std::vector<double> values;
+    fft_.inv(values, spectrum);
+    return values;
   }
 
+  /// Transform of values in time, for omega >= 0.
   Spectrum transform(const std::vector<double> &values)
   {
-    Spectrum in(values.begin(), values.end()), out;
-    fft_.fwd(out, in);
-    for (Complex &z : out)
+    Spectrum spectrum;
+    fft_.fwd(spectrum, values);
+    for (Complex &z : spectrum)
       z *= step();
-    return out;
+    return spectrum;
   }
 
   /// Time integral of a rate that vanishes at both ends, 0 at the start of the record: exact at every frequency, the
@@ -101,7 +98,6 @@ Spectrum factor_before(const HalfStrip &half, Record &record)
   before[n / 2] *= 0.5;
   std::fill(before.begin() + 1, before.begin() + static_cast<std::ptrdiff_t>(n / 2), 0.);
   Spectrum factor = record.transform(before);
-  factor.resize(n / 2 + 1);
   for (Complex &z : factor)
     z = std::exp(z);
   return factor;

@@ -1,7 +1,6 @@
 #include "verification/claims/viscoelastic_waves/viscoelastic_waves_claim.h"
 
 #include <cmath>
-#include <memory>
 #include <sstream>
 
 #include "support/largest_error.h"
@@ -10,7 +9,6 @@
 #include "verification/claims/claim_list.h"
 #include "verification/claims/continuum_waves.h"
 #include "verification/claims/lattice_waves.h"
-#include "verification/claims/rows.h"
 #include "verification/claims/states.h"
 
 namespace latcon::claims
@@ -30,21 +28,13 @@ const output::Tolerance element_tolerance{
 constexpr WaveMesh element_mesh{4, 4};
 
 // Local continuum of a lattice with branches.
-struct Medium
+WaveContinuum local_continuum(const bridge::Subject &subject, const WaveCell &cell, const lattice::Material &material)
 {
-  std::unique_ptr<continuum::Viscosity> viscosity;
-  std::unique_ptr<continuum::FibreMemory> memory;
-  WaveContinuum waves;
-
-  Medium(const bridge::Subject &subject, const WaveCell &cell, const lattice::Material &material)
-    : viscosity(bridge::homogenised_viscosity(cell.sheet, material)),
-      memory(bridge::homogenised_memory(cell.sheet, material)), waves{{subject.cauchy_born},
-                                                                      {subject.material.density},
-                                                                      viscosity.get(),
-                                                                      memory.get()}
-  {
-  }
-};
+  return {{subject.cauchy_born},
+          {subject.material.density},
+          bridge::homogenised_viscosity(cell.sheet, material),
+          bridge::homogenised_memory(cell.sheet, material)};
+}
 
 // Comparison of runs with the closed form of their side, the lattice or finite elements of its local continuum, and the
 // table of the waves.
@@ -72,7 +62,7 @@ public:
   // In closed form.
   bridge::MemoryWave theory(const WaveCell &cell, const lattice::Material &material, std::size_t w) const
   {
-    return has_elements_ ? continuum_memory_waves(Medium(subject_, cell, material).waves, F_, cell.K)[w]
+    return has_elements_ ? continuum_memory_waves(local_continuum(subject_, cell, material), F_, cell.K)[w]
                          : bridge::memory_waves(cell.sheet, material, F_, cell.K)[w];
   }
 
@@ -91,7 +81,7 @@ public:
                  {
                    const lattice::Material planted = options_.planted(material);
                    if (has_elements_)
-                     run = element_wave(Medium(subject_, cell, planted).waves, F_, cell.K, wave, element_mesh);
+                     run = element_wave(local_continuum(subject_, cell, planted), F_, cell.K, wave, element_mesh);
                    else
                      run.oscillation = lattice_wave(cell, planted, F_, wave);
                  });
@@ -102,8 +92,8 @@ public:
     outside_.add(
       support::largest_of({support::one_sided(lowest / frequency - 1.), support::one_sided(frequency / highest - 1.)}));
     imbalance_.add(run.imbalance / run.imbalance_tolerance);
-    table_->add({subject_.name, F_(0, 0), F_(1, 1), part, std::string(wave_names[w]), cell.K.norm() * subject_.spacing,
-                 scaled_time, lowest, highest, wave.frequency(), wave.decay(), frequency, decay});
+    table_->add({subject_.name, F_(0, 0), F_(1, 1), part, wave_names[w], cell.K.norm() * subject_.spacing, scaled_time,
+                 lowest, highest, wave.frequency(), wave.decay(), frequency, decay});
     return run.oscillation;
   }
 
@@ -150,7 +140,7 @@ private:
   {
     bridge::WaveMatrices matrices = relaxed(cell, material);
     if (has_elements_)
-      for (const bridge::BranchMatrix &branch : branch_matrices(Medium(subject_, cell, material).waves, F_, cell.K))
+      for (const bridge::BranchMatrix &branch : branch_matrices(local_continuum(subject_, cell, material), F_, cell.K))
         matrices.stiffness += branch.stiffness;
     else
       matrices.stiffness += bridge::glassy_stiffness(cell.sheet, material, F_, cell.K);

@@ -11,7 +11,6 @@
 #include "verification/bridge/plane_waves.h"
 #include "verification/claims/lattice_waves.h"
 #include "verification/claims/order_fit.h"
-#include "verification/claims/rows.h"
 #include "verification/claims/states.h"
 
 namespace latcon::claims

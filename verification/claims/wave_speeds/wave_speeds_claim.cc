@@ -78,8 +78,8 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
           longest[w][i] = run[w] / k;
           longest_kd[i] = k * d;
         }
-        table.add({subject.name, F(0, 0), F(1, 1), angle(direction, subject.orientation), std::string(wave_names[w]),
-                   k * d, local[w] / k, bloch[w] / k, run[w] / k, gradient[w] / k, isotropic[w] / k, elements[w] / k});
+        table.add({subject.name, F(0, 0), F(1, 1), angle(direction, subject.orientation), wave_names[w], k * d,
+                   local[w] / k, bloch[w] / k, run[w] / k, gradient[w] / k, isotropic[w] / k, elements[w] / k});
       }
     }
     const Eigen::Vector2d K = compared_kd / d * N;
@@ -110,9 +110,8 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
     "next term of the series of v(k), its coefficient below 1/20 (at most (4^2/360)/2 + (4/12)^2/8 for bonds up to 2 d "
     "long), and time stepping"};
   for (std::size_t w = 0; w < 2; ++w)
-    rows.add(std::string("long-wave speed, ") + wave_names[w] +
-               ", lattice run against closed form, worst of 4 directions",
-             "m/s", of_lattice(long_waves[w]), long_waves[w], remainder);
+    rows.add("long-wave speed, " + wave_names[w] + ", lattice run against closed form, worst of 4 directions", "m/s",
+             of_lattice(long_waves[w]), long_waves[w], remainder);
   if (F.isIdentity(1e-12))
   {
     // Takes nothing from the side that moves: neither its cross-sections nor its masses.
@@ -158,11 +157,9 @@ void damping_orders(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
     if (lattice::Shell *shell = material.in_shell(number))
       shell->viscosity *= 0.33 / ratio.error();
 
-  const auto kelvin = bridge::homogenised_viscosity(sheet, material),
-             viscosity = bridge::homogenised_viscosity(sheet, material, subject.lengths.lattice);
   SubjectContinua media(subject);
-  media.local.viscosity = kelvin.get();
-  media.gradient.viscosity = viscosity.get();
+  media.local.viscosity = bridge::homogenised_viscosity(sheet, material);
+  media.gradient.viscosity = bridge::homogenised_viscosity(sheet, material, subject.lengths.lattice);
   CommonOrder local_order, gradient_order;
   support::LargestError elements_against_closed;
   const Rows rows(outcome.results, "wave-speeds",
@@ -222,10 +219,8 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
   const WaveCell cell = wave_cell(subject.spacing, subject.orientation, {1, 0}, kd);
   const double k = cell.K.norm();
 
-  const auto viscosity = bridge::homogenised_viscosity(any, material, subject.lengths.lattice);
-  const WaveContinuum medium{{subject.cauchy_born, *subject.lattice_gradient},
-                             {subject.material.density, subject.lengths.lattice},
-                             viscosity.get()};
+  WaveContinuum medium = SubjectContinua(subject).gradient;
+  medium.viscosity = bridge::homogenised_viscosity(any, material, subject.lengths.lattice);
   const std::array<bridge::PlaneWave, 2> theory = damped(cell.K), kelvin = continuum_waves(medium, F, cell.K);
   std::ostringstream where;
   where << subject.name << ", " << state_name(F) << ", kd = " << std::round(1e4 * k * subject.spacing) / 1e4 << ": ";
@@ -248,9 +243,8 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
     const Eigen::Vector2d K = fraction * cell.K;
     const auto exact = damped(K), closed = continuum_waves(medium, F, K);
     for (std::size_t w = 0; w < 2; ++w)
-      table.add({subject.name, F(0, 0), F(1, 1), 0., std::string(wave_names[w]), fraction * k * subject.spacing,
-                 exact[w].frequency, exact[w].decay, unknown, unknown, closed[w].frequency, closed[w].decay, unknown,
-                 unknown});
+      table.add({subject.name, F(0, 0), F(1, 1), 0., wave_names[w], fraction * k * subject.spacing, exact[w].frequency,
+                 exact[w].decay, unknown, unknown, closed[w].frequency, closed[w].decay, unknown, unknown});
   }
   const bool chebyshev = options.integrator == input::Case::Integrator::runge_kutta_chebyshev;
   const output::Tolerance tolerance{1e-4, "average acceleration with 28 steps a period, extrapolated: (w h)^4 / 300, "
@@ -258,10 +252,10 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
                                           "the lattice less"};
   for (std::size_t w = 0; w < 2; ++w)
   {
-    table.add({subject.name, F(0, 0), F(1, 1), 0., std::string(wave_names[w]), k * subject.spacing, theory[w].frequency,
+    table.add({subject.name, F(0, 0), F(1, 1), 0., wave_names[w], k * subject.spacing, theory[w].frequency,
                theory[w].decay, run[w].frequency, run[w].decay, kelvin[w].frequency, kelvin[w].decay,
                elements[w].frequency, elements[w].decay});
-    const Rows of_wave = rows.about(wave_names[w] + std::string(", "));
+    const Rows of_wave = rows.about(wave_names[w] + ", ");
     const auto add = [&](const std::string &quantity, const std::string &unit, double lattice_value,
                          double element_value, double bloch, double closed)
     {
