@@ -27,7 +27,7 @@ public:
                                            latcon::continuum::Order order) const override
   {
     const auto a = first_->evaluate(F, G, Z, order), b = second_->evaluate(F, G, Z, order);
-    const auto of = [&](const auto &x, const auto &y) { return factor(F) * (a_ * x + b_ * y); };
+    const auto of = [&, f = factor(F)](const auto &x, const auto &y) { return f * (a_ * x + b_ * y); };
     return {of(a.value, b.value), of(a.by_F, b.by_F),   of(a.by_G, b.by_G),   of(a.by_Z, b.by_Z),
             of(a.by_FF, b.by_FF), of(a.by_GF, b.by_GF), of(a.by_ZF, b.by_ZF), of(a.by_GZ, b.by_GZ)};
   }
