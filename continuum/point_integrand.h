@@ -30,9 +30,10 @@ void clear(PointIntegrand &density, Order order);
 /// Returns F_iJ = delta_iJ + u_i,J of a displacement.
 dealii::Tensor<2, 2> deformation_gradient(const FieldDerivatives &u);
 
-/// Adds a first Piola stress P, and factor * T for its derivative T = dP/dF, as densities of one side of a cell or
-/// face.
+/// Adds a first Piola stress P [Pa] to the first derivatives of the density of side 0.
 void add_stress(PointIntegrand &density, const dealii::Tensor<2, 2> &P);
+
+/// Adds factor * T for T = dP/dF [Pa], index order [i][J][k][L], to the second derivatives of the density on one side.
 void add_F_F(PointIntegrand &density, unsigned int side, const dealii::Tensor<4, 2> &T, double factor);
 
 /// Computes W(F) + W_g(F, G) [J/m^3] in a cell, eq. (C.28), as a density of side 0. `density` must have been cleared.

@@ -20,6 +20,8 @@ struct Oscillation
 /// Returns the oscillation without the error of the time stepping, of second order, from runs with a step and half of
 /// it.
 Oscillation extrapolated(const Oscillation &whole, const Oscillation &half);
+
+/// Returns those of two waves.
 std::array<Oscillation, 2> extrapolated(const std::array<Oscillation, 2> &whole,
                                         const std::array<Oscillation, 2> &half);
 
