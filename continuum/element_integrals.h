@@ -34,8 +34,8 @@ struct CellPoint
 {
   std::size_t number; ///< among the points of the cells on this rank, in their order
   double JxW;         ///< weight [m^2]
-  const FieldDerivatives &u;
-  const FieldDerivatives &v; ///< undefined without a velocity
+  const FieldDerivatives &u; ///< of the displacement, by reference position
+  const FieldDerivatives &v; ///< of the velocity, likewise; undefined without one
 };
 
 /// Forces that no energy of u gives, those of viscosity and memory.
@@ -57,8 +57,8 @@ struct PointForces
 void integrate(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, Order order,
                const std::function<void(const Contribution &)> &add);
 
-/// Adds nodal forces [N/m] to `nodal` and, if given, the absolute values of their terms to `magnitude`. Collective, as
-/// are the functions below; throw NonPhysicalState on every rank.
+/// Adds nodal forces [N/m] to `nodal` and, if given, the absolute values of their terms to `magnitude`. As all functions
+/// below, collective; throws NonPhysicalState on every rank.
 void add_forces(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, Sheet::Vector &nodal,
                 Sheet::Vector *magnitude);
 

@@ -172,7 +172,7 @@ public:
     }
   }
 
-  // @param elastic energy from which that of the branches is told apart, as a difference [J/m]
+  // @param elastic energy of the sheet, of which the totals of the ledger subtract that of the laws [J/m]
   void add_rows(const Rows &rows, bool on_lattice, std::size_t n_steps, double elastic) const
   {
     const auto sides = [&](const support::LargestError &error)
