@@ -115,7 +115,7 @@ def test_file_says_what_its_verdicts_hold_for(accepted):
     assert f"program={program}\n" in document["inputs"]
     assert "\nNearest neighbours/b=150000\n" in document["inputs"]
     assert document["checked_at"] == accepted.first["verification"]["checked_at"]
-    assert {"version", "git_commit", "hardware_threads"} <= set(document)
+    assert {"version", "git_commit", "libraries"} <= set(document)
 
 
 def test_what_no_claim_reads_may_change(accepted):
@@ -157,45 +157,24 @@ def exchange(accepted, path):
     shutil.move(wrong, path)
 
 
-def open_to_others(accepted, path):
-    path.chmod(path.stat().st_mode & 0o777 | 0o020)
-
-
-def give_away(accepted, path):
-    if os.geteuid():
-        pytest.skip("only root can")
-    os.chown(path, 65534, 65534)
-
-
-def link(accepted, path):
-    path.rename(accepted.folder / "elsewhere.json")
-    path.symlink_to(accepted.folder / "elsewhere.json")
-
-
 def empty(accepted, path):
-    """Leaves one row, with the checksum that belongs to it."""
+    """Leaves one row."""
     document = json.loads(path.read_text())
-    del document["checksum"]
     document["results"]["claims"] = [next(row for row in document["results"]["claims"] if row["verdict"] == "holds")]
-    text = json.dumps(document, separators=(",", ":"), ensure_ascii=False)
-    document["checksum"] = hashlib.sha256(text.encode()).hexdigest()
-    path.write_text(json.dumps(document, separators=(",", ":"), ensure_ascii=False))
+    path.write_text(json.dumps(document))
 
 
 @in_full
 @pytest.mark.parametrize("damage, reason", [
-    (halve, ""), (exchange, "it belongs to other inputs"), (open_to_others, "it belongs to another user, or others may write it"),
-    (give_away, "it belongs to another user"), (link, ""), (empty, "the claim [a-z-]+ judged nothing")])
+    (halve, "it is damaged"), (exchange, "it belongs to other inputs"), (empty, "the claim [a-z-]+ judged nothing")])
 def test_file_that_cannot_be_trusted_is_said_and_replaced(accepted, damage, reason):
     path, = accepted.stored()
-    assert path.stat().st_mode & 0o022 == 0
     damage(accepted, path)
     text, run = accepted.fracture()
     assert re.search(f"{path} is not used: .*{reason}", text)
     assert "is not used" in run["verification"]["note"]
     assert not run["verification"]["reused"]
     assert accepted.is_reused()
-    assert path.stat().st_mode & 0o022 == 0
 
 
 # The fitted law has its best ratio at the end of the interval, or a given one loses ellipticity on the way.

@@ -39,21 +39,6 @@ class TestShards(Studies):
         assert result(self.out) == result(tiny_study)
         assert (self.out / "study.html").exists()
 
-    @pytest.mark.skipif(not FULL, reason="in full only")
-    def test_runs_side_by_side_verify_a_rubber_once(self):
-        study = str(write_study(self.folder, lambda document: document.update(
-            runs={"base": {"seeds": [1, 2]}}, claims=[dict(TINY["claims"][0], rows=TINY["claims"][0]["rows"][:1])])))
-        shards = [subprocess.Popen([LATCON, "study", study, "--output-dir", self.out, "--shard", f"{i}/2", "--threads", "2"],
-                                   text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) for i in (1, 2)]
-        for shard in shards:
-            printed, _ = shard.communicate(timeout=600)
-            assert shard.returncode == 0, printed
-        checks = [json.loads((self.out / "runs" / name / "run.json").read_text())["verification"]
-                  for name in ("base-1", "base-2")]
-        assert len({check["hash"] for check in checks}) == 1
-        assert sum(not check["reused"] for check in checks) == 1
-        assert not list(pathlib.Path(os.environ["XDG_CACHE_HOME"]).rglob("*.checking"))
-
     def test_stopped_shard_continues(self, tiny_study):
         shard = subprocess.Popen([LATCON, *self.words("--shard", "1/1", "--threads", "1")], stdout=subprocess.DEVNULL)
         end = time.monotonic() + 300

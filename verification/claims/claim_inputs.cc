@@ -1,11 +1,15 @@
 #include "verification/claims/claim_inputs.h"
 
+#include <algorithm>
 #include <array>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "support/full_precision.h"
 #include "support/largest_error.h"
+#include "verification/input/sha256.h"
+#include "verification/output/run_info.h"
 
 namespace latcon::claims
 {
@@ -91,6 +95,31 @@ input::Case claim_inputs(const input::Case &input, const std::vector<std::string
   parameters.read_overrides(lines);
   parameters.finish();
   return read;
+}
+
+VerdictKey::VerdictKey(std::string inputs) : text(std::move(inputs)), hash(input::sha256(text)) {}
+
+VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claims, const bridge::Laws &laws, bool quick,
+                       unsigned int n_ranks)
+{
+  const bool is_about_program =
+    !claims.empty() &&
+    std::all_of(claims.begin(), claims.end(), [](const Claim &claim) { return claim.is_about_program; });
+  std::string text = "program=" + output::program_hash() + "\n";
+  std::vector<std::string> entries;
+  for (const Claim &claim : claims)
+  {
+    text += "claim=" + claim.name + "\n";
+    entries.insert(entries.end(), claim.entries.begin(), claim.entries.end());
+  }
+  text += std::string("quick=") + (quick ? "true" : "false") + "\n";
+  if (is_about_program)
+    return VerdictKey(text);
+  text += "laws="; // they decide which rows can fail
+  for (const bridge::Law law : laws)
+    text += std::to_string(static_cast<int>(law)) + ",";
+  text += "\nranks=" + std::to_string(n_ranks) + "\n";
+  return VerdictKey(text + claim_inputs_text(input, entries));
 }
 
 void check_user_laws(const input::Case &input, input::Parameters &parameters)

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "verification/bridge/laws.h"
 #include "verification/claims/claim.h"
 #include "verification/input/case.h"
 
@@ -19,6 +20,22 @@ namespace latcon::claims
 /// A case with the entries of claim_inputs_text() as in `input`, every other entry as declared, and a sheet of a fixed
 /// number of spacings. Claims are given nothing else, so that no verdict can depend on an entry that is not listed.
 [[nodiscard]] input::Case claim_inputs(const input::Case &input, const std::vector<std::string> &further = {});
+
+/// Everything that verdicts depend on, in one text, and its hash.
+struct VerdictKey
+{
+  explicit VerdictKey(std::string inputs);
+
+  std::string text; ///< a line for each input
+  std::string hash; ///< SHA-256 of the text, 64 hexadecimal digits
+};
+
+/// Returns the key of a check: hash of the program, claims and their size, laws that are judged, number of MPI ranks,
+/// and the entries that the claims read; of claims that are about the program alone the first two. The shared libraries
+/// of the check are kept with its verdicts.
+/// @throws std::runtime_error if the program cannot read itself
+[[nodiscard]] VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claims,
+                                     const bridge::Laws &laws, bool quick, unsigned int n_ranks);
 
 /// Largest stretch [-] at which claims evaluate bond laws, except those of a loaded or
 /// breaking sheet.

@@ -1,44 +1,27 @@
-/// Cache of verdicts, by the hash of everything they depend on.
+/// Verdicts of earlier checks: a file for each hash of everything that they depend on.
 #pragma once
 
 #include <map>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "verification/bridge/laws.h"
 #include "verification/claims/claim.h"
+#include "verification/claims/claim_inputs.h"
 #include "verification/claims/rows.h"
-#include "verification/input/case.h"
 #include "verification/output/results.h"
 
 namespace latcon::claims
 {
 
-/// Everything that verdicts depend on, in one text, and its hash.
-struct VerdictKey
-{
-  explicit VerdictKey(std::string inputs);
-
-  std::string text; ///< a line for each input
-  std::string hash; ///< SHA-256 of the text, 64 hexadecimal digits
-};
-
-/// Returns the key of a check: hash of the program, claims and their size, laws that are judged, number of MPI ranks,
-/// and the entries that the claims read; of claims that are about the program alone the first two. The shared libraries
-/// of the check are kept with its verdicts.
-/// @throws std::runtime_error if the program cannot read itself
-[[nodiscard]] VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claims,
-                                     const bridge::Laws &laws, bool quick, unsigned int n_ranks);
-
 /// A complete check.
 struct Verdicts
 {
   output::Results results;
-  std::map<std::string, std::string> tables; ///< CSV texts by file name without ".csv"
-  std::string checked_at;                    ///< UTC, ISO 8601: "2026-11-21T16:20:05Z"
+  std::map<std::string, std::string> tables;    ///< CSV texts by file name without ".csv"
+  std::map<std::string, std::string> libraries; ///< size and time of the shared libraries of the check, by path
+  std::string checked_at;                       ///< UTC, ISO 8601: "2026-11-21T16:20:05Z"
 
   Verdicts() = default;
   /// Verdicts of claims that were checked just now.
@@ -46,12 +29,15 @@ struct Verdicts
 
   /// Writes NAME.csv for each table into `folder`, which must exist. @throws OutputError
   void write_tables(const std::string &folder) const;
-};
 
-/// Returns why verdicts do not let a crack run, apart from rows that fail: a row of another claim, or a claim that
-/// judged nothing that a crack waits for. The same for verdicts that were just computed and for cached ones.
-/// @param required claims that the crack waits for @return a message; empty: none
-[[nodiscard]] std::string acceptance_problem(const output::Results &results, const std::vector<Claim> &required);
+  /// Returns why the verdicts do not hold for the libraries of this machine; empty: they do.
+  /// @param may_be_updated accept libraries of the same names, which a release of Debian updates for security
+  [[nodiscard]] std::string library_problem(bool may_be_updated) const;
+
+  /// Returns why verdicts do not let a crack run, apart from rows that fail: a row of another claim, or a claim that
+  /// judged nothing that a crack waits for; empty: none. @param required claims that the crack waits for
+  [[nodiscard]] std::string acceptance_problem(const std::vector<Claim> &required) const;
+};
 
 /// A stored file that cannot be used; what() says why.
 class UnusableVerdicts : public std::runtime_error
@@ -60,47 +46,25 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-/// Returns verdicts as JSON: the key, time and program of the check, the rows as in results.json, the tables, and a
-/// checksum of the document.
+/// Returns verdicts as JSON: the key, time, program and libraries of the check, the rows as in results.json, the
+/// tables.
 [[nodiscard]] std::string verdicts_text(const VerdictKey &key, const Verdicts &verdicts);
 
-/// Parses such a text.
-/// @param libraries_may_be_updated accept libraries of the same names, which a release of Debian updates for security
-/// @throws UnusableVerdicts if the text is damaged, was changed, or belongs to another key
-[[nodiscard]] Verdicts read_verdicts(const VerdictKey &key, const std::string &text,
-                                     bool libraries_may_be_updated = false);
+/// Parses such a text. The verdict of a row follows from its numbers.
+/// @throws UnusableVerdicts if the text is damaged or belongs to another key
+[[nodiscard]] Verdicts read_verdicts(const VerdictKey &key, const std::string &text);
 
-/// Folder with a file HASH.json per key. Failing verdicts are kept as well, since the same inputs would fail again.
-/// Files are never removed. Any number of processes may read and write at once.
-class VerdictStore
-{
-public:
-  explicit VerdictStore(std::string folder) : folder_(std::move(folder)) {}
+/// Returns $XDG_CACHE_HOME/latcon/verdicts, or ~/.cache/latcon/verdicts; none if the environment sets neither. Failing
+/// verdicts are kept there as well, since the same inputs would fail again; any number of processes may read and write.
+[[nodiscard]] std::optional<std::string> verdicts_folder_of_user();
 
-  /// Returns $XDG_CACHE_HOME/latcon/verdicts, or ~/.cache/latcon/verdicts; none if the environment sets neither.
-  [[nodiscard]] static std::optional<std::string> folder_of_user();
+/// Returns the file of a key in a folder: its hash and ".json".
+[[nodiscard]] std::string verdicts_file(const std::string &folder, const VerdictKey &key);
 
-  [[nodiscard]] std::string path(const VerdictKey &key) const;
+/// Writes verdicts to their file in a folder, which is made if it is missing. @throws OutputError
+void store_verdicts(const std::string &folder, const VerdictKey &key, const Verdicts &verdicts);
 
-  /// Reads the file of the key, unchecked; none if there is no such file.
-  /// @throws UnusableVerdicts if the file cannot be read or is empty
-  [[nodiscard]] std::optional<std::string> read(const VerdictKey &key) const;
-
-  /// Replaces the file of the key atomically.
-  /// @throws OutputError
-  void write(const VerdictKey &key, const std::string &text) const;
-
-  /// Waits while another process checks the claims of the key, so that the runs of a study or of a job array check them
-  /// once. The wait is at most ten minutes, and none where folders cannot be created or locked: then both check.
-  /// @return turn of this process, which ends with the object
-  [[nodiscard]] std::shared_ptr<void> wait_for_turn(const VerdictKey &key) const;
-
-private:
-  std::string folder_;
-};
-
-/// Returns the text of verdicts that were packed with the program, in verdicts/ of its data folder; empty if there are
-/// none for the key, a row of them fails, or a library of the check is not here.
-[[nodiscard]] std::string shipped_verdicts(const VerdictKey &key);
+/// Returns the text of a file; none if there is no such file. @throws UnusableVerdicts if it cannot be read
+[[nodiscard]] std::optional<std::string> stored_text(const std::string &file);
 
 } // namespace latcon::claims

@@ -60,7 +60,7 @@ constexpr const char *exit_codes =
 
 constexpr const char *shared_options =
   "Also, with every command (described by latcon --help): --set, --output-dir, --threads, --quiet,\n"
-  "--verbose, --resume, --dry-run, --yes.\n";
+  "--no-report, --verbose, --resume, --dry-run, --yes.\n";
 
 // Describes the studies that a user can give.
 std::string study_choices()
@@ -156,6 +156,7 @@ support::ExitCode run_program(int argc, char **argv)
     ->check(CLI::Range(1u, 4096u))
     ->type_name("N");
   app.add_flag("--quiet", options.quiet, "print errors only");
+  app.add_flag("--no-report", options.no_report, "of cracks, studies and comparisons: draw neither pictures nor page");
   app.add_flag("--verbose", options.verbose, "print every row that was checked before and during a crack");
   app.add_flag("--resume", options.resume, "continue from the last checkpoint, or keep the finished runs of a study");
   app.add_flag("--dry-run", options.dry_run, "check the input, print the resolved case and its cost, run nothing");
@@ -224,7 +225,6 @@ support::ExitCode run_program(int argc, char **argv)
                      "latcon fracture quick --set \"Loading/strain y=1.7\"", "", run_fracture);
   fracture_command->add_flag("--skip-verification", options.skip_verification,
                              "run the crack unverified; noted in every output");
-  fracture_command->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
   CLI::App *gate_command = add_case_command("gate", "check the claims that wait before a crack, run none",
                                             "latcon gate quick", "-gate", verify_before_cracks);
   for (CLI::App *of_crack : {fracture_command, gate_command})
@@ -268,7 +268,6 @@ support::ExitCode run_program(int argc, char **argv)
   keep(study_command, study_chosen, "shard", "--shard", "I/N", std::string(),
        "run one of N shares of the runs, without verdict; then --collect");
   keep(study_command, study_chosen, "collect", "--collect", "run nothing: judge the runs of all shards");
-  study_command->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
 
   CLI::App *batch_command = add_study_command("batch", "a study as a job array of a cluster",
                                               "latcon batch paper --slurm --tasks 50", batch_chosen);
@@ -313,7 +312,6 @@ support::ExitCode run_program(int argc, char **argv)
   keep(compare_command, compared, "excluded", "--exclude", "X,Y,R", Words(),
        "X,Y,R, centre and radius of a circle in the undeformed sheet whose sites are not compared, as at a "
        "crack tip; repeatable");
-  compare_command->add_flag("--no-report", options.no_report, "of two cracks, draw no page");
   compare_command->callback(
     [&]
     {

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <iostream>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +14,7 @@
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/elements/elements.h"
+#include "verification/input/files.h"
 
 namespace latcon::commands
 {
@@ -23,48 +23,57 @@ namespace
 
 constexpr bool quick = true; // a few seconds before every crack
 
-// Cached verdicts, as found by the root rank.
+// Verdicts that may be used, as found by the root rank.
 struct Stored
 {
-  std::string key;                      // inputs that the verdicts depend on; empty: not known
-  std::string text;                     // content of the stored file; empty: none that can be read
-  std::string note;                     // message for the user; empty: no problem
-  std::shared_ptr<void> turn = nullptr; // of the root rank, to check the claims
+  std::string key;  // inputs that the verdicts depend on; empty: not known
+  std::string text; // of the verdicts; empty: none that can be used
+  std::string note; // message for the user; empty: no problem
 };
 
-std::string unused(const std::string &path, const std::string &reason)
+// Returns the text of a file of verdicts that may stand for a check; empty: there is no file. Of verdicts that refuse a
+// crack, rows may be missing. Throws UnusableVerdicts.
+std::string usable_text(const std::string &file, const claims::VerdictKey &key,
+                        const std::vector<claims::Claim> &required, const bool libraries_may_be_updated)
 {
-  return path + " is not used: " + reason;
+  const std::optional<std::string> text = claims::stored_text(file);
+  if (!text)
+    return "";
+  const claims::Verdicts verdicts = claims::read_verdicts(key, *text);
+  std::string problem = verdicts.library_problem(libraries_may_be_updated);
+  if (problem.empty() && verdicts.results.verdict() != output::Verdict::fails)
+    problem = verdicts.acceptance_problem(required);
+  if (!problem.empty())
+    throw claims::UnusableVerdicts(problem);
+  return *text;
 }
 
 Stored look_up(const input::Case &input, const std::vector<claims::Claim> &required, const bridge::Laws &laws,
                const std::optional<std::string> &folder)
 {
   Stored stored;
+  std::string file;
   try
   {
     const claims::VerdictKey key = claims::verdict_key(input, required, laws, quick, support::n_ranks());
     stored.key = key.text;
-    stored.text = claims::shipped_verdicts(key);
+    try
+    {
+      stored.text = usable_text(claims::verdicts_file(input::data_folder() + "/verdicts", key), key, required, true);
+    }
+    catch (const claims::UnusableVerdicts &) // another BLAS, say: as if the program had been packed without
+    {
+    }
     if (!stored.text.empty())
       return stored;
     if (!folder)
-      stored.note = "neither XDG_CACHE_HOME nor HOME is set: no verdicts are kept";
-    else
-      try
-      {
-        const claims::VerdictStore store(*folder);
-        stored.text = store.read(key).value_or("");
-        if (stored.text.empty())
-        {
-          stored.turn = store.wait_for_turn(key);
-          stored.text = store.read(key).value_or(""); // by the process that had its turn before
-        }
-      }
-      catch (const claims::UnusableVerdicts &error)
-      {
-        stored.note = unused(claims::VerdictStore(*folder).path(key), error.what());
-      }
+      throw std::runtime_error("neither XDG_CACHE_HOME nor HOME is set");
+    file = claims::verdicts_file(*folder, key);
+    stored.text = usable_text(file, key, required, false);
+  }
+  catch (const claims::UnusableVerdicts &error)
+  {
+    stored.note = file + " is not used: " + error.what();
   }
   catch (const std::exception &error)
   {
@@ -86,7 +95,7 @@ bool keep(const claims::VerdictKey &key, const claims::Verdicts &verdicts, const
     return false;
   try
   {
-    claims::VerdictStore(*folder).write(key, claims::verdicts_text(key, verdicts));
+    claims::store_verdicts(*folder, key, verdicts);
     return true;
   }
   catch (const support::OutputError &error)
@@ -108,43 +117,26 @@ struct Group
 Group verified(const input::Case &input, const std::vector<claims::Claim> &required, const bridge::Laws &laws,
                const Run &run)
 {
-  const std::optional<std::string> folder = claims::VerdictStore::folder_of_user();
+  const std::optional<std::string> folder = claims::verdicts_folder_of_user();
   Stored stored = run.is_root() ? look_up(input, required, laws, folder) : Stored();
   for (std::string *text : {&stored.key, &stored.text, &stored.note})
     *text = support::broadcast(*text);
   const claims::VerdictKey key(stored.key);
-  const std::string path = folder ? claims::VerdictStore(*folder).path(key) : "";
-  // Of verdicts that refuse a crack, rows may be missing.
-  const auto problem = [&](const output::Results &results)
-  { return results.verdict() == output::Verdict::fails ? "" : claims::acceptance_problem(results, required); };
-
-  std::optional<claims::Verdicts> verdicts;
-  if (!stored.text.empty())
-    try
-    {
-      verdicts = claims::read_verdicts(key, stored.text);
-      if (const std::string found = problem(verdicts->results); !found.empty())
-      {
-        verdicts.reset();
-        throw claims::UnusableVerdicts(found);
-      }
-    }
-    catch (const claims::UnusableVerdicts &error)
-    {
-      append(stored.note, unused(path, error.what()));
-    }
-  const bool reused = verdicts.has_value();
+  const bool reused = !stored.text.empty();
+  claims::Verdicts verdicts =
+    reused ? claims::read_verdicts(key, stored.text)
+           : claims::Verdicts(elements::elements().run_claims(input, required, quick, claims::Shells::own, laws, {}));
   bool kept = false;
   if (!reused)
   {
-    verdicts.emplace(elements::elements().run_claims(input, required, quick, claims::Shells::own, laws, {}));
-    if (const std::string found = problem(verdicts->results); !found.empty())
-      verdicts->results.add(output::not_computed(required.front().name, "rows that a crack waits for", found));
+    if (verdicts.results.verdict() != output::Verdict::fails)
+      if (const std::string problem = verdicts.acceptance_problem(required); !problem.empty())
+        verdicts.results.add(output::not_computed(required.front().name, "rows that a crack waits for", problem));
     if (run.is_root() && !key.text.empty())
-      kept = keep(key, *verdicts, folder, stored.note);
+      kept = keep(key, verdicts, folder, stored.note);
   }
 
-  Group group{std::move(*verdicts), {}, stored.note, {}, {}};
+  Group group{std::move(verdicts), {}, stored.note, {}, {}};
   group.record = {
     {"hash", key.text.empty() ? "" : key.hash}, {"reused", reused}, {"checked_at", group.verdicts.checked_at}};
   if (!stored.note.empty())
@@ -152,7 +144,8 @@ Group verified(const input::Case &input, const std::vector<claims::Claim> &requi
   group.origin = reused ? "verdicts of " + group.verdicts.checked_at + ", hash " + key.hash + ", reused"
                         : "checked now" + (kept ? ", hash " + key.hash + ", kept" : std::string());
   if (reused)
-    group.refusal = " (" + group.origin + "; to have them checked again, delete " + path + ")";
+    group.refusal = " (" + group.origin + "; to have them checked again, delete " +
+                    claims::verdicts_file(folder.value_or(""), key) + ")";
   return group;
 }
 
@@ -165,7 +158,7 @@ std::string keep_for_cracks(const input::Case &input, const claims::Claim &claim
     try
     {
       keep(claims::verdict_key(input, {claim}, {}, quick, support::n_ranks()), claims::Verdicts(outcome),
-           claims::VerdictStore::folder_of_user(), note);
+           claims::verdicts_folder_of_user(), note);
     }
     catch (const std::exception &error)
     {

@@ -36,6 +36,14 @@ nlohmann::ordered_json json_of(const Value &value)
   return *value;
 }
 
+// Reads what json_of() wrote.
+Value value_of(const nlohmann::json &number)
+{
+  if (number.is_null())
+    return {};
+  return number.is_string() ? std::stod(number.get<std::string>()) : number.get<double>();
+}
+
 std::string csv_of(const Value &value)
 {
   return value ? support::full_precision(*value) : "";
@@ -217,6 +225,23 @@ std::string Results::json() const
   document["claims"] = std::move(claims);
   document["verdict"] = to_string(verdict());
   return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+Results Results::read(const std::string &json)
+{
+  const nlohmann::json document = nlohmann::json::parse(json);
+  Results results;
+  for (const nlohmann::json &row : document.at("claims"))
+    results.add({row.at("claim"),
+                 row.at("quantity"),
+                 row.at("unit"),
+                 value_of(row.at("lattice")),
+                 value_of(row.at("continuum")),
+                 value_of(row.at("theory")),
+                 value_of(row.at("error")),
+                 {value_of(row.at("tolerance")), row.at("reason")},
+                 row.at("gate")});
+  return results;
 }
 
 std::string Results::csv() const

@@ -115,6 +115,10 @@ public:
   /// "-inf".
   [[nodiscard]] std::string json() const;
 
+  /// Returns the rows of such a text; verdicts follow from the numbers.
+  /// @throws nlohmann::json::exception, std::logic_error if it is no such text
+  [[nodiscard]] static Results read(const std::string &json);
+
   /// Returns the rows as CSV (RFC 4180, one header line, columns as in json()). Empty values are empty fields.
   [[nodiscard]] std::string csv() const;
 

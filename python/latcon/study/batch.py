@@ -82,7 +82,7 @@ def write_batch(program: Program, printed: Printed, options: Mapping[str, Any]) 
     # The same choices, from any folder.
     study = requested.file if requested.kept else options["study"]
     words = [options["program"], "study", os.path.abspath(study) if os.path.exists(study) else study]
-    words += [*set_options(requested.overrides), *(f"--{name.replace('_', '-')}" for name in ("quick", "skip_verification", "yes") if options[name])]
+    words += [*set_options(requested.overrides), *(f"--{name.replace('_', '-')}" for name in ("quick", "skip_verification", "no_report", "yes") if options[name])]
     command = shlex.join([*words, "--output-dir", os.path.abspath(directory)])
     runs, collect = os.path.join(folder, "runs.sh"), os.path.join(folder, "collect.sh")
     write_file(runs, _directives(options, "latcon-runs", f"{folder}/runs-%a.log") + _ARRAY.format(
