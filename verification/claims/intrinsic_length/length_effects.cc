@@ -32,12 +32,9 @@ std::array<Series, lattice::n_shells> series_by_shell(const lattice::TriangularL
     if (const lattice::Shell *shell = material.shell(kind))
     {
       const Eigen::Vector2d R = lattice.bond_vector(kind);
-      const double length = lattice.rest_length(kind), stretch = (F * R).norm() / length, along = N.dot(R);
-      const Eigen::Vector2d n = (F * R).normalized();
+      const double length = lattice.rest_length(kind), along = N.dot(R);
       const Eigen::Matrix2d H =
-        lattice::cross_section(*shell, lattice) / length / mass *
-        (lattice::stiffness(shell->law, stretch) * n * n.transpose() +
-         lattice::force(shell->law, stretch) / stretch * (Eigen::Matrix2d::Identity() - n * n.transpose()));
+        lattice::cross_section(*shell, lattice) / length / mass * bridge::bond_tangent(shell->law, F * R / length);
       Series &series = shells[lattice::shell_of(kind)];
       series.A2 += std::pow(along, 2) * H;
       series.A4 += std::pow(along, 4) / 12. * H;
@@ -87,12 +84,8 @@ Parts lattice_parts(const lattice::TriangularLattice &lattice, const lattice::Ma
       continue;
     const double length = lattice.rest_length(kind);
     const Eigen::Vector2d N = lattice.bond_vector(kind) / length;
-    const double weight = lattice::cross_section(*shell, lattice) * length / lattice.site_area();
-    const double stretch = (F * N).norm();
-    const Eigen::Vector2d n = (F * N).normalized();
-    const Eigen::Matrix2d h =
-      lattice::stiffness(shell->law, stretch) * n * n.transpose() +
-      lattice::force(shell->law, stretch) / stretch * (Eigen::Matrix2d::Identity() - n * n.transpose());
+    const double weight = bridge::bond_weight(lattice, *shell, kind);
+    const Eigen::Matrix2d h = bridge::bond_tangent(shell->law, F * N);
     // With G N by the free index J.
     parts.positive += matrix_of([&](const Unit &A, const Unit &B)
                                 { return weight * h(A.i, B.i) * (A.entries * N).dot(B.entries * N); });
@@ -280,11 +273,9 @@ double edge_decay(double spacing, const lattice::Material &material, double stre
     {
       const Eigen::Vector2d R = sheet.bond_vector(kind);
       const Eigen::Vector2d bond(stretch * R.x(), stretch_across * R.y());
-      const double length = sheet.rest_length(kind), lambda = bond.norm() / length;
-      const double across = std::pow(bond.normalized().y(), 2);
+      const double length = sheet.rest_length(kind);
       const double k =
-        lattice::cross_section(*shell, sheet) / length *
-        (lattice::stiffness(shell->law, lambda) * across + lattice::force(shell->law, lambda) / lambda * (1. - across));
+        lattice::cross_section(*shell, sheet) / length * bridge::bond_tangent(shell->law, bond / length)(1, 1);
       const long rows_apart = std::lround(R.y() / pitch);
       if (rows_apart == 1)
         adjacent += k;
