@@ -162,28 +162,17 @@ bool NearTipSampler::samples_at(std::size_t tip) const
   return X >= options_.X_begin && X <= options_.X_end;
 }
 
-// Returns those of `n` rows or columns that a grid around the tip may need.
-lattice::Rows NearTipSampler::around(std::size_t centre, int before, int after, std::size_t n) const
+// Returns the rows, or the columns, that a grid around the tip may need.
+lattice::Rows NearTipSampler::around(std::size_t tip, bool rows) const
 {
   // One beyond the grid, up to four between the tip and the axis, and those of bonds that reach a site.
   const int more = 5 + static_cast<int>(lattice_.reach());
+  const bool is_across = rows == (lattice_.orientation() == lattice::Orientation::rows_along_crack);
+  const int before = is_across ? grid_.half_height : grid_.behind, after = is_across ? grid_.half_height : grid_.ahead;
+  const std::size_t centre = rows ? lattice_.row_of(tip) : lattice_.column_of(tip);
   const auto first = static_cast<std::ptrdiff_t>(centre) - before - more;
   return {static_cast<std::size_t>(std::max<std::ptrdiff_t>(first, 0)),
-          std::min(n, centre + static_cast<std::size_t>(after + more + 1))};
-}
-
-lattice::Rows NearTipSampler::rows_around(std::size_t tip) const
-{
-  const bool along = lattice_.orientation() == lattice::Orientation::rows_along_crack;
-  return around(lattice_.row_of(tip), along ? grid_.half_height : grid_.behind, along ? grid_.half_height : grid_.ahead,
-                lattice_.rows());
-}
-
-lattice::Rows NearTipSampler::columns_around(std::size_t tip) const
-{
-  const bool along = lattice_.orientation() == lattice::Orientation::rows_along_crack;
-  return around(lattice_.column_of(tip), along ? grid_.behind : grid_.half_height,
-                along ? grid_.ahead : grid_.half_height, lattice_.columns());
+          std::min(rows ? lattice_.rows() : lattice_.columns(), centre + static_cast<std::size_t>(after + more + 1))};
 }
 
 const NearTipSample *NearTipSampler::sample(const lattice::State &state, std::size_t tip)
@@ -261,7 +250,7 @@ NearTipSample NearTipSampler::look(const lattice::State &state, const Axis &axis
     sample.sums.add_site(twice(offset.x(), grid_.pitch_X), twice(offset.y(), grid_.pitch_Y), values);
     sample.sites.emplace_back(position - axis.current);
   };
-  const lattice::Rows rows = rows_around(tip), columns = columns_around(tip);
+  const lattice::Rows rows = rows_around(tip), columns = around(tip, false);
   for (std::size_t row = rows.begin; row < rows.end; ++row)
     for (std::size_t column = columns.begin; column < std::min(columns.end, lattice_.sites_in_row(row)); ++column)
       look_at(lattice_.index(row, column));

@@ -190,7 +190,7 @@ public:
   /// Returns true if sample() takes a sample at this position of the tip, unless the tip rests.
   bool samples_at(std::size_t tip) const;
   /// Returns the rows that sample() needs at this position of the tip.
-  lattice::Rows rows_around(std::size_t tip) const;
+  lattice::Rows rows_around(std::size_t tip) const { return around(tip, true); }
 
   /// Folds the remaining samples with the known part of the path. To be called once, after the last sample.
   void finish();
@@ -246,8 +246,7 @@ private:
     Eigen::Vector2d reference, current; // of the tip [m]
   };
   Axis axis(const lattice::State &state, std::size_t tip) const;
-  lattice::Rows around(std::size_t centre, int before, int after, std::size_t n) const;
-  lattice::Rows columns_around(std::size_t tip) const;
+  lattice::Rows around(std::size_t tip, bool rows) const;
   NearTipSample look(const lattice::State &state, const Axis &axis, std::size_t tip, bool with_tensors);
   bool descends(double X) const;
   void fold_until(double X);

@@ -181,18 +181,6 @@ std::array<Oscillation, 2> measure(const WaveContinuum &medium, const Eigen::Mat
 // Amplitude of the wave; nonlinear terms change frequencies by its square.
 constexpr double memory_wave_strain = 1e-4;
 
-// The error is a series in h^2 with terms of (w h)^2 / 12 and w h^2 / (12 tau) (theory-viscoelastic.md, eq. (V.7)).
-double memory_step(const WaveContinuum &medium, const bridge::MemoryWave &wave)
-{
-  const double rate = std::abs(wave.rate);
-  support::Extremes steps;
-  steps.add(0.2 / rate);
-  for (const continuum::MaxwellFibres &fibres : medium.memory->families())
-    for (const continuum::MaxwellBranch &branch : fibres.branches)
-      steps.add(std::sqrt(0.1 * branch.relaxation_time / rate));
-  return steps.smallest();
-}
-
 // Relaxation times of branches by their numbers [s].
 std::vector<double> relaxation_times(const continuum::FibreMemory &memory)
 {
@@ -201,6 +189,17 @@ std::vector<double> relaxation_times(const continuum::FibreMemory &memory)
     for (std::size_t i = 0; i < fibres.branches.size(); ++i)
       times[fibres.first_number + i] = fibres.branches[i].relaxation_time;
   return times;
+}
+
+// The error is a series in h^2 with terms of (w h)^2 / 12 and w h^2 / (12 tau) (theory-viscoelastic.md, eq. (V.7)).
+double memory_step(const WaveContinuum &medium, const bridge::MemoryWave &wave)
+{
+  const double rate = std::abs(wave.rate);
+  support::Extremes steps;
+  steps.add(0.2 / rate);
+  for (const double time : relaxation_times(*medium.memory))
+    steps.add(std::sqrt(0.1 * time / rate));
+  return steps.smallest();
 }
 
 ElementWave measure(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
