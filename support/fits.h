@@ -9,7 +9,7 @@ namespace latcon::support
 {
 
 /// Returns the minimiser of a function with one minimum between a and b, to within `tolerance`; NaN if the function is
-/// not finite at a point that is compared.
+/// NaN at a point that is compared. It may be infinite beside the minimum.
 template <typename Function>
 double golden_section(const Function &function, double a, double b, double tolerance)
 {
@@ -17,7 +17,7 @@ double golden_section(const Function &function, double a, double b, double toler
   double x[] = {b - ratio * (b - a), a + ratio * (b - a)}, f[] = {function(x[0]), function(x[1])};
   while (b - a > tolerance)
   {
-    if (!std::isfinite(f[0]) || !std::isfinite(f[1]))
+    if (std::isnan(f[0]) || std::isnan(f[1]))
       return std::nan("");
     const std::size_t low = f[0] < f[1] ? 0 : 1, other = 1 - low;
     (low == 0 ? b : a) = x[other];

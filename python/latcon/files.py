@@ -100,14 +100,17 @@ def read_table(path: pathlib.Path, units: Mapping[str, str]) -> pd.DataFrame:
 
 def read_columns(path: pathlib.Path, columns: Sequence[str] | None, texts: Sequence[str] = (), finite: bool = True
                  ) -> dict[str, Any]:
-    """Returns columns of numbers of a CSV file, None for all, as arrays by name, and columns `texts` of words; other columns
-    are ignored. Damaged is also a file with numbers that are not finite, if `finite`.
+    """Returns columns of numbers of a CSV file as arrays by name, and columns `texts` of words; other columns are ignored.
+    columns: None for all, those of `texts` that there are being of words. Damaged is also a file with numbers that are not
+    finite, if `finite`.
     """
     rows = list(csv.reader(read_text(path).splitlines()))
     if not rows:
         raise UnreadableFile(path, "empty")
     header = rows[0]
-    columns = header if columns is None else columns
+    if columns is None:
+        texts = [name for name in texts if name in header]
+        columns = [name for name in header if name not in texts]
     if missing := [name for name in (*texts, *columns) if name not in header]:
         raise UnreadableFile(path, f"has no column {missing[0]!r}")
     for line, row in enumerate(rows[1:], start=2):

@@ -25,8 +25,8 @@ enum class CrackPattern
 /// Returns the name of a pattern in output files: "straight", "oscillating", "branching", "arrested", "undecided".
 const char *to_string(CrackPattern pattern);
 
-/// Data of the sheet and thresholds of the measurement. The first four have no default; NaN is rejected. Lengths are in
-/// the reference configuration; X is 0 at the left edge.
+/// Data of the sheet, of which the first four have no default and NaN is rejected, and thresholds of the measurement,
+/// which no case sets. Lengths are in the reference configuration; X is 0 at the left edge.
 struct CrackMeasurementOptions
 {
   double strip_length = std::numeric_limits<double>::quiet_NaN();    ///< L [m], > 0
@@ -40,7 +40,7 @@ struct CrackMeasurementOptions
   /// Fraction of L before the held right edge that is excluded [-], because the edge carries load there.
   double clamp_fraction = 0.1;
 
-  /// Shortest wavelength of the search, in d, >= 6. The path is averaged over columns of 2 d, and a wavelength needs at
+  /// Shortest wavelength of the search, in d. The path is averaged over columns of 2 d, and a wavelength needs at
   /// least three of them; known wavelengths in rubber are longer (16 d and more).
   double min_wavelength = 8.;
   /// Smallest amplitude of an oscillation, in d. A tip that hops between two neighbouring rows shows at most (4 / pi)

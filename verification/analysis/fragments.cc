@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+
+#include <boost/pending/disjoint_sets.hpp>
 
 namespace latcon::analysis
 {
@@ -17,34 +20,21 @@ struct Piece
 // Finds the connected pieces, in the order of their lowest sites.
 std::vector<Piece> pieces(const lattice::State &state, const lattice::TriangularLattice &lattice)
 {
-  std::vector<std::vector<std::size_t>> neighbours(lattice.n_places());
+  boost::disjoint_sets_with_storage<> connections(lattice.n_places());
   for_each_bond(state, lattice,
                 [&](const lattice::Bond &bond)
-                {
-                  neighbours[bond.near].push_back(lattice.canonical_place(bond.far));
-                  neighbours[lattice.canonical_place(bond.far)].push_back(bond.near);
-                });
+                { connections.union_set(bond.near, lattice.canonical_place(bond.far)); });
   std::vector<Piece> all;
-  std::vector<std::uint8_t> seen(lattice.n_places(), 0);
-  for (std::size_t start = 0; start < lattice.n_places(); ++start)
+  std::map<std::size_t, std::size_t> numbers;
+  for (std::size_t place = 0; place < lattice.n_places(); ++place)
   {
-    if (!lattice.is_site(start) || state.removed[start] != 0 || seen[start] != 0)
+    if (!lattice.is_site(place) || state.removed[place] != 0)
       continue;
-    Piece piece;
-    piece.places.push_back(start);
-    seen[start] = 1;
-    for (std::size_t i = 0; i < piece.places.size(); ++i)
-    {
-      const std::size_t place = piece.places[i];
-      piece.held = piece.held || state.held[place] != 0;
-      for (const std::size_t next : neighbours[place])
-        if (seen[next] == 0)
-        {
-          seen[next] = 1;
-          piece.places.push_back(next);
-        }
-    }
-    all.push_back(std::move(piece));
+    const std::size_t number = numbers.try_emplace(connections.find_set(place), all.size()).first->second;
+    if (number == all.size())
+      all.emplace_back();
+    all[number].places.push_back(place);
+    all[number].held = all[number].held || state.held[place] != 0;
   }
   return all;
 }
@@ -90,35 +80,28 @@ double bridged_length(const lattice::State &state, const lattice::TriangularLatt
   const auto strip_of = [&](std::size_t place)
   { return static_cast<std::ptrdiff_t>(std::floor((lattice.reference(place).x() - X_from) / width)); };
 
-  // Held sites below the middle, and all sites connected to them.
-  std::vector<std::uint8_t> reached(lattice.n_places(), 0);
-  std::vector<std::size_t> places;
-  for (std::size_t place = 0; place < lattice.n_places(); ++place)
-    if (lattice.is_site(place) && state.held[place] != 0 && lattice.reference(place).y() < 0.)
-    {
-      reached[place] = 1;
-      places.push_back(place);
-    }
+  boost::disjoint_sets_with_storage<> connections(lattice.n_places());
+  for_each_bond(state, lattice,
+                [&](const lattice::Bond &bond)
+                {
+                  if (strip_of(bond.near) == strip_of(bond.far))
+                    connections.union_set(bond.near, bond.far);
+                });
+  // Pieces of strips with a held site below the middle, and the strips in which such a piece has one above it.
+  std::vector<std::uint8_t> begins(lattice.n_places(), 0);
   std::vector<std::uint8_t> bridged(static_cast<std::size_t>(std::max<std::ptrdiff_t>(n_strips, 0)), 0);
-  for (std::size_t i = 0; i < places.size(); ++i)
-  {
-    const std::size_t place = places[i];
-    const std::ptrdiff_t strip = strip_of(place);
-    if (strip < 0 || strip >= n_strips)
-      continue;
-    if (state.held[place] != 0 && lattice.reference(place).y() > 0.)
-      bridged[static_cast<std::size_t>(strip)] = 1;
-    for_each_bond_of_site(state, lattice, place,
-                          [&](const lattice::Bond &bond)
-                          {
-                            const std::size_t other = bond.near == place ? bond.far : bond.near;
-                            if (reached[other] == 0 && strip_of(other) == strip)
-                            {
-                              reached[other] = 1;
-                              places.push_back(other);
-                            }
-                          });
-  }
+  for (const bool above : {false, true})
+    for (std::size_t place = 0; place < lattice.n_places(); ++place)
+    {
+      const double Y = lattice.reference(place).y();
+      if (!lattice.is_site(place) || state.held[place] == 0 || !(above ? Y > 0. : Y < 0.))
+        continue;
+      const std::ptrdiff_t strip = strip_of(place);
+      if (!above)
+        begins[connections.find_set(place)] = 1;
+      else if (strip >= 0 && strip < n_strips && begins[connections.find_set(place)] != 0)
+        bridged[static_cast<std::size_t>(strip)] = 1;
+    }
   return width * static_cast<double>(std::count(bridged.begin(), bridged.end(), 1));
 }
 

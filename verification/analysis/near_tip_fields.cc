@@ -19,47 +19,17 @@ constexpr std::size_t calls_of_rest = 10;
 constexpr std::size_t samples_for_tensors = 4;
 
 // Signs of components under the reflection Y -> -Y: -1 for components with an odd number of indices y, otherwise 1.
-struct MirrorSigns
+NearTipSums::Values mirror_signs(NearTipSums::Part part)
 {
-  NearTipSums::Motion motion;
-  NearTipSums::Tensors tensors;
-  NearTipSums::Gradients gradients;
-};
-
-const MirrorSigns &mirror_signs()
-{
-  static const MirrorSigns signs = []
-  {
-    MirrorSigns s;
-    s.motion << 1, -1, 1, -1, 1, -1;
-    s.tensors << 1, -1, -1, 1, 1, -1, -1, 1, 1, -1, -1, 1;
-    s.gradients << 1, -1, 1, -1, 1, -1; // xXX, xXY, xYY, yXX, yXY, yYY
-    return s;
-  }();
+  NearTipSums::Values signs(NearTipSums::n_components[part]);
+  if (part == NearTipSums::tensors)
+    signs << 1, -1, -1, 1, 1, -1, -1, 1, 1, -1, -1, 1;
+  else
+    signs << 1, -1, 1, -1, 1, -1; // of vectors; xXX, xXY, xYY, yXX, yXY, yYY
   return signs;
 }
 
-template <typename Array>
-Eigen::Vector2d vector_in(const Array &values, Eigen::Index first)
-{
-  return {values[first], values[first + 1]};
-}
-
-template <typename Array>
-Eigen::Matrix2d tensor_in(const Array &values, Eigen::Index first)
-{
-  Eigen::Matrix2d tensor;
-  tensor << values[first], values[first + 1], values[first + 2], values[first + 3];
-  return tensor;
-}
-
-template <typename Array>
-Eigen::Matrix2d symmetric_in(const Array &values, Eigen::Index first)
-{
-  Eigen::Matrix2d tensor;
-  tensor << values[first], values[first + 1], values[first + 1], values[first + 2];
-  return tensor;
-}
+using RowMajor = Eigen::Matrix<double, 2, 2, Eigen::RowMajor>;
 
 NearTipGrid make_grid(const lattice::TriangularLattice &lattice, const NearTipOptions &options)
 {
@@ -92,88 +62,55 @@ NearTipField::NearTipField(const NearTipGrid &grid_of_points) : grid(grid_of_poi
     tensors->assign(grid.size(), Eigen::Matrix2d::Constant(none));
 }
 
-template <int n>
-void NearTipSums::Sum<n>::make_room(const NearTipGrid &grid)
+void NearTipSums::make_room(Part part)
 {
-  if (weights.size() > 0)
+  if (sums_[part].weights.size() > 0)
     return;
-  values.setZero(n, static_cast<Eigen::Index>(grid.size()));
-  weights.setZero(static_cast<Eigen::Index>(grid.size()));
+  sums_[part].values.setZero(n_components[part], static_cast<Eigen::Index>(grid_.size()));
+  sums_[part].weights.setZero(static_cast<Eigen::Index>(grid_.size()));
 }
 
-template <int n>
-void NearTipSums::Sum<n>::add(std::size_t point, double weight, const Values &site)
+void NearTipSums::add_site(int i2, int j2, const Site &site)
 {
-  const auto p = static_cast<Eigen::Index>(point);
-  values.col(p) += weight * site;
-  weights[p] += weight;
-}
-
-template <int n>
-void NearTipSums::Sum<n>::add(const Sum &other, const NearTipGrid &grid, const Values *signs)
-{
-  if (other.weights.size() == 0)
-    return;
-  make_room(grid);
-  if (signs == nullptr)
-  {
-    values += other.values;
-    weights += other.weights;
-    return;
-  }
-  for (int j = -grid.half_height; j <= grid.half_height; ++j)
-    for (int i = -grid.behind; i <= grid.ahead; ++i)
-    {
-      const auto to = static_cast<Eigen::Index>(grid.point(i, j));
-      const auto from = static_cast<Eigen::Index>(grid.point(i, -j));
-      values.col(to) += *signs * other.values.col(from);
-      weights[to] += other.weights[from];
-    }
-}
-
-template <int n>
-auto NearTipSums::Sum<n>::mean(std::size_t point) const -> std::optional<Values>
-{
-  const auto p = static_cast<Eigen::Index>(point);
-  if (weights.size() == 0 || !(weights[p] > 0.))
-    return std::nullopt;
-  return Values(values.col(p) / weights[p]);
-}
-
-NearTipSums::NearTipSums(const NearTipGrid &grid) : grid_(grid) {}
-
-void NearTipSums::add_site(int i2, int j2, const Motion &motion, const std::optional<Tensors> &tensors,
-                           const std::optional<Gradients> &gradients)
-{
-  motion_.make_room(grid_);
-  if (tensors)
-    tensors_.make_room(grid_);
-  if (gradients)
-    gradients_.make_room(grid_);
   // An odd number is half-way between two points; no site is half-way in both directions.
   const auto low = [](int twice) { return twice >= 0 ? twice / 2 : -((1 - twice) / 2); };
   const int i_low = low(i2), i_high = low(i2 + 1), j_low = low(j2), j_high = low(j2 + 1);
   const double weight = (i_low == i_high ? 1. : 0.5) * (j_low == j_high ? 1. : 0.5);
-  for (int j = j_low; j <= j_high; ++j)
-    for (int i = i_low; i <= i_high; ++i)
-    {
-      if (!grid_.contains(i, j))
-        continue;
-      const std::size_t point = grid_.point(i, j);
-      motion_.add(point, weight, motion);
-      if (tensors)
-        tensors_.add(point, weight, *tensors);
-      if (gradients)
-        gradients_.add(point, weight, *gradients);
-    }
+  for (const Part part : {motion, tensors, gradients})
+  {
+    if (site[part].size() == 0)
+      continue;
+    make_room(part);
+    for (int j = j_low; j <= j_high; ++j)
+      for (int i = i_low; i <= i_high; ++i)
+        if (grid_.contains(i, j))
+        {
+          const auto point = static_cast<Eigen::Index>(grid_.point(i, j));
+          sums_[part].values.col(point) += weight * site[part];
+          sums_[part].weights[point] += weight;
+        }
+  }
 }
 
 void NearTipSums::add(const NearTipSums &other, bool mirrored)
 {
   samples_ += other.samples_;
-  motion_.add(other.motion_, grid_, mirrored ? &mirror_signs().motion : nullptr);
-  tensors_.add(other.tensors_, grid_, mirrored ? &mirror_signs().tensors : nullptr);
-  gradients_.add(other.gradients_, grid_, mirrored ? &mirror_signs().gradients : nullptr);
+  for (const Part part : {motion, tensors, gradients})
+  {
+    const Sum &from = other.sums_[part];
+    if (from.weights.size() == 0)
+      continue;
+    make_room(part);
+    const Values signs = mirrored ? mirror_signs(part) : Values::Ones(n_components[part]);
+    for (int j = -grid_.half_height; j <= grid_.half_height; ++j)
+      for (int i = -grid_.behind; i <= grid_.ahead; ++i)
+      {
+        const auto point = static_cast<Eigen::Index>(grid_.point(i, j));
+        const auto image = static_cast<Eigen::Index>(grid_.point(i, mirrored ? -j : j));
+        sums_[part].values.col(point) += signs * from.values.col(image);
+        sums_[part].weights[point] += from.weights[image];
+      }
+  }
 }
 
 NearTipField NearTipSums::mean() const
@@ -182,23 +119,29 @@ NearTipField NearTipSums::mean() const
   field.samples = samples_;
   for (std::size_t point = 0; point < grid_.size(); ++point)
   {
-    if (const std::optional<Motion> mean = motion_.mean(point))
+    const auto p = static_cast<Eigen::Index>(point);
+    const auto mean = [&](Part part) -> Values
     {
-      field.occupancy[point] = motion_.weights[static_cast<Eigen::Index>(point)] / static_cast<double>(samples_);
-      field.velocity[point] = vector_in(*mean, 0);
-      field.displacement[point] = vector_in(*mean, 2);
-      field.excess_displacement[point] = vector_in(*mean, 4);
+      const Sum &sum = sums_[part];
+      return sum.weights.size() > 0 && sum.weights[p] > 0. ? Values(sum.values.col(p) / sum.weights[p]) : Values();
+    };
+    if (const Values means = mean(motion); means.size() > 0)
+    {
+      field.occupancy[point] = sums_[motion].weights[p] / static_cast<double>(samples_);
+      field.velocity[point] = means.segment<2>(0);
+      field.displacement[point] = means.segment<2>(2);
+      field.excess_displacement[point] = means.segment<2>(4);
     }
-    if (const std::optional<Tensors> mean = tensors_.mean(point))
+    if (const Values means = mean(tensors); means.size() > 0)
     {
-      field.deformation_gradient[point] = tensor_in(*mean, 0);
-      field.first_piola_stress[point] = tensor_in(*mean, 4);
-      field.cauchy_stress[point] = tensor_in(*mean, 8);
+      field.deformation_gradient[point] = Eigen::Map<const RowMajor>(means.data());
+      field.first_piola_stress[point] = Eigen::Map<const RowMajor>(means.data() + 4);
+      field.cauchy_stress[point] = Eigen::Map<const RowMajor>(means.data() + 8);
     }
-    if (const std::optional<Gradients> mean = gradients_.mean(point))
+    if (const Values means = mean(gradients); means.size() > 0)
     {
-      field.strain_gradient_x[point] = symmetric_in(*mean, 0);
-      field.strain_gradient_y[point] = symmetric_in(*mean, 3);
+      field.strain_gradient_x[point] << means[0], means[1], means[1], means[2];
+      field.strain_gradient_y[point] << means[3], means[4], means[4], means[5];
     }
   }
   return field;
@@ -219,28 +162,17 @@ bool NearTipSampler::samples_at(std::size_t tip) const
   return X >= options_.X_begin && X <= options_.X_end;
 }
 
-// Returns those of `n` rows or columns that a grid around the tip may need.
-lattice::Rows NearTipSampler::around(std::size_t centre, int before, int after, std::size_t n) const
+// Returns the rows, or the columns, that a grid around the tip may need.
+lattice::Rows NearTipSampler::around(std::size_t tip, bool rows) const
 {
   // One beyond the grid, up to four between the tip and the axis, and those of bonds that reach a site.
   const int more = 5 + static_cast<int>(lattice_.reach());
+  const bool is_across = rows == (lattice_.orientation() == lattice::Orientation::rows_along_crack);
+  const int before = is_across ? grid_.half_height : grid_.behind, after = is_across ? grid_.half_height : grid_.ahead;
+  const std::size_t centre = rows ? lattice_.row_of(tip) : lattice_.column_of(tip);
   const auto first = static_cast<std::ptrdiff_t>(centre) - before - more;
   return {static_cast<std::size_t>(std::max<std::ptrdiff_t>(first, 0)),
-          std::min(n, centre + static_cast<std::size_t>(after + more + 1))};
-}
-
-lattice::Rows NearTipSampler::rows_around(std::size_t tip) const
-{
-  const bool along = lattice_.orientation() == lattice::Orientation::rows_along_crack;
-  return around(lattice_.row_of(tip), along ? grid_.half_height : grid_.behind, along ? grid_.half_height : grid_.ahead,
-                lattice_.rows());
-}
-
-lattice::Rows NearTipSampler::columns_around(std::size_t tip) const
-{
-  const bool along = lattice_.orientation() == lattice::Orientation::rows_along_crack;
-  return around(lattice_.column_of(tip), along ? grid_.behind : grid_.half_height,
-                along ? grid_.ahead : grid_.half_height, lattice_.columns());
+          std::min(rows ? lattice_.rows() : lattice_.columns(), centre + static_cast<std::size_t>(after + more + 1))};
 }
 
 const NearTipSample *NearTipSampler::sample(const lattice::State &state, std::size_t tip)
@@ -299,29 +231,26 @@ NearTipSample NearTipSampler::look(const lattice::State &state, const Axis &axis
     const Eigen::Vector2d position(state.x[place], state.y[place]);
     const Eigen::Vector2d displacement = position - axis.current - offset;
     const Eigen::Vector2d from_loading = position - options_.deformation * reference;
-    NearTipSums::Motion motion;
-    motion << state.vx[place], state.vy[place], displacement.x(), displacement.y(), from_loading.x(), from_loading.y();
-    std::optional<NearTipSums::Tensors> tensors;
-    std::optional<NearTipSums::Gradients> gradients;
+    NearTipSums::Site values;
+    values[NearTipSums::motion].resize(6);
+    values[NearTipSums::motion] << state.vx[place], state.vy[place], displacement, from_loading;
     if (with_tensors)
     {
       const lattice::SiteValues site = evaluator_.at(state, place);
-      const Eigen::Matrix2d &F = site.deformation_gradient, &P = site.first_piola_stress, &sigma = site.cauchy_stress;
-      tensors.emplace();
-      *tensors << F(0, 0), F(0, 1), F(1, 0), F(1, 1), P(0, 0), P(0, 1), P(1, 0), P(1, 1), sigma(0, 0), sigma(0, 1),
-        sigma(1, 0), sigma(1, 1);
+      values[NearTipSums::tensors].resize(12);
+      values[NearTipSums::tensors] << site.deformation_gradient.reshaped<Eigen::RowMajor>(),
+        site.first_piola_stress.reshaped<Eigen::RowMajor>(), site.cauchy_stress.reshaped<Eigen::RowMajor>();
       if (const std::optional<lattice::StrainGradient> G = gradient_fit_.at(state, place))
       {
-        gradients.emplace();
-        *gradients << G->x(0, 0), G->x(0, 1), G->x(1, 1), G->y(0, 0), G->y(0, 1), G->y(1, 1);
+        values[NearTipSums::gradients].resize(6);
+        values[NearTipSums::gradients] << G->x(0, 0), G->x(0, 1), G->x(1, 1), G->y(0, 0), G->y(0, 1), G->y(1, 1);
       }
     }
     const auto twice = [](double length, double pitch) { return static_cast<int>(std::lround(2. * length / pitch)); };
-    sample.sums.add_site(twice(offset.x(), grid_.pitch_X), twice(offset.y(), grid_.pitch_Y), motion, tensors,
-                         gradients);
+    sample.sums.add_site(twice(offset.x(), grid_.pitch_X), twice(offset.y(), grid_.pitch_Y), values);
     sample.sites.emplace_back(position - axis.current);
   };
-  const lattice::Rows rows = rows_around(tip), columns = columns_around(tip);
+  const lattice::Rows rows = rows_around(tip), columns = around(tip, false);
   for (std::size_t row = rows.begin; row < rows.end; ++row)
     for (std::size_t column = columns.begin; column < std::min(columns.end, lattice_.sites_in_row(row)); ++column)
       look_at(lattice_.index(row, column));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <deque>
 #include <optional>
 #include <vector>
@@ -66,16 +67,22 @@ struct NearTipField
 class NearTipSums
 {
 public:
-  explicit NearTipSums(const NearTipGrid &grid);
+  explicit NearTipSums(const NearTipGrid &grid) : grid_(grid) {}
 
-  // Components in the order of NearTipField.
-  using Motion = Eigen::Array<double, 6, 1>;    ///< velocity and both displacements
-  using Tensors = Eigen::Array<double, 12, 1>;  ///< deformation gradient and both stresses
-  using Gradients = Eigen::Array<double, 6, 1>; ///< of strain
+  /// Parts of the values of a site, with components in the order of NearTipField.
+  enum Part
+  {
+    motion,    ///< velocity and both displacements
+    tensors,   ///< deformation gradient and both stresses
+    gradients, ///< of strain
+    n_parts
+  };
+  static constexpr Eigen::Index n_components[n_parts] = {6, 12, 6};
+  using Values = Eigen::Array<double, Eigen::Dynamic, 1, 0, 12, 1>;
+  using Site = std::array<Values, n_parts>; ///< empty: no values of this part
 
   /// Adds a site at (i2, j2), twice its position in pitches. Sites beyond the grid are ignored.
-  void add_site(int i2, int j2, const Motion &motion, const std::optional<Tensors> &tensors,
-                const std::optional<Gradients> &gradients);
+  void add_site(int i2, int j2, const Site &site);
   void add_sample() { ++samples_; }
   void add(const NearTipSums &other, bool mirrored);
   std::size_t samples() const { return samples_; }
@@ -86,34 +93,26 @@ public:
   void archive(Archive &archive)
   {
     archive("samples", samples_);
-    archive("motion", motion_);
-    archive("gradients", gradients_);
-    archive("tensors", tensors_);
+    archive("motion", sums_[motion]);
+    archive("gradients", sums_[gradients]);
+    archive("tensors", sums_[tensors]);
     if constexpr (Archive::loads)
-      lattice::require_archived(motion_.fits(grid_) && gradients_.fits(grid_) && tensors_.fits(grid_),
-                                "the near-tip sums belong to another grid");
+      for (std::size_t part = 0; part < n_parts; ++part)
+      {
+        const Sum &sum = sums_[part];
+        lattice::require_archived(sum.values.cols() == 0 || sum.values.rows() == n_components[part],
+                                  "the numbers of near-tip `values` and `weights` do not match");
+        lattice::require_archived(sum.values.cols() == 0 || static_cast<std::size_t>(sum.values.cols()) == grid_.size(),
+                                  "the near-tip sums belong to another grid");
+      }
   }
 
 private:
-  /// Weighted sums of n components at the points. Allocated when the first site is added.
-  template <int n>
+  /// Weighted sums at the points, in columns. Allocated when the first site is added.
   struct Sum
   {
-    using Values = Eigen::Array<double, n, 1>;
-    Eigen::Array<double, n, Eigen::Dynamic> values;
+    Eigen::ArrayXXd values;
     Eigen::ArrayXd weights;
-
-    void make_room(const NearTipGrid &grid);
-    void add(std::size_t point, double weight, const Values &site);
-    /// @param signs signs of the components under reflection in Y; null: add `other` without reflection
-    void add(const Sum &other, const NearTipGrid &grid, const Values *signs);
-    std::optional<Values> mean(std::size_t point) const;
-    /// Returns true if there are values at all points, or at none.
-    bool fits(const NearTipGrid &grid) const
-    {
-      return weights.size() == values.cols() &&
-             (weights.size() == 0 || static_cast<std::size_t>(weights.size()) == grid.size());
-    }
 
     template <class Archive>
     void archive(Archive &archive)
@@ -122,17 +121,19 @@ private:
       std::vector<double> of_points(weights.data(), weights.data() + weights.size());
       archive("values", all);
       archive("weights", of_points);
-      lattice::require_archived(all.size() == n * of_points.size(),
+      const auto points = static_cast<Eigen::Index>(of_points.size());
+      const Eigen::Index components = points > 0 ? static_cast<Eigen::Index>(all.size()) / points : 0;
+      lattice::require_archived(all.size() == static_cast<std::size_t>(components * points),
                                 "the numbers of near-tip `values` and `weights` do not match");
-      values = Eigen::Map<const decltype(values)>(all.data(), n, static_cast<Eigen::Index>(all.size()) / n);
-      weights = Eigen::Map<const Eigen::ArrayXd>(of_points.data(), static_cast<Eigen::Index>(of_points.size()));
+      values = Eigen::Map<const Eigen::ArrayXXd>(all.data(), components, points);
+      weights = Eigen::Map<const Eigen::ArrayXd>(of_points.data(), points);
     }
   };
+  void make_room(Part part);
 
   NearTipGrid grid_;
   std::size_t samples_ = 0;
-  Sum<6> motion_, gradients_;
-  Sum<12> tensors_;
+  std::array<Sum, n_parts> sums_;
 };
 
 /// Sample of the neighbourhood of the tip.
@@ -189,7 +190,7 @@ public:
   /// Returns true if sample() takes a sample at this position of the tip, unless the tip rests.
   bool samples_at(std::size_t tip) const;
   /// Returns the rows that sample() needs at this position of the tip.
-  lattice::Rows rows_around(std::size_t tip) const;
+  lattice::Rows rows_around(std::size_t tip) const { return around(tip, true); }
 
   /// Folds the remaining samples with the known part of the path. To be called once, after the last sample.
   void finish();
@@ -245,8 +246,7 @@ private:
     Eigen::Vector2d reference, current; // of the tip [m]
   };
   Axis axis(const lattice::State &state, std::size_t tip) const;
-  lattice::Rows around(std::size_t centre, int before, int after, std::size_t n) const;
-  lattice::Rows columns_around(std::size_t tip) const;
+  lattice::Rows around(std::size_t tip, bool rows) const;
   NearTipSample look(const lattice::State &state, const Axis &axis, std::size_t tip, bool with_tensors);
   bool descends(double X) const;
   void fold_until(double X);

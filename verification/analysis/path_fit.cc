@@ -32,18 +32,10 @@ Eigen::MatrixXd linear_columns(const ColumnMeans &path, const Stretch &stretch, 
   return columns;
 }
 
-struct Projection
+// Values less their least-squares fit by columns.
+Eigen::VectorXd residual(const Eigen::MatrixXd &columns, const Eigen::VectorXd &values)
 {
-  Eigen::VectorXd coefficients;
-  Eigen::VectorXd residual;
-};
-
-Projection project(const Eigen::MatrixXd &columns, const Eigen::VectorXd &values)
-{
-  Projection result;
-  result.coefficients = support::least_squares(columns, values);
-  result.residual = values - columns * result.coefficients;
-  return result;
+  return values - columns * support::least_squares(columns, values);
 }
 
 } // namespace
@@ -90,7 +82,7 @@ std::optional<SinusoidFit> fit_sinusoid(const ColumnMeans &path, double shortest
     return std::nullopt;
 
   const auto unexplained = [&](double wave_number)
-  { return project(linear_columns(path, stretch, wave_number), path.Y()).residual.squaredNorm(); };
+  { return residual(linear_columns(path, stretch, wave_number), path.Y()).squaredNorm(); };
   const double lowest = 1. / stretch.length;
   const double highest = 1. / shortest_wavelength;
   const double step = 1. / (8. * stretch.length);
@@ -109,8 +101,7 @@ std::optional<SinusoidFit> fit_sinusoid(const ColumnMeans &path, double shortest
                                             std::min(highest, best_wave_number + step), 1e-7 * best_wave_number);
 
   const Eigen::MatrixXd columns = linear_columns(path, stretch, wave_number);
-  const Projection fit = project(columns, path.Y());
-  const Eigen::VectorXd &c = fit.coefficients;
+  const Eigen::VectorXd c = support::least_squares(columns, path.Y()), left = path.Y() - columns * c;
 
   SinusoidFit result{};
   result.curve = {stretch.origin, c(0), c(1) / stretch.length, c(2), c(3), 1. / wave_number};
@@ -126,7 +117,7 @@ std::optional<SinusoidFit> fit_sinusoid(const ColumnMeans &path, double shortest
                            const double phase = 2. * M_PI * wave_number * (X - stretch.origin);
                            return 2. * M_PI * (X - stretch.origin) * (c(2) * std::cos(phase) - c(3) * std::sin(phase));
                          });
-  const NoiseFit with_sinusoid = fit_noise(path.X(), jacobian, fit.residual, resolution);
+  const NoiseFit with_sinusoid = fit_noise(path.X(), jacobian, left, resolution);
   const Eigen::MatrixXd covariance = least_squares_covariance(with_sinusoid.noise, path.X(), jacobian);
   const Eigen::Vector2d direction(c(2) / amplitude, c(3) / amplitude);
   result.amplitude = {amplitude, std::sqrt(direction.dot(covariance.block<2, 2>(2, 2) * direction))};
@@ -135,8 +126,8 @@ std::optional<SinusoidFit> fit_sinusoid(const ColumnMeans &path, double shortest
   const Eigen::MatrixXd straight = columns.leftCols(2);
   const NoiseFit without_sinusoid = fit_noise(path.X(), straight, path.Y(), resolution);
   const auto count = static_cast<double>(path.size());
-  const double variance_about_line = project(straight, path.Y()).residual.squaredNorm() / count;
-  const double residual_variance = fit.residual.squaredNorm() / count;
+  const double variance_about_line = residual(straight, path.Y()).squaredNorm() / count;
+  const double residual_variance = left.squaredNorm() / count;
   // Volume of the uniform prior of (sine, cosine, wave number): a disc of radius sqrt(2 variance) times an interval.
   const double prior_volume = 2. * M_PI * variance_about_line * highest;
   result.log_evidence = with_sinusoid.log_evidence - without_sinusoid.log_evidence - std::log(prior_volume);
@@ -144,8 +135,7 @@ std::optional<SinusoidFit> fit_sinusoid(const ColumnMeans &path, double shortest
   const double explained = variance_about_line - residual_variance;
   result.R_squared = explained / variance_about_line;
   const Eigen::Index n_pairs = path.size() - 1;
-  const double remembered =
-    std::max(0., fit.residual.head(n_pairs).dot(fit.residual.tail(n_pairs)) / static_cast<double>(n_pairs));
+  const double remembered = std::max(0., left.head(n_pairs).dot(left.tail(n_pairs)) / static_cast<double>(n_pairs));
   result.share_of_path = explained / (explained + remembered);
   return result;
 }

@@ -12,6 +12,7 @@
 #include "continuum/expression_potential.h"
 #include "lattice/bonds/expression_law.h"
 #include "lattice/bonds/library_law.h"
+#include "support/fits.h"
 #include "support/largest_error.h"
 
 namespace latcon::bridge
@@ -204,20 +205,11 @@ Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, c
   for (int i = -scan_steps; i <= scan_steps; ++i)
     if (mean_square_residual(i * scan_step) < mean_square_residual(best))
       best = i * scan_step;
-  double low = std::clamp(best - scan_step, -largest_ratio, largest_ratio),
-         high = std::clamp(best + scan_step, -largest_ratio, largest_ratio);
-  const double golden = (std::sqrt(5.) - 1.) / 2.;
   // A minimum can be located to the square root of the round-off.
-  while (high - low > 1e-9)
-  {
-    const double left = high - golden * (high - low), right = low + golden * (high - low);
-    if (mean_square_residual(left) < mean_square_residual(right))
-      high = right;
-    else
-      low = left;
-  }
+  const double found =
+    support::golden_section(mean_square_residual, std::clamp(best - scan_step, -largest_ratio, largest_ratio),
+                            std::clamp(best + scan_step, -largest_ratio, largest_ratio), 1e-9);
   // Return an end of the interval exactly.
-  const double found = 0.5 * (low + high);
   const bool is_end = largest_ratio - std::abs(found) < 1e-8;
   return with_ratio(lattice, material, F, is_end ? std::copysign(largest_ratio, found) : found);
 }

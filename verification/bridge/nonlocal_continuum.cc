@@ -5,6 +5,8 @@
 #include <functional>
 #include <utility>
 
+#include "verification/bridge/small_strain.h"
+
 namespace latcon::bridge
 {
 namespace
@@ -92,13 +94,9 @@ Eigen::Matrix2d NonlocalContinuum::wave_stiffness(const Eigen::Matrix2d &F, cons
   Eigen::Matrix2d matrix = Eigen::Matrix2d::Zero();
   for (const HalfBond &bond : stencil_)
   {
-    const Eigen::Vector2d N = bond.vector / bond.rest_length, n = F * N;
-    const double stretch = n.norm();
-    const Eigen::Matrix2d along = n * n.transpose() / (stretch * stretch);
     const double phase = std::pow(2. * std::sin(0.5 * K.dot(bond.vector)) / bond.rest_length, 2);
-    matrix += weight(bond) * phase / material_.density *
-              (lattice::stiffness(shell(bond).law, stretch) * along +
-               lattice::force(shell(bond).law, stretch) / stretch * (Eigen::Matrix2d::Identity() - along));
+    matrix +=
+      weight(bond) * phase / material_.density * bond_tangent(shell(bond).law, F * bond.vector / bond.rest_length);
   }
   return matrix;
 }

@@ -10,6 +10,7 @@
 
 #include "support/dense.h"
 #include "support/largest_error.h"
+#include "verification/bridge/small_strain.h"
 
 namespace latcon::bridge
 {
@@ -28,41 +29,59 @@ std::array<PlaneWave, 2> undamped(const Eigen::Matrix2d &stiffness)
   return {wave(0), wave(1)};
 }
 
-std::array<PlaneWave, 2> damped(const WaveMatrices &matrices)
-{
-  // (u, u'/s)' = s B (u, u'/s) with a rate s that scales the entries to similar size.
-  const double rate = std::sqrt(matrices.stiffness.norm());
-  Eigen::Matrix4d B;
-  B << Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Identity(), -matrices.stiffness / (rate * rate),
-    -matrices.damping / rate;
-  const support::ComplexModes modes = support::complex_modes(B);
-  // Select from each conjugate pair the eigenvalue with positive frequency, and from two real ones (an overdamped wave)
-  // the slower.
-  std::array<int, 4> order{0, 1, 2, 3};
-  std::sort(order.begin(), order.end(),
-            [&](int a, int b)
-            {
-              const std::complex<double> va = modes.values[a], vb = modes.values[b];
-              return va.imag() != vb.imag() ? va.imag() > vb.imag() : va.real() > vb.real();
-            });
-  const auto wave = [&](int i)
-  {
-    const std::complex<double> value = rate * modes.values[i];
-    const Eigen::Vector2cd vector = modes.vectors.col(i).head<2>();
-    // Real up to a phase if damping and stiffness have the same axes, nearly so otherwise.
-    const std::complex<double> largest = std::abs(vector[0]) > std::abs(vector[1]) ? vector[0] : vector[1];
-    return PlaneWave{support::one_sided(value.imag()), -value.real(),
-                     Eigen::Vector2d((vector / largest).real()).normalized()};
-  };
-  return {wave(order[0]), wave(order[1])};
-}
-
 Eigen::Matrix2d sum_of(const std::vector<BranchMatrix> &branches)
 {
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (const BranchMatrix &branch : branches)
     sum += branch.stiffness;
   return sum;
+}
+
+// Modes exp(s t) of a sheet, with s in `rate`: those with w > 0 first, and of two that do not oscillate the slower.
+std::vector<MemoryWave> free_modes(const WaveMatrices &relaxed, const std::vector<BranchMatrix> &branches)
+{
+  // (u, u'/r, r_1, r_2, ...)' = r B (...) with the forces r_i' = G_i u' - r_i / tau_i per mass and r^2, and a rate r
+  // that scales the entries to similar size.
+  const double rate = std::sqrt(relaxed.stiffness.norm() + sum_of(branches).norm());
+  const auto size = static_cast<Eigen::Index>(4 + 2 * branches.size());
+  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(size, size);
+  B.block<2, 2>(0, 2).setIdentity();
+  B.block<2, 2>(2, 0) = -relaxed.stiffness / (rate * rate);
+  B.block<2, 2>(2, 2) = -relaxed.damping / rate;
+  Eigen::Index at = 4;
+  for (const BranchMatrix &branch : branches)
+  {
+    B.block<2, 2>(2, at) = -Eigen::Matrix2d::Identity();
+    B.block<2, 2>(at, 2) = branch.stiffness / (rate * rate);
+    B.block<2, 2>(at, at) = -Eigen::Matrix2d::Identity() / (rate * branch.relaxation_time);
+    at += 2;
+  }
+  // The solver of eigenvalues does not handle values that are not finite.
+  if (!B.allFinite())
+    throw std::runtime_error("the stiffness of a sheet is not finite");
+  const support::ComplexModes modes = support::complex_modes(B);
+  std::vector<MemoryWave> waves;
+  for (Eigen::Index i = 0; i < size; ++i)
+  {
+    const Eigen::Vector2cd p = modes.vectors.col(i).head<2>();
+    waves.push_back({rate * modes.values[i], p / (std::abs(p[0]) > std::abs(p[1]) ? p[0] : p[1])});
+  }
+  std::stable_sort(waves.begin(), waves.end(),
+                   [](const MemoryWave &a, const MemoryWave &b) {
+                     return a.rate.imag() != b.rate.imag() ? a.rate.imag() > b.rate.imag()
+                                                           : a.rate.real() > b.rate.real();
+                   });
+  return waves;
+}
+
+std::array<PlaneWave, 2> damped(const WaveMatrices &matrices)
+{
+  const std::vector<MemoryWave> modes = free_modes(matrices, {});
+  // Polarisations are real up to a phase if damping and stiffness have the same axes, nearly so otherwise.
+  const auto wave = [](const MemoryWave &mode) {
+    return PlaneWave{support::one_sided(mode.frequency()), mode.decay(), mode.polarisation.real().normalized()};
+  };
+  return {wave(modes[0]), wave(modes[1])};
 }
 
 // The branches of each shell.
@@ -139,16 +158,12 @@ WaveMatrices bloch_matrices(const lattice::TriangularLattice &lattice, const lat
       continue;
     const Eigen::Vector2d R = lattice.bond_vector(kind);
     const double length = lattice.rest_length(kind);
-    const double stretch = (F * R).norm() / length;
     const Eigen::Vector2d n = (F * R).normalized();
-    const Eigen::Matrix2d along = n * n.transpose();
-    const double section_over_length = lattice::cross_section(*shell, lattice, kind) / length;
     // 2 (1 - cos K.R) of both ends of the bond, in a form without cancellation for long waves.
     const double phase = 4. * std::pow(std::sin(0.5 * K.dot(R)), 2);
-    matrices.stiffness += phase * section_over_length / mass *
-                          (lattice::stiffness(shell->law, stretch) * along +
-                           lattice::force(shell->law, stretch) / stretch * (Eigen::Matrix2d::Identity() - along));
-    matrices.damping += phase * section_over_length / mass * shell->viscosity * along;
+    const double factor = phase * lattice::cross_section(*shell, lattice, kind) / length / mass;
+    matrices.stiffness += factor * bond_tangent(shell->law, F * R / length);
+    matrices.damping += factor * shell->viscosity * n * n.transpose();
   }
   return matrices;
 }
@@ -238,41 +253,12 @@ std::array<MemoryWave, 2> memory_waves(const lattice::TriangularLattice &lattice
 std::array<MemoryWave, 2> memory_waves(const WaveMatrices &relaxed, const std::vector<BranchMatrix> &branches,
                                        const Eigen::Vector2d &normal)
 {
-  // (u, u'/r, r_1, r_2, ...)' = r B (...) with the forces r_i' = G_i u' - r_i / tau_i per mass and r^2, and a rate r
-  // that scales the entries to similar size.
-  const double rate = std::sqrt(relaxed.stiffness.norm() + sum_of(branches).norm());
-  const auto size = static_cast<Eigen::Index>(4 + 2 * branches.size());
-  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(size, size);
-  B.block<2, 2>(0, 2).setIdentity();
-  B.block<2, 2>(2, 0) = -relaxed.stiffness / (rate * rate);
-  B.block<2, 2>(2, 2) = -relaxed.damping / rate;
-  Eigen::Index at = 4;
-  for (const BranchMatrix &branch : branches)
-  {
-    B.block<2, 2>(2, at) = -Eigen::Matrix2d::Identity();
-    B.block<2, 2>(at, 2) = branch.stiffness / (rate * rate);
-    B.block<2, 2>(at, at) = -Eigen::Matrix2d::Identity() / (rate * branch.relaxation_time);
-    at += 2;
-  }
-  // The solver of eigenvalues does not handle values that are not finite.
-  if (!B.allFinite())
-    throw std::runtime_error("the stiffness of a sheet is not finite");
-  const support::ComplexModes modes = support::complex_modes(B);
-  // Everything else relaxes.
-  std::vector<Eigen::Index> order;
-  for (Eigen::Index i = 0; i < size; ++i)
-    order.push_back(i);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Eigen::Index a, Eigen::Index b) { return modes.values[a].imag() > modes.values[b].imag(); });
-  const auto wave = [&](Eigen::Index i)
-  {
-    if (!(modes.values[i].imag() > 0.)) // some mode that relaxes
-      return MemoryWave{{not_a_number, not_a_number},
-                        Eigen::Vector2cd::Constant(std::complex<double>(not_a_number, not_a_number))};
-    const Eigen::Vector2cd p = modes.vectors.col(i).head<2>();
-    return MemoryWave{rate * modes.values[i], p / (std::abs(p[0]) > std::abs(p[1]) ? p[0] : p[1])};
-  };
-  std::array<MemoryWave, 2> waves{wave(order[0]), wave(order[1])};
+  const std::vector<MemoryWave> modes = free_modes(relaxed, branches);
+  std::array<MemoryWave, 2> waves{modes[0], modes[1]};
+  for (MemoryWave &wave : waves)
+    if (!(wave.frequency() > 0.)) // some mode that relaxes
+      wave = {{not_a_number, not_a_number},
+              Eigen::Vector2cd::Constant(std::complex<double>(not_a_number, not_a_number))};
   const auto along = [&](const MemoryWave &w)
   { return std::abs(w.polarisation.dot(normal.cast<std::complex<double>>())) / w.polarisation.norm(); };
   const double along_first = along(waves[0]), along_second = along(waves[1]);

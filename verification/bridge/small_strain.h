@@ -23,6 +23,16 @@ namespace latcon::bridge
   return lattice::cross_section(shell, lattice) * lattice.rest_length(kind) / lattice.site_area();
 }
 
+/// Returns psi'' n n + psi'/lam (1 - n n) [Pa] of a bond whose unit vector becomes lam n: its force, per section, on a
+/// change of the vector.
+[[nodiscard]] inline Eigen::Matrix2d bond_tangent(const lattice::BondLaw &law, const Eigen::Vector2d &deformed)
+{
+  const double stretch = deformed.norm();
+  const Eigen::Matrix2d along = deformed * deformed.transpose() / (stretch * stretch);
+  return lattice::stiffness(law, stretch) * along +
+         lattice::force(law, stretch) / stretch * (Eigen::Matrix2d::Identity() - along);
+}
+
 /// Small-strain constants of the continuum of a lattice (theory-comparison.md, eqs. (H.2) and (H.3)): isotropic, lambda
 /// = mu.
 struct SmallStrain

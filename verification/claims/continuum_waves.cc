@@ -37,13 +37,12 @@ Eigen::Matrix2d gradient_damping(const continuum::GradientViscosity &law, const 
 
 SubjectContinua::SubjectContinua(const bridge::Subject &subject)
   : local{{subject.cauchy_born}, {subject.material.density}}, gradient{{subject.cauchy_born, *subject.lattice_gradient},
-                                                                       {subject.material.density,
+                                                                       {local.inertia.density,
                                                                         subject.lengths.lattice}},
     isotropic{{subject.cauchy_born, *subject.isotropic_gradient},
-              {subject.material.density, subject.lengths.isotropic_inertia}},
-    network{{subject.network}, {subject.material.density}}, network_gradient{
-                                                              {subject.network, *subject.network_gradient},
-                                                              {subject.material.density, subject.lengths.lattice}}
+              {local.inertia.density, subject.lengths.isotropic_inertia}},
+    network{{subject.network}, local.inertia}, network_gradient{{subject.network, *subject.network_gradient},
+                                                                gradient.inertia}
 {
 }
 

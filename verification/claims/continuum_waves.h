@@ -64,16 +64,11 @@ struct WaveMesh
 /// energy were that of second derivatives.
 double discretisation_bound(const WaveMesh &mesh);
 
-/// Frequencies [rad/s] of both waves in the finite elements: eigenvalues of tangent and mass, found by inverse
-/// iteration from the nodal values of both. Every rank computes all of it.
-/// @throws continuum::LinearSolverFailed
-std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Eigen::Matrix2d &F,
-                                           const Eigen::Vector2d &K, const WaveMesh &mesh);
-
-/// Damped waves in the finite elements, of tangent, viscosity and mass in the space of the two waves without damping;
-/// polarisations are those in this space. @throws continuum::LinearSolverFailed
-std::array<bridge::PlaneWave, 2> discrete_damped_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
-                                                       const Eigen::Vector2d &K, const WaveMesh &mesh);
+/// Both waves in the finite elements, of tangent, viscosity and mass in the space of the two waves without damping,
+/// which inverse iteration finds from the nodal values of both; polarisations are those in this space. Every rank
+/// computes all of it. @throws continuum::LinearSolverFailed
+std::array<bridge::PlaneWave, 2> discrete_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
+                                                const Eigen::Vector2d &K, const WaveMesh &mesh);
 
 /// Frequencies and decays of both waves, measured on the moving finite element sheet as lattice_waves does on the
 /// lattice: average acceleration, extrapolated from two time steps. Every rank computes all of it.

@@ -75,23 +75,11 @@ struct WaveSheet
     sheet.mass(medium.inertia.density, medium.inertia.length, sheet.conformity_constraints(), mass);
   }
 
-  /// x.A y over the independent unknowns.
-  double form(const continuum::Sheet::Matrix &A, const Vector &x, const Vector &y) const
-  {
-    Vector product = sheet.make_owned();
-    A.vmult(product, y);
-    double sum = 0.;
-    for (const auto i : sheet.owned())
-      if (!sheet.conformity_constraints().is_constrained(i))
-        sum += x(i) * product(i);
-    return sum;
-  }
-
-  /// M x without the rows of dependent unknowns; the prescribed values are zero.
-  Vector weighted(const Vector &x) const
+  /// A x without the rows of dependent unknowns; the prescribed values are zero.
+  Vector weighted(const continuum::Sheet::Matrix &A, const Vector &x) const
   {
     Vector b = sheet.make_owned();
-    mass.vmult(b, x);
+    A.vmult(b, x);
     for (const auto i : sheet.owned())
       if (sheet.conformity_constraints().is_constrained(i))
         b(i) = 0.;
@@ -121,24 +109,37 @@ double energy(const continuum::Sheet &sheet, const Vector &nodal)
   return sheet.energy(u);
 }
 
-// A periodic sheet as long as the wave, in motion.
-struct MovingSheet
+// A periodic mesh as long as the wave K.
+struct WaveRectangle
 {
-  MovingSheet(const WaveContinuum &medium, const Eigen::Vector2d &K, const WaveMesh &resolution,
-              const continuum::DynamicSettings &settings)
-    : rectangle(one_wavelength(K, resolution.cells)), mesh(MPI_COMM_SELF),
-      solver(made(mesh, rectangle), medium.constitution, periodic_edges(), medium.inertia, settings,
-             medium.viscosity.get(), {}, medium.memory.get())
-  {
-  }
-  static const continuum::Sheet::Mesh &made(continuum::Sheet::Mesh &mesh, const continuum::Rectangle &rectangle)
+  WaveRectangle(const Eigen::Vector2d &K, unsigned int cells) : rectangle(one_wavelength(K, cells)), mesh(MPI_COMM_SELF)
   {
     continuum::make_rectangle(mesh, rectangle);
-    return mesh;
   }
+  double area() const { return rectangle.length * rectangle.height; }
 
   continuum::Rectangle rectangle;
   continuum::Sheet::Mesh mesh;
+};
+
+// Such a sheet in motion.
+struct MovingSheet : WaveRectangle
+{
+  MovingSheet(const WaveContinuum &medium, const Eigen::Vector2d &K, const WaveMesh &resolution,
+              const continuum::DynamicSettings &settings)
+    : WaveRectangle(K, resolution.cells), solver(mesh, medium.constitution, periodic_edges(), medium.inertia, settings,
+                                                 medium.viscosity.get(), {}, medium.memory.get())
+  {
+  }
+  // Displacement from that of a state [m].
+  Vector displacement_from(const Vector &base) const
+  {
+    Vector difference = solver.sheet().make_owned();
+    difference = solver.displacement();
+    difference -= base;
+    return difference;
+  }
+
   continuum::DynamicSolver solver;
 };
 
@@ -165,14 +166,13 @@ std::array<Oscillation, 2> measure(const WaveContinuum &medium, const Eigen::Mat
   u.add(amplitude, shapes[0], amplitude, shapes[1]);
   solver.start(u, solver.sheet().make_owned());
 
-  Vector difference = solver.sheet().make_owned();
+  const std::array<Vector, 2> weights{at_rest.weighted(at_rest.mass, shapes[0]),
+                                      at_rest.weighted(at_rest.mass, shapes[1])};
   const auto amplitudes = [&]() -> std::array<double, 2>
   {
-    difference = solver.displacement();
-    difference -= at_rest.base;
-    const auto of = [&](const Vector &shape)
-    { return at_rest.form(at_rest.mass, shape, difference) / (amplitude * at_rest.form(at_rest.mass, shape, shape)); };
-    return {of(shapes[0]), of(shapes[1])};
+    const Vector difference = moving.displacement_from(at_rest.base);
+    const auto of = [&](std::size_t w) { return weights[w] * difference / (amplitude * (weights[w] * shapes[w])); };
+    return {of(0), of(1)};
   };
   constexpr std::size_t max_steps = 2000;
   return followed_to_turns(time_step, 1, max_steps, "the finite element sheet", amplitudes, [&] { solver.step(); });
@@ -180,18 +180,6 @@ std::array<Oscillation, 2> measure(const WaveContinuum &medium, const Eigen::Mat
 
 // Amplitude of the wave; nonlinear terms change frequencies by its square.
 constexpr double memory_wave_strain = 1e-4;
-
-// The error is a series in h^2 with terms of (w h)^2 / 12 and w h^2 / (12 tau) (theory-viscoelastic.md, eq. (V.7)).
-double memory_step(const WaveContinuum &medium, const bridge::MemoryWave &wave)
-{
-  const double rate = std::abs(wave.rate);
-  support::Extremes steps;
-  steps.add(0.2 / rate);
-  for (const continuum::MaxwellFibres &fibres : medium.memory->families())
-    for (const continuum::MaxwellBranch &branch : fibres.branches)
-      steps.add(std::sqrt(0.1 * branch.relaxation_time / rate));
-  return steps.smallest();
-}
 
 // Relaxation times of branches by their numbers [s].
 std::vector<double> relaxation_times(const continuum::FibreMemory &memory)
@@ -201,6 +189,17 @@ std::vector<double> relaxation_times(const continuum::FibreMemory &memory)
     for (std::size_t i = 0; i < fibres.branches.size(); ++i)
       times[fibres.first_number + i] = fibres.branches[i].relaxation_time;
   return times;
+}
+
+// The error is a series in h^2 with terms of (w h)^2 / 12 and w h^2 / (12 tau) (theory-viscoelastic.md, eq. (V.7)).
+double memory_step(const WaveContinuum &medium, const bridge::MemoryWave &wave)
+{
+  const double rate = std::abs(wave.rate);
+  support::Extremes steps;
+  steps.add(0.2 / rate);
+  for (const double time : relaxation_times(*medium.memory))
+    steps.add(std::sqrt(0.1 * time / rate));
+  return steps.smallest();
 }
 
 ElementWave measure(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
@@ -226,74 +225,16 @@ ElementWave measure(const WaveContinuum &medium, const Eigen::Matrix2d &F, const
   solver.start(field(1., true), field(wave.rate, false), 0., relaxed);
 
   const Vector shape = interpolated(sheet, CosineWave(K, wave.polarisation.real().normalized())),
-               weights = at_rest.weighted(shape);
+               weights = at_rest.weighted(at_rest.mass, shape);
   const double of_wave = solver.ledger().stored + solver.ledger().kinetic - energy(sheet, at_rest.base);
   support::LargestError imbalance;
   const auto amplitude = [&]
   {
-    Vector difference = sheet.make_owned();
-    difference = solver.displacement();
-    difference -= at_rest.base;
     imbalance.add(std::abs(solver.ledger().imbalance) / of_wave);
-    return (weights * difference) * K.norm() / (memory_wave_strain * (weights * shape));
+    return (weights * moving.displacement_from(at_rest.base)) * K.norm() / (memory_wave_strain * (weights * shape));
   };
   const Oscillation found = followed(wave.frequency(), time_step, stride, amplitude, [&] { solver.step(); });
   return {found, imbalance.error(), 0.};
-}
-
-// Matrices of the finite elements in the space of two waves.
-struct RitzMatrices
-{
-  Eigen::Matrix2d stiffness, damping, mass;
-};
-
-RitzMatrices ritz_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
-                           const WaveMesh &resolution)
-{
-  continuum::Sheet::Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, one_wavelength(K, resolution.cells));
-  const continuum::Sheet sheet(mesh, medium.constitution, resolution.degree, periodic_edges());
-  const WaveSheet at_rest(medium, sheet, F);
-  Vector u = sheet.make_ghosted();
-  u = at_rest.base;
-  continuum::Sheet::Matrix stiffness;
-  sheet.make_matrix(sheet.conformity_constraints(), stiffness);
-  sheet.tangent(u, sheet.conformity_constraints(), stiffness);
-  continuum::LinearSolver solver(sheet, {}, {});
-
-  // Both waves at once, by inverse iteration with a shift below them. Translations by whole cells keep waves of other
-  // wave vectors out, so what dies out are the higher branches of this one, of 9 times the eigenvalue and more.
-  std::array<Vector, 2> x = elastic_waves(medium, sheet, F, K);
-  const auto quotient = [&](const Vector &y)
-  { return at_rest.form(stiffness, y, y) / at_rest.form(at_rest.mass, y, y); };
-  continuum::Sheet::Matrix shifted;
-  sheet.make_matrix(sheet.conformity_constraints(), shifted);
-  shifted.add(1., stiffness);
-  shifted.add(0.1 * support::smallest_of({quotient(x[0]), quotient(x[1])}), at_rest.mass);
-  for (Vector &y : x)
-  {
-    // Once: nodal values of the wave are off by the size of the interpolation error, of which the eigenvalue has the
-    // square.
-    solver.solve(shifted, y, at_rest.weighted(y));
-    y *= 1. / y.linfty_norm();
-    sheet.conformity_constraints().distribute(y);
-  }
-  // The errors of the eigenvalues in the space of the two vectors are the squares of those of the vectors.
-  continuum::Sheet::Matrix damping;
-  sheet.make_matrix(sheet.conformity_constraints(), damping);
-  continuum::ViscousForces(sheet, medium.viscosity.get())
-    .add_tangent(u, sheet.make_ghosted(), 0., 1., sheet.conformity_constraints(), damping);
-  RitzMatrices ritz;
-  for (std::size_t v = 0; v < 2; ++v)
-    for (std::size_t w = 0; w < 2; ++w)
-    {
-      ritz.stiffness(v, w) = at_rest.form(stiffness, x[v], x[w]);
-      ritz.damping(v, w) = at_rest.form(damping, x[v], x[w]);
-      ritz.mass(v, w) = at_rest.form(at_rest.mass, x[v], x[w]);
-    }
-  if (!ritz.stiffness.allFinite() || !ritz.damping.allFinite() || !ritz.mass.allFinite())
-    throw std::runtime_error("the finite elements have no waves: their tangent is not finite");
-  return ritz;
 }
 
 } // namespace
@@ -305,25 +246,55 @@ Vector interpolated(const continuum::Sheet &sheet, const dealii::Function<2> &fi
   return nodal;
 }
 
-std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Eigen::Matrix2d &F,
-                                           const Eigen::Vector2d &K, const WaveMesh &resolution)
+std::array<bridge::PlaneWave, 2> discrete_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
+                                                const Eigen::Vector2d &K, const WaveMesh &resolution)
 {
-  const auto [K2, C2, M2] = ritz_matrices(medium, F, K, resolution);
-  const support::SymmetricModes ritz = support::symmetric_modes(K2, M2);
-  const auto frequency = [&](int i) { return std::sqrt(support::one_sided(ritz.values[i])); };
-  const bool first_is_longitudinal =
-    std::abs(ritz.vectors(0, 0)) * std::sqrt(M2(0, 0)) > std::abs(ritz.vectors(1, 0)) * std::sqrt(M2(1, 1));
-  return {frequency(first_is_longitudinal ? 0 : 1), frequency(first_is_longitudinal ? 1 : 0)};
-}
+  const WaveRectangle of_wave(K, resolution.cells);
+  const continuum::Sheet sheet(of_wave.mesh, medium.constitution, resolution.degree, periodic_edges());
+  const WaveSheet at_rest(medium, sheet, F);
+  Vector u = sheet.make_ghosted();
+  u = at_rest.base;
+  continuum::Sheet::Matrix stiffness;
+  sheet.make_matrix(sheet.conformity_constraints(), stiffness);
+  sheet.tangent(u, sheet.conformity_constraints(), stiffness);
+  continuum::LinearSolver solver(sheet, {}, {});
 
-std::array<bridge::PlaneWave, 2> discrete_damped_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
-                                                       const Eigen::Vector2d &K, const WaveMesh &resolution)
-{
-  const RitzMatrices ritz = ritz_matrices(medium, F, K, resolution);
+  // Both waves at once, by inverse iteration with a shift below them. Translations by whole cells keep waves of other
+  // wave vectors out, so what dies out are the higher branches of this one, of 9 times the eigenvalue and more.
+  std::array<Vector, 2> x = elastic_waves(medium, sheet, F, K);
+  const auto form = [&](const continuum::Sheet::Matrix &A, const Vector &a, const Vector &b)
+  { return a * at_rest.weighted(A, b); };
+  const auto quotient = [&](const Vector &y) { return form(stiffness, y, y) / form(at_rest.mass, y, y); };
+  continuum::Sheet::Matrix shifted;
+  sheet.make_matrix(sheet.conformity_constraints(), shifted);
+  shifted.add(1., stiffness);
+  shifted.add(0.1 * support::smallest_of({quotient(x[0]), quotient(x[1])}), at_rest.mass);
+  for (Vector &y : x)
+  {
+    // Once: nodal values of the wave are off by the size of the interpolation error, of which the eigenvalue has the
+    // square.
+    solver.solve(shifted, y, at_rest.weighted(at_rest.mass, y));
+    y *= 1. / y.linfty_norm();
+    sheet.conformity_constraints().distribute(y);
+  }
+  // The errors of the eigenvalues in the space of the two vectors are the squares of those of the vectors.
+  continuum::Sheet::Matrix damping;
+  sheet.make_matrix(sheet.conformity_constraints(), damping);
+  continuum::ViscousForces(sheet, medium.viscosity.get())
+    .add_tangent(u, sheet.make_ghosted(), 0., 1., sheet.conformity_constraints(), damping);
+  Eigen::Matrix2d K2, C2, M2;
+  for (std::size_t v = 0; v < 2; ++v)
+    for (std::size_t w = 0; w < 2; ++w)
+    {
+      K2(v, w) = form(stiffness, x[v], x[w]);
+      C2(v, w) = form(damping, x[v], x[w]);
+      M2(v, w) = form(at_rest.mass, x[v], x[w]);
+    }
+  if (!K2.allFinite() || !C2.allFinite() || !M2.allFinite())
+    throw std::runtime_error("the finite elements have no waves: their tangent is not finite");
   // Unit mass: M = L L^T.
-  const Eigen::Matrix2d inverse = Eigen::LLT<Eigen::Matrix2d>(ritz.mass).matrixL().solve(Eigen::Matrix2d::Identity());
-  return bridge::plane_waves(
-    {inverse * ritz.stiffness * inverse.transpose(), inverse * ritz.damping * inverse.transpose()}, {1., 0.});
+  const Eigen::Matrix2d inverse = Eigen::LLT<Eigen::Matrix2d>(M2).matrixL().solve(Eigen::Matrix2d::Identity());
+  return bridge::plane_waves({inverse * K2 * inverse.transpose(), inverse * C2 * inverse.transpose()}, {1., 0.});
 }
 
 std::array<Oscillation, 2> finite_element_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
@@ -348,10 +319,8 @@ ElementWave element_wave(const WaveContinuum &medium, const Eigen::Matrix2d &F, 
 double sinusoidal_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
                          const Eigen::Vector2d &p, double amplitude, const WaveMesh &resolution)
 {
-  continuum::Sheet::Mesh mesh(MPI_COMM_SELF);
-  const continuum::Rectangle rectangle = one_wavelength(K, resolution.cells);
-  continuum::make_rectangle(mesh, rectangle);
-  const continuum::Sheet sheet(mesh, medium.constitution, resolution.degree, periodic_edges());
+  const WaveRectangle of_wave(K, resolution.cells);
+  const continuum::Sheet sheet(of_wave.mesh, medium.constitution, resolution.degree, periodic_edges());
   const Vector base = interpolated(sheet, bridge::AffineDisplacement(F)), shape = interpolated(sheet, CosineWave(K, p));
   const auto of_size = [&](double size)
   {
@@ -359,7 +328,7 @@ double sinusoidal_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, 
     sum.add(size, shape);
     return energy(sheet, sum);
   };
-  return half_second_derivative(of_size, amplitude) / (rectangle.length * rectangle.height);
+  return half_second_derivative(of_size, amplitude) / of_wave.area();
 }
 
 TravellingEnergy travelling_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
@@ -378,7 +347,7 @@ TravellingEnergy travelling_energy(const WaveContinuum &medium, const Eigen::Mat
   solver.start(u, interpolated(sheet, CosineWave(K, amplitude * found.frequency * found.polarisation, 0.5 * M_PI)));
   for (int step = 0; step < steps; ++step)
     solver.step();
-  const double area = moving.rectangle.length * moving.rectangle.height;
+  const double area = moving.area();
   const continuum::EnergyLedger &ledger = solver.ledger();
   return {(ledger.stored - at_rest) / area, ledger.kinetic / area, ledger.micro_kinetic / area};
 }

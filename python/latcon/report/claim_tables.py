@@ -1,17 +1,29 @@
-"""Formats of the tables that claims write beside results.json, and functions that evaluate their rows."""
+"""Tables that claims write beside results.json, their plots, and functions that evaluate their rows."""
 from dataclasses import dataclass
 from typing import Callable
 
 import numpy as np
 
+from latcon.errors import UnreadableFile
 from latcon.report.pictures import save
 
 # Errors below this are round-off and have no order.
 ROUND_OFF = 1e-12
 
-# Columns that several tables have.
-STATE = ("F_xx", "F_yy")
-WAVE = STATE + ("angle [deg]", "k d")
+
+class Table(dict):
+    """Columns of a table of a claim: {name: array}. A column that is read and is not there makes its file unreadable."""
+
+    def __init__(self, path, columns):
+        super().__init__(columns)
+        self.path = path
+
+    def __missing__(self, column):
+        raise UnreadableFile(self.path, f"has no column {column!r}")
+
+    def where(self, rows):
+        """The table of some rows, in the order of their numbers, or where a condition holds."""
+        return Table(self.path, {name: values[rows] for name, values in self.items()})
 
 
 @dataclass(frozen=True)
@@ -23,6 +35,7 @@ class Plot:
     claimed: str  # statement of the claim where it wrote this table
     caption: str  # content of the picture
     few_colours: bool = True
+    others: tuple = ()  # tables that it draws besides
 
     def write(self, tables, path):
         """Draws the picture into a PNG file. Returns the error metrics."""
@@ -34,20 +47,18 @@ class Plot:
 def groups(table, *columns):
     """Parts of a table in which these columns have one value each, in the order of first rows: [(values, part)]."""
     keys = list(zip(*(table[column] for column in columns)))
-    return [(key, {name: values[[k == key for k in keys]] for name, values in table.items()})
-            for key in dict.fromkeys(keys)]
+    return [(key, table.where([k == key for k in keys])) for key in dict.fromkeys(keys)]
 
 
 def states(table):
     """Groups of one set of shells and one deformation, each with its name: [(name, part)]."""
     return [(f"{shells}, F = I" if xx == yy == 1 else f"{shells}, F = diag({xx:.4g}, {yy:.4g})", part)
-            for (shells, xx, yy), part in groups(table, "shells", *STATE)]
+            for (shells, xx, yy), part in groups(table, "shells", "F_xx", "F_yy")]
 
 
 def sorted_by(part, column):
     """A part with its rows in the order of one of its columns."""
-    order = np.argsort(part[column], kind="stable")
-    return {name: values[order] for name, values in part.items()}
+    return part.where(np.argsort(part[column], kind="stable"))
 
 
 def fitted_order(x, error, share=1.0):

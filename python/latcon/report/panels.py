@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from .claim_tables import fitted_order, groups, range_text, sorted_by, states
+from .claim_tables import Table, fitted_order, groups, range_text, sorted_by, states
 from .pictures import BLACK, BLUE, GREEN, RED, WIDTH, Page
 
 LEFT, RIGHT, GAP = 0.95, 0.2, 0.85  # margins of the grid and space between its columns [in]
@@ -130,7 +130,7 @@ def draw_errors(axes, state, errors):
     orders = {}
     for law, error in errors.items():
         found = []
-        for (wave, _), part in groups({**state, "error": np.abs(error)}, "wave", "angle [deg]"):
+        for (wave, _), part in groups(Table(state.path, {**state, "error": np.abs(error)}), "wave", "angle [deg]"):
             part = sorted_by(part, "k d")
             axes.plot(part["k d"], np.where(part["error"] > 0, part["error"], np.nan), "-", marker=MARKERS[wave],
                       markersize=3, color=LAW_COLOURS[law], linewidth=0.8)

@@ -407,26 +407,6 @@ TEST(CrackMeasurement, RefusesBadOptions)
   refuses([&](auto &o) { o.end_time *= 0.5; }, "record after the end");
   refuses([&](auto &o) { o.seed_tip_X = nan; }, "no seed");
   refuses([&](auto &o) { o.seed_tip_X = length; }, "seed through the strip");
-  refuses(
-    [&](auto &o)
-    {
-      o.run_in_fraction = 0.6;
-      o.clamp_fraction = 0.4;
-    },
-    "nothing left");
-  refuses([&](auto &o) { o.run_in_fraction = -0.1; }, "run-in");
-  refuses([&](auto &o) { o.min_wavelength = 2.; }, "wavelength");
-  refuses([&](auto &o) { o.min_periods = 0.5; }, "periods");
-  refuses([&](auto &o) { o.clear_periods = 1.; }, "clear periods");
-  refuses([&](auto &o) { o.min_amplitude = -1.; }, "amplitude");
-  refuses([&](auto &o) { o.max_steepness = 0.; }, "steepness");
-  refuses([&](auto &o) { o.max_straight_rms = 0.; }, "straying");
-  refuses([&](auto &o) { o.min_share = 1.; }, "share");
-  refuses([&](auto &o) { o.clear_log_evidence = 1.; }, "evidence");
-  refuses([&](auto &o) { o.steady_amplitude = 0.; }, "settled");
-  refuses([&](auto &o) { o.arrest_fraction = 0.; }, "arrest");
-  refuses([&](auto &o) { o.min_branched_fraction = 1.5; }, "branched fraction");
-  refuses([&](auto &o) { o.branch_rule.gap = 0.; }, "gap");
 }
 
 TEST(CrackMeasurement, PatternsHaveTheNamesOfTheOutputs)

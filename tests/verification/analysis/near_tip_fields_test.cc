@@ -210,11 +210,11 @@ TEST(NearTipSums, MirrorComponents)
 {
   NearTipGrid grid{d, d, 2, 2, 2};
   NearTipSums one(grid), once(grid), twice(grid);
-  const NearTipSums::Motion motion = NearTipSums::Motion::LinSpaced(1., 6.);
-  const NearTipSums::Tensors tensors = NearTipSums::Tensors::LinSpaced(7., 18.);
-  const NearTipSums::Gradients gradients = NearTipSums::Gradients::LinSpaced(1., 6.);
+  const NearTipSums::Values motion = NearTipSums::Values::LinSpaced(6, 1., 6.);
+  const NearTipSums::Values tensors = NearTipSums::Values::LinSpaced(12, 7., 18.);
+  const NearTipSums::Values gradients = NearTipSums::Values::LinSpaced(6, 1., 6.);
   one.add_sample();
-  one.add_site(2, 3, motion, tensors, gradients); // half-way between the points (1, 1) and (1, 2)
+  one.add_site(2, 3, {motion, tensors, gradients}); // half-way between the points (1, 1) and (1, 2)
   once.add(one, true);
   twice.add(once, true);
   const NearTipField f = one.mean(), m = once.mean(), back = twice.mean();
@@ -243,11 +243,11 @@ TEST(NearTipSums, TensorsAreMeansOverTheSamplesThatHaveThem)
 {
   NearTipGrid grid{d, d, 2, 2, 2};
   NearTipSums with(grid), without(grid), all(grid);
-  const NearTipSums::Tensors tensors = NearTipSums::Tensors::LinSpaced(7., 18.);
+  const NearTipSums::Values tensors = NearTipSums::Values::LinSpaced(12, 7., 18.);
   with.add_sample();
-  with.add_site(2, 2, NearTipSums::Motion::Constant(3.), tensors, std::nullopt);
+  with.add_site(2, 2, {NearTipSums::Values::Constant(6, 3.), tensors, {}});
   without.add_sample();
-  without.add_site(2, 2, NearTipSums::Motion::Constant(1.), std::nullopt, std::nullopt);
+  without.add_site(2, 2, {NearTipSums::Values::Constant(6, 1.), {}, {}});
   const std::size_t point = grid.point(1, 1);
   EXPECT_TRUE(std::isnan(without.mean().cauchy_stress[point](0, 0)));
   for (const NearTipSums *sums : {&with, &without, &without})

@@ -1,13 +1,10 @@
-"""Tables and plots of the claim on disorder."""
+"""Plots of the claim on disorder."""
 from latcon.report.claim_tables import Plot, groups, largest_text, sorted_by
 from latcon.report.panels import Grid, entry
 from latcon.report.pictures import BLUE, GREEN, RED
 
 MODULI = ("bulk modulus", "shear modulus")
-TABLES = {
-    "disorder": ({"shells": None, "modulus": MODULI},
-                 ("sheet", "ratio [1]", "reuss [1]", "effective_medium [1]", "width [1]")),
-}
+WORDS = {"modulus": MODULI}
 
 
 def draw_disorder(tables):

@@ -1,17 +1,9 @@
-"""Tables and plots of the claim on energy."""
+"""Plots of the claim on energy."""
 import numpy as np
 
-from latcon.report.claim_tables import WAVE, Plot, groups, largest_text, off, sorted_by, states
+from latcon.report.claim_tables import Plot, groups, largest_text, off, sorted_by, states
 from latcon.report.panels import MARKERS, Grid, colours_of, draw_waves, entry, headroom, logarithmic, note
 from latcon.report.pictures import BLACK, GREY
-
-TABLES = {
-    "sinusoidal_energy": ({"shells": None, "wave": ("L", "S")},
-                          WAVE + ("lattice", "local", "gradient", "filtered", "fem")),
-    "travelling_waves": ({"shells": None, "wave": ("L", "S")},
-                         WAVE + ("lattice_elastic [J/m^3]", "lattice_kinetic [J/m^3]", "fem_elastic [J/m^3]",
-                                 "fem_kinetic [J/m^3]", "fem_micro_inertia [J/m^3]", "theory [J/m^3]")),
-}
 
 
 def draw_sinusoidal_energy(tables):

@@ -15,34 +15,17 @@ namespace latcon::claims
 namespace
 {
 
-// Stiffness of one shell of bonds against waves along N, over the mass of a site: D = A2 k^2 - A4 k^4 + ...
-struct Series
+// Coefficient of k^2 by which waves of stiffness A2 k^2 - A4 k^4 soften, for both waves [unit of A4 over that of A2].
+Alpha softening(const Eigen::Matrix2d &A2, const Eigen::Matrix2d &A4, const Eigen::Vector2d &normal)
 {
-  Eigen::Matrix2d A2 = Eigen::Matrix2d::Zero(); // [m^2/s^2]
-  Eigen::Matrix2d A4 = Eigen::Matrix2d::Zero(); // [m^4/s^2]
-};
-
-std::array<Series, lattice::n_shells> series_by_shell(const lattice::TriangularLattice &lattice,
-                                                      const lattice::Material &material, const Eigen::Matrix2d &F,
-                                                      const Eigen::Vector2d &N)
-{
-  std::array<Series, lattice::n_shells> shells;
-  const double mass = lattice::site_mass(material, lattice);
-  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
-    if (const lattice::Shell *shell = material.shell(kind))
-    {
-      const Eigen::Vector2d R = lattice.bond_vector(kind);
-      const double length = lattice.rest_length(kind), stretch = (F * R).norm() / length, along = N.dot(R);
-      const Eigen::Vector2d n = (F * R).normalized();
-      const Eigen::Matrix2d H =
-        lattice::cross_section(*shell, lattice) / length / mass *
-        (lattice::stiffness(shell->law, stretch) * n * n.transpose() +
-         lattice::force(shell->law, stretch) / stretch * (Eigen::Matrix2d::Identity() - n * n.transpose()));
-      Series &series = shells[lattice::shell_of(kind)];
-      series.A2 += std::pow(along, 2) * H;
-      series.A4 += std::pow(along, 4) / 12. * H;
-    }
-  return shells;
+  Alpha alpha{};
+  const std::array<bridge::PlaneWave, 2> long_waves = bridge::plane_waves({A2, Eigen::Matrix2d::Zero()}, normal);
+  for (std::size_t w = 0; w < 2; ++w)
+  {
+    const Eigen::Vector2d &p = long_waves[w].polarisation;
+    alpha[w] = p.dot(A4 * p) / p.dot(A2 * p);
+  }
+  return alpha;
 }
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -87,12 +70,8 @@ Parts lattice_parts(const lattice::TriangularLattice &lattice, const lattice::Ma
       continue;
     const double length = lattice.rest_length(kind);
     const Eigen::Vector2d N = lattice.bond_vector(kind) / length;
-    const double weight = lattice::cross_section(*shell, lattice) * length / lattice.site_area();
-    const double stretch = (F * N).norm();
-    const Eigen::Vector2d n = (F * N).normalized();
-    const Eigen::Matrix2d h =
-      lattice::stiffness(shell->law, stretch) * n * n.transpose() +
-      lattice::force(shell->law, stretch) / stretch * (Eigen::Matrix2d::Identity() - n * n.transpose());
+    const double weight = bridge::bond_weight(lattice, *shell, kind);
+    const Eigen::Matrix2d h = bridge::bond_tangent(shell->law, F * N);
     // With G N by the free index J.
     parts.positive += matrix_of([&](const Unit &A, const Unit &B)
                                 { return weight * h(A.i, B.i) * (A.entries * N).dot(B.entries * N); });
@@ -116,26 +95,25 @@ double smallest(const Matrix6 &matrix)
 Alpha lattice_alpha(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                     const Eigen::Matrix2d &F, const Eigen::Vector2d &N, Alpha *nearest_part)
 {
-  const std::array<Series, lattice::n_shells> shells = series_by_shell(lattice, material, F, N);
-  Series all;
-  for (const Series &shell : shells)
-  {
-    all.A2 += shell.A2;
-    all.A4 += shell.A4;
-  }
-  const std::array<bridge::PlaneWave, 2> long_waves =
-    bridge::plane_waves({all.A2, Eigen::Matrix2d::Zero()}, bridge::wave_normal(F, N));
-  const double d2 = std::pow(lattice.spacing(), 2);
-  Alpha alpha{};
-  for (std::size_t w = 0; w < 2; ++w)
-  {
-    const Eigen::Vector2d &p = long_waves[w].polarisation;
-    const double unit = std::pow(long_waves[w].frequency, 2) * d2;
-    alpha[w] = p.dot(all.A4 * p) / unit;
-    if (nearest_part != nullptr)
-      (*nearest_part)[w] = p.dot(shells[0].A4 * p) / unit;
-  }
-  return alpha;
+  // Stiffness against waves along N over the mass of a site, lengths over d: D = A2 k^2 - A4 k^4 + ... [1/s^2]
+  Eigen::Matrix2d A2 = Eigen::Matrix2d::Zero(), A4 = A2, A4_of_nearest = A2;
+  const double mass = lattice::site_mass(material, lattice);
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+    if (const lattice::Shell *shell = material.shell(kind))
+    {
+      const Eigen::Vector2d R = lattice.bond_vector(kind);
+      const double length = lattice.rest_length(kind), along = N.dot(R) / lattice.spacing();
+      const Eigen::Matrix2d H =
+        lattice::cross_section(*shell, lattice) / length / mass * bridge::bond_tangent(shell->law, F * R / length);
+      A2 += std::pow(along, 2) * H;
+      A4 += std::pow(along, 4) / 12. * H;
+      if (lattice::shell_of(kind) == 0)
+        A4_of_nearest += std::pow(along, 4) / 12. * H;
+    }
+  const Eigen::Vector2d normal = bridge::wave_normal(F, N);
+  if (nearest_part != nullptr)
+    *nearest_part = softening(A2, A4_of_nearest, normal);
+  return softening(A2, A4, normal);
 }
 
 Alpha bloch_alpha(const lattice::TriangularLattice &lattice, const lattice::Material &material,
@@ -187,14 +165,9 @@ Alpha continuum_alpha(const WaveContinuum &medium, const Eigen::Matrix2d &F, con
   };
   const Eigen::Matrix2d one = stiffness(1.), two = stiffness(2.);
   const Eigen::Matrix2d H = (two - one) / 3., A2 = one - H;
-  const std::array<bridge::PlaneWave, 2> long_waves =
-    bridge::plane_waves({A2, Eigen::Matrix2d::Zero()}, bridge::wave_normal(F, N));
-  Alpha alpha{};
-  for (std::size_t w = 0; w < 2; ++w)
-  {
-    const Eigen::Vector2d &p = long_waves[w].polarisation;
-    alpha[w] = std::pow(medium.inertia.length / spacing, 2) - p.dot(H * p) / p.dot(A2 * p);
-  }
+  Alpha alpha = softening(A2, -H, bridge::wave_normal(F, N));
+  for (double &of_wave : alpha)
+    of_wave += std::pow(medium.inertia.length / spacing, 2);
   return alpha;
 }
 
@@ -280,11 +253,9 @@ double edge_decay(double spacing, const lattice::Material &material, double stre
     {
       const Eigen::Vector2d R = sheet.bond_vector(kind);
       const Eigen::Vector2d bond(stretch * R.x(), stretch_across * R.y());
-      const double length = sheet.rest_length(kind), lambda = bond.norm() / length;
-      const double across = std::pow(bond.normalized().y(), 2);
+      const double length = sheet.rest_length(kind);
       const double k =
-        lattice::cross_section(*shell, sheet) / length *
-        (lattice::stiffness(shell->law, lambda) * across + lattice::force(shell->law, lambda) / lambda * (1. - across));
+        lattice::cross_section(*shell, sheet) / length * bridge::bond_tangent(shell->law, bond / length)(1, 1);
       const long rows_apart = std::lround(R.y() / pitch);
       if (rows_apart == 1)
         adjacent += k;

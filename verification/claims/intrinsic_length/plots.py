@@ -1,4 +1,4 @@
-"""Tables and plots of the claim on the intrinsic length."""
+"""Plots of the claim on the intrinsic length."""
 import numpy as np
 
 from latcon.report.claim_tables import Plot, groups, largest, largest_text, range_text, sorted_by
@@ -6,13 +6,6 @@ from latcon.report.panels import Grid, curve, entry, headroom, logarithmic, note
 from latcon.report.pictures import BLACK, BLUE, GREEN, GREY, RED, SKY
 
 OTHER_COLOURS = ("#cc79a7", SKY, BLACK, GREY)
-
-TABLES = {
-    "dispersion": ({"shells": None}, ("angle [deg]", "alpha_L", "alpha_S", "nearest_L", "nearest_S", "isotropic_L",
-                                      "isotropic_S")),
-    "dispersion_runs": ({"shells": None}, ("angle [deg]", "alpha_L", "alpha_S")),
-    "edge_layer": ({"shells": None}, ("row", "deviation", "theory")),
-}
 
 
 def draw_dispersion(tables):
@@ -102,7 +95,7 @@ PLOTS = (
          "direction.",
          "α of ω² = c² k² (1 − α (k d)²) against the direction of the wave. Dashed: from the exact dispersion; "
          "dotted: the part that nearest bonds contribute; dash-dotted: what an isotropic gradient energy can have; "
-         "circles: fitted to runs of the lattice in time."),
+         "circles: fitted to runs of the lattice in time.", others=("dispersion_runs",)),
     Plot("edge_layer", draw_edge_layer,
          "At free edges the spacings of rows differ from the bulk if, and only if, there are next-nearest bonds.",
          "Distance between rows near a free edge, relative to that in the bulk, in a stretched sheet; full where "

@@ -76,14 +76,10 @@ double wave_bound(const bridge::Subject &subject, const Eigen::Matrix2d &F, cons
   return bound_of_harmonics(subject, 4,
                             [&](const lattice::Shell &shell, const lattice::Ring &ring, const Eigen::Vector2d &N)
                             {
-                              const Eigen::Vector2d n = F * N;
-                              const double stretch = n.norm(), l = ring.radius;
-                              const Eigen::Matrix2d along = n * n.transpose() / (stretch * stretch);
+                              const double l = ring.radius;
                               const double phase =
                                 std::pow(2. * std::sin(0.5 * l * K.dot(N)) / l, 2) / subject.material.density;
-                              return Eigen::Matrix2d(phase * (lattice::stiffness(shell.law, stretch) * along +
-                                                              lattice::force(shell.law, stretch) / stretch *
-                                                                (Eigen::Matrix2d::Identity() - along)));
+                              return (phase * bridge::bond_tangent(shell.law, F * N)).eval();
                             });
 }
 

@@ -1,20 +1,14 @@
-"""Tables and plots of the claim on pre-stretch: errors around holes and notches."""
+"""Plots of the claim on pre-stretch: errors around holes and notches."""
 from functools import partial
 
 import numpy as np
 
-from latcon.report.claim_tables import STATE, Plot, fitted_order, groups, sorted_by, states
+from latcon.report.claim_tables import Plot, fitted_order, groups, sorted_by, states
 from latcon.report.panels import LAW_COLOURS, Grid, entry, logarithmic, note
 from latcon.report.pictures import BLACK, GREY, SKY
 
 PARTS = ("displacement", "stress", "energy", "reaction", "shape")
 OTHER_COLOURS = ("#cc79a7", SKY, BLACK, GREY)
-CUT = STATE + PARTS
-
-TABLES = {
-    "hole": ({"shells": None, "law": None}, CUT + ("R/d",)),
-    "notch": ({"shells": None, "law": None}, CUT + ("length/d",)),
-}
 
 
 def draw_cut(tables, name, size, label):

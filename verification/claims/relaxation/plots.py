@@ -1,15 +1,11 @@
-"""Tables and plots of the claim on relaxation."""
+"""Plots of the claim on relaxation."""
 import numpy as np
 
 from latcon.report.claim_tables import Plot, groups, largest_text, sorted_by
 from latcon.report.panels import Grid, entry
 from latcon.report.pictures import BLUE, GREEN, RED
 
-TABLES = {
-    "relaxation": ({"shells": None, "integrator": ("velocity Verlet", "Runge-Kutta-Chebyshev")},
-                   ("t [s]", "lattice_overstress [Pa]", "theory_overstress [Pa]", "lattice_stored [J/m]",
-                    "theory_stored [J/m]", "lattice_dissipated [J/m]", "theory_dissipated [J/m]")),
-}
+WORDS = {"integrator": ("velocity Verlet", "Runge-Kutta-Chebyshev")}
 
 
 def draw_relaxation(tables):

@@ -1,4 +1,4 @@
-"""Table and plot of the claim on a running crack."""
+"""Plot of the claim on a running crack."""
 import numpy as np
 from matplotlib.colors import TwoSlopeNorm
 
@@ -9,10 +9,7 @@ from latcon.report.pictures import BLACK
 SIDES = {"lattice": "lattice", "local": "local continuum", "gradient": "gradient continuum",
          "viscous-gradient": "with gradient viscosity"}
 
-TABLES = {
-    "running_crack": ({"shells": None, "side": (*SIDES, "bonds-local", "bonds-gradient", "bonds-viscous-gradient")},
-                      ("X/d", "Y/d", "v_x [m/s]", "v_y [m/s]", "opening_stress [Pa]", "excess_y [m]")),
-}
+WORDS = {"side": (*SIDES, "bonds-local", "bonds-gradient", "bonds-viscous-gradient")}
 
 
 def draw_running_crack(tables):
@@ -24,7 +21,7 @@ def draw_running_crack(tables):
     grid = Grid(names, len(SIDES) + 1, [entry("tip", "", BLACK, "+")], gap=0.5)  # the last one for bars of colours
     metrics = []
     for number, (name, (column, _)) in enumerate((name, quantity) for name in shells for quantity in quantities):
-        part = {key: values[table["shells"] == name] for key, values in table.items()}
+        part = table.where(table["shells"] == name)
         unit = 1e-6 if "Pa" in column else 1.0
         shown = part[column] * unit
         known = shown[np.isfinite(shown)]

@@ -1,13 +1,10 @@
-"""Tables and plot of the claim on steady cracks."""
+"""Plot of the claim on steady cracks."""
 import numpy as np
 
 from latcon.report.claim_tables import Plot, groups, largest_text
 from latcon.report.panels import Grid, colours_of, entry
 
-TABLES = {
-    "steady_crack": ({}, ("beta", "driving", "breaking elongation", "lattice speed", "exact speed")),
-    "steady_crack_curve": ({"exists": ("yes", "no")}, ("beta", "speed", "driving")),
-}
+WORDS = {"exists": ("yes", "no")}
 
 
 def draw_steady_crack(tables):
@@ -37,5 +34,5 @@ PLOTS = (
          "A steady crack of the simulator has the speed of the exact solution.",
          "Speed of a steady crack over the speed of shear waves, against the driving over Griffith's threshold, for a low "
          "and a high viscosity β. Lines (not in the quick version): exact solution, dotted where other bonds would break "
-         "too, or bonds of the crack too early."),
+         "too, or bonds of the crack too early.", others=("steady_crack_curve",)),
 )

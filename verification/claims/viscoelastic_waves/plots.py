@@ -1,19 +1,11 @@
-"""Tables and plots of the claim on waves in lattices with Maxwell branches."""
+"""Plots of the claim on waves in lattices with Maxwell branches."""
 from functools import partial
 
 from latcon.report.claim_tables import Plot, groups, largest_text, sorted_by, states
 from latcon.report.panels import WAVES, Grid, curve, entry, logarithmic_along_x
 from latcon.report.pictures import BLUE, GREY
 
-
-def columns(theory, run):
-    """Columns of the table of the waves in a run, compared with a theory."""
-    return ({"shells": None, "part": ("one branch", "own branches"), "wave": ("L", "S")},
-            ("F_xx", "F_yy", "k d", "w tau", "rubbery [rad/s]", "glassy [rad/s]",
-             *(f"{side}_{quantity}" for side in (theory, run) for quantity in ("frequency [rad/s]", "decay [1/s]"))))
-
-
-TABLES = {"viscoelastic_waves": columns("theory", "lattice"), "viscoelastic_elements": columns("continuum", "fem")}
+WORDS = {"part": ("one branch", "own branches")}
 
 
 def draw_waves(tables, name, theory, run, run_name):

@@ -101,9 +101,9 @@ void network_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, con
     share.add((network - lattice_matrices.col(0)).norm() / (mean.bound + largest * mean.mean.norm()));
 
     const auto closed = continuum_waves(gradient, F, K);
-    const auto elements = discrete_frequencies(gradient, F, K, mesh);
+    const auto elements = discrete_waves(gradient, F, K, mesh);
     for (std::size_t w = 0; w < 2; ++w)
-      elements_error.add_relative(elements[w], closed[w].frequency);
+      elements_error.add_relative(elements[w].frequency, closed[w].frequency);
   }
 
   const Rows rows(outcome.results, "wave-speeds", subject.name + ", " + state_name(F) + ": ");

@@ -1,18 +1,9 @@
-"""Tables and plots of the claim on wave speeds."""
+"""Plots of the claim on wave speeds."""
 import numpy as np
 
-from latcon.report.claim_tables import WAVE, Plot, groups, largest, off, sorted_by, states
+from latcon.report.claim_tables import Plot, groups, largest, off, sorted_by, states
 from latcon.report.panels import WAVES, Grid, curve, draw_waves, entry, logarithmic, logarithmic_along_x
 from latcon.report.pictures import BLUE
-
-TABLES = {
-    "wave_speeds": ({"shells": None, "wave": ("L", "S")},
-                    WAVE + ("local [m/s]", "bloch [m/s]", "lattice [m/s]", "gradient [m/s]", "isotropic [m/s]",
-                            "fem [m/s]")),
-    "attenuation": ({"shells": None, "wave": ("L", "S")},
-                    WAVE + tuple(f"{side}_{what}" for side in ("theory", "lattice", "continuum", "fem")
-                                 for what in ("frequency [rad/s]", "decay [1/s]"))),
-}
 
 
 def draw_wave_speeds(tables):

@@ -68,7 +68,8 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
         rows.attempt(where.str(), compute);
       };
       attempt("lattice run", [&] { run = frequencies(lattice_waves(cell, of_runs, F)); });
-      attempt("finite elements", [&] { elements = discrete_frequencies(media.gradient, F, cell.K, options.mesh); });
+      attempt("finite elements",
+              [&] { elements = frequencies(discrete_waves(media.gradient, F, cell.K, options.mesh)); });
       for (std::size_t w = 0; w < 2; ++w)
       {
         run_against_bloch.add_relative(run[w] / k, bloch[w] / k);
@@ -181,7 +182,7 @@ void damping_orders(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
     std::array<bridge::PlaneWave, 2> elements{};
     elements[0].decay = elements[1].decay = unknown;
     rows.attempt("finite elements, damped waves",
-                 [&] { elements = discrete_damped_waves(media.gradient, F, cell.K, options.mesh); });
+                 [&] { elements = discrete_waves(media.gradient, F, cell.K, options.mesh); });
     const auto closed = continuum_waves(media.gradient, F, cell.K);
     for (std::size_t w = 0; w < 2; ++w)
       elements_against_closed.add_relative(elements[w].decay, closed[w].decay);
