@@ -257,10 +257,7 @@ void Case::check(Parameters &p)
             {"Sheet/hole radius", "Sheet/notch length"});
   continuum.check(p, has_inner_edge());
   if (has_sheet())
-  {
-    const lattice::TriangularLattice sheet = lattice();
-    continuum.check_values(p, {sheet.length(), sheet.height(), hole_radius, notch_length});
-  }
+    continuum.check_values(p, *this);
 
   for (const auto &[name, extent] : {std::pair{"ahead", near_tip_ahead}, std::pair{"behind", near_tip_behind},
                                      std::pair{"half height", near_tip_half_height}})

@@ -48,9 +48,6 @@ std::string Parameters::Entry::place() const
   return file_place.empty() ? "default" : file_place;
 }
 
-Parameters::Parameters() = default;
-Parameters::~Parameters() = default;
-
 void Parameters::read_file(const std::string &path)
 {
   file_ = printable(path, path.size());

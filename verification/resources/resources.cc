@@ -46,11 +46,6 @@ constexpr double beside_kernel = 1.2;
 // With more steps, a step does not change a time in double precision.
 constexpr double max_steps = 1e15;
 
-bool is_first_rank()
-{
-  return support::is_root_rank();
-}
-
 // Current and additional memory of the ranks on this machine.
 struct OnMachine
 {
@@ -61,7 +56,7 @@ OnMachine on_machine(const MemoryNeed &need)
 {
   const double ranks = support::n_ranks();
   std::array<double, 2> sums{support::resident_memory(),
-                             need.shared / ranks + (is_first_rank() ? need.first_rank : 0.)};
+                             need.shared / ranks + (support::is_root_rank() ? need.first_rank : 0.)};
   MPI_Comm machine = MPI_COMM_NULL;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, machine);
