@@ -6,6 +6,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "verification/input/case_text.h"
+
 namespace latcon::input
 {
 
@@ -56,11 +58,6 @@ constexpr std::string_view usual_units[][6] = {{"m", "nm", "um", "mm", "cm", "km
                                                {"kg/m^3", "g/cm^3", "", "", "", ""},
                                                {"1", "%", "", "", "", ""}};
 
-bool is_blank(const char c)
-{
-  return c == ' ' || c == '\t';
-}
-
 std::optional<Unit> single_unit(const std::string_view name)
 {
   // Whole names first: "min" is a minute, not a milli-inch, and "Pa" is no prefix.
@@ -97,7 +94,7 @@ std::optional<Unit> parse_unit(const std::string &text)
   while (at < all.size())
   {
     const char c = all[at];
-    if (is_blank(c))
+    if (c == ' ' || c == '\t')
       ++at;
     else if (c == '*' || c == '/')
     {
@@ -159,11 +156,8 @@ std::string units_like(const std::string &unit)
 ParsedNumber read_quantity(const std::string &text, const std::string &unit)
 {
   ParsedNumber quantity;
-  std::string_view rest = text;
-  while (!rest.empty() && is_blank(rest.front()))
-    rest.remove_prefix(1);
-  while (!rest.empty() && is_blank(rest.back()))
-    rest.remove_suffix(1);
+  const std::string stripped = trimmed(text);
+  std::string_view rest = stripped;
   // A leading plus is common in data and unknown to from_chars.
   if (rest.size() > 1 && rest[0] == '+' && rest[1] != '-' && rest[1] != '+')
     rest.remove_prefix(1);
@@ -176,15 +170,13 @@ ParsedNumber read_quantity(const std::string &text, const std::string &unit)
     return quantity;
   }
   const std::string_view number = rest.substr(0, static_cast<std::size_t>(end - rest.data()));
-  std::string_view behind = rest.substr(number.size());
-  while (!behind.empty() && is_blank(behind.front()))
-    behind.remove_prefix(1);
+  const std::string behind = trimmed(std::string(rest.substr(number.size())));
   quantity.has_unit = !behind.empty();
 
   Unit given;
   if (quantity.has_unit)
   {
-    const std::optional<Unit> parsed = parse_unit(std::string(behind));
+    const std::optional<Unit> parsed = parse_unit(behind);
     const char first = behind.front();
     const bool looks_like_unit = (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z') || first == '%' ||
                                  static_cast<unsigned char>(first) >= 0x80;
