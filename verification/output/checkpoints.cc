@@ -11,6 +11,7 @@
 #include "support/errors.h"
 #include "support/folder_lock.h"
 #include "support/ranks.h"
+#include "support/text_wrap.h"
 #include "verification/input/case.h"
 #include "verification/input/options.h"
 #include "verification/input/parameters.h"
@@ -71,9 +72,7 @@ std::string hash_in(const fs::path &path)
 
 std::string name_of(std::size_t step)
 {
-  char name[48];
-  std::snprintf(name, sizeof(name), "checkpoint-%012zu.h5", step);
-  return name;
+  return support::formatted("checkpoint-%012zu.h5", step);
 }
 
 } // namespace
