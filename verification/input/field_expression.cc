@@ -22,12 +22,8 @@ bool draws_numbers(const std::string &expression)
 // Returns whether an expression assigns, as in `x = 1`, which muparser evaluates to 1. Comparisons are allowed.
 bool assigns(const std::string &expression)
 {
-  for (std::size_t at = expression.find('='); at != std::string::npos; at = expression.find('=', at + 1))
-    if (at + 1 < expression.size() && expression[at + 1] == '=')
-      ++at;
-    else if (at == 0 || std::string("<>!").find(expression[at - 1]) == std::string::npos)
-      return true;
-  return false;
+  const std::string others = std::regex_replace(expression, std::regex("=="), "##");
+  return std::regex_search(others, std::regex("(^|[^<>!])="));
 }
 
 // Returns the expression without blanks between a function and its arguments, which muparser does not accept.

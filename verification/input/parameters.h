@@ -17,7 +17,6 @@ namespace latcon::input
 {
 
 struct Assignment;
-struct SectionStart;
 
 /// Range of numbers that an entry allows, in its SI unit.
 struct Range
@@ -232,8 +231,6 @@ private:
   void add_words(const std::string &section, const std::string &name, const std::vector<std::string> &words,
                  const std::function<void(std::size_t)> &set, const std::function<std::size_t()> &get,
                  const std::string &documentation, ValueType type = ValueType::word);
-  void enter(const SectionStart &start);
-  void take(const Assignment &assignment);
   void take_override(const std::string &text);
   void set(const Assignment &assignment, const std::string &shown, bool is_override);
   void report(const std::string &place, const std::string &text);

@@ -109,13 +109,11 @@ Checkpoints::Checkpoints(const input::Options &options, const input::Parameters 
         best = place;
     }
   }
-  const auto told = [](const auto &value) { return support::broadcast(value); };
-  best.file = told(best.file.string());
-  best.step = told(best.step);
-  best.time = told(best.time);
-  best.commit = told(best.commit);
-  best.program_hash = told(best.program_hash);
-  problems = told(problems);
+  best.file = support::broadcast(best.file.string());
+  best.step = support::broadcast(best.step);
+  best.time = support::broadcast(best.time);
+  for (std::string *text : {&best.commit, &best.program_hash, &problems})
+    *text = support::broadcast(*text);
   if (!best.file.empty())
   {
     found_ = best;

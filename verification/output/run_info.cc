@@ -38,6 +38,14 @@ std::string mpi_version()
   return all.substr(0, all.find_first_of(",\n"));
 }
 
+// Returns the number of ranks; 1 if MPI is not initialised.
+unsigned int n_ranks()
+{
+  int running = 0;
+  MPI_Initialized(&running);
+  return running != 0 ? support::n_ranks() : 1;
+}
+
 } // namespace
 
 Json RunInfo::standard_facts(const std::optional<support::ExitCode> exit_code, const std::string &verdict) const
@@ -140,7 +148,7 @@ std::uint64_t peak_memory()
 
 RunInfo::RunInfo(std::vector<std::string> command_line)
   : command_line_(std::move(command_line)), start_(std::chrono::steady_clock::now()), n_threads_(omp_get_max_threads()),
-    n_ranks_(support::n_ranks()), facts_(std::make_shared<Json>(Json::object()))
+    n_ranks_(n_ranks()), facts_(std::make_shared<Json>(Json::object()))
 {
 }
 
