@@ -6,8 +6,6 @@
 #include <string_view>
 #include <system_error>
 
-#include "verification/input/case_text.h"
-
 namespace latcon::input
 {
 
@@ -57,6 +55,12 @@ constexpr std::string_view usual_units[][6] = {{"m", "nm", "um", "mm", "cm", "km
                                                {"m/s", "cm/s", "mm/s", "km/s", "km/h", ""},
                                                {"kg/m^3", "g/cm^3", "", "", "", ""},
                                                {"1", "%", "", "", "", ""}};
+
+std::string_view without_blanks(const std::string_view text)
+{
+  const std::size_t first = std::min(text.find_first_not_of(" \t"), text.size());
+  return text.substr(first, text.find_last_not_of(" \t") + 1 - first);
+}
 
 std::optional<Unit> single_unit(const std::string_view name)
 {
@@ -156,8 +160,7 @@ std::string units_like(const std::string &unit)
 ParsedNumber read_quantity(const std::string &text, const std::string &unit)
 {
   ParsedNumber quantity;
-  const std::string stripped = trimmed(text);
-  std::string_view rest = stripped;
+  std::string_view rest = without_blanks(text);
   // A leading plus is common in data and unknown to from_chars.
   if (rest.size() > 1 && rest[0] == '+' && rest[1] != '-' && rest[1] != '+')
     rest.remove_prefix(1);
@@ -170,7 +173,7 @@ ParsedNumber read_quantity(const std::string &text, const std::string &unit)
     return quantity;
   }
   const std::string_view number = rest.substr(0, static_cast<std::size_t>(end - rest.data()));
-  const std::string behind = trimmed(std::string(rest.substr(number.size())));
+  const std::string behind(without_blanks(rest.substr(number.size())));
   quantity.has_unit = !behind.empty();
 
   Unit given;
