@@ -1,7 +1,9 @@
 /// Text layout in terminal columns.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,15 @@ namespace latcon::support
 
 /// Returns a text with blanks behind it, as wide as `width` or wider.
 [[nodiscard]] std::string padded(const std::string &text, std::size_t width);
+
+/// Returns at most 63 characters of numbers in a format of std::printf().
+template <class... Numbers>
+[[nodiscard]] std::string formatted(const char *format, Numbers... numbers)
+{
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), format, numbers...);
+  return text.data();
+}
 
 /// Breaks a text into lines of at most `width` columns, between words where possible. Replaces control characters,
 /// which would break a table, by question marks. Returns at least one line, which may be empty.

@@ -23,12 +23,12 @@ class EdgeDisplacement : public dealii::Function<2>
 public:
   EdgeDisplacement(const input::EdgeCase &edge, const Eigen::Matrix2d &F, double extent)
     : dealii::Function<2>(2),
-      loading_(F), is_loading_{edge.displacement_x == "loading", edge.displacement_y == "loading"}
+      loading_(F), is_loading_{edge.displacement.x == "loading", edge.displacement.y == "loading"}
   {
     const auto expression = [](const std::string &text) { return text == "loading" || text == "free" ? "0" : text; };
     input::FieldCase given;
-    given.x = expression(edge.displacement_x);
-    given.y = expression(edge.displacement_y);
+    given.x = expression(edge.displacement.x);
+    given.y = expression(edge.displacement.y);
     given_ = std::make_unique<FieldFunction>(given, extent);
   }
 
@@ -133,7 +133,7 @@ void ContinuumModel::make_conditions(const input::Case &input)
     if (edge.condition == input::EdgeCase::Condition::held)
       conditions_.displacements.push_back(
         {id, std::make_shared<EdgeDisplacement>(edge, F, extent_),
-         dealii::ComponentMask(std::vector<bool>{edge.displacement_x != "free", edge.displacement_y != "free"})});
+         dealii::ComponentMask(std::vector<bool>{edge.displacement.x != "free", edge.displacement.y != "free"})});
     if (edge.condition == input::EdgeCase::Condition::periodic)
     {
       if (id % 2 == 0)

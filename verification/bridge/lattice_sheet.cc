@@ -15,8 +15,8 @@ using Condition = input::EdgeCase::Condition;
 void check_edge(const input::EdgeCase &edge, input::Parameters &p, const std::string &command, bool may_roll)
 {
   if (edge.condition == Condition::held && !(may_roll && edge.is_roller()) &&
-      (edge.displacement_x != "loading" || edge.displacement_y != "loading"))
-    p.error(edge.name + (edge.displacement_x != "loading" ? "/displacement x" : "/displacement y"),
+      (edge.displacement.x != "loading" || edge.displacement.y != "loading"))
+    p.error(edge.name + (edge.displacement.x != "loading" ? "/displacement x" : "/displacement y"),
             command + " supports held edges only at the homogeneous loading; give displacement = loading for " +
               (may_roll ? "one or both" : "both") + " components, or condition = free",
             {edge.name + "/condition"});

@@ -17,7 +17,6 @@
 #include "verification/input/sha256.h"
 #include "verification/output/checkpoints.h"
 #include "verification/output/output_file.h"
-#include "verification/output/output_list.h"
 
 namespace latcon::commands
 {

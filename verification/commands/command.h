@@ -93,7 +93,7 @@ std::unique_ptr<support::FolderLock> lock_directory(const std::string &directory
 class Run
 {
 public:
-  /// Creates and locks the directory, moves files of an earlier run aside (see output_list.h) unless this one resumes,
+  /// Creates and locks the directory, moves files of an earlier run aside (see output_file.h) unless this one resumes,
   /// and writes case.prm and run.json. To be constructed once the input is known to be valid.
   /// @throws InputError if another process writes to the directory, or case.prm would replace the user's own case:
   /// nothing is written then @throws OutputError

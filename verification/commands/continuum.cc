@@ -7,7 +7,6 @@
 #include "verification/commands/element_motion.h"
 #include "verification/commands/equilibrium.h"
 #include "verification/output/checkpoints.h"
-#include "verification/resources/continuum_resources.h"
 #include "verification/resources/resources.h"
 
 namespace latcon::commands

@@ -22,12 +22,6 @@ constexpr double cost_of_motion_frame = 0.1;
 // Of a compressed frame with all fields; 373 and 386 at the start and the end of a crack through 3024 sites.
 constexpr double bytes_of_site_on_disk = 380.;
 
-// Number of frames of a motion: the first, the last, and those in between.
-double frames_of(const input::Case &input, double duration)
-{
-  return 2. + (input.frame_interval > 0. ? std::floor(duration / input.frame_interval) : 0.);
-}
-
 std::string seconds_text(double seconds)
 {
   std::ostringstream text;
@@ -50,7 +44,8 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
   std::ostringstream out;
   out << (sheet.is_triangular() ? "# lattice: " : "# nonlocal continuum: ") << sites << " sites, " << bonds
       << " bonds, " << 2 * sites << " unknowns, " << sheet.length() << " m x " << sheet.height() << " m\n";
-  double steps = 0., frames = 2., at_most = 1.; // at_most: maximum number of steps over the expected one
+  double steps = 0., frames = 2. /* the first and the last */,
+         at_most = 1.; // at_most: maximum number of steps over the expected one
   if (run != resources::RunKind::equilibrium)
   {
     steps = std::ceil(input.end_time / stepping.step);
@@ -64,7 +59,8 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
       out << ", " << steps << " if the crack is as fast as shear waves of the unloaded sheet";
     }
     out << "\n";
-    frames = frames_of(input, steps * stepping.step);
+    if (input.frame_interval > 0.)
+      frames += std::floor(steps * stepping.step / input.frame_interval);
     if (const double parts = resources::parts_of_first_step(input, stepping, run); parts > 1.)
       out << "# bonds of the loaded sheet are so short that the first step is made in " << parts
           << " parts; the time below is that of all steps likewise\n";

@@ -1,9 +1,7 @@
 #include "verification/commands/crack_summary.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "support/text_wrap.h"
@@ -17,14 +15,8 @@ constexpr std::size_t columns = 120;
 // Leaves room for the measured quantities; results.csv has all rows.
 constexpr std::size_t most_failing_rows = 4;
 
-// Unit and scale for display.
-struct Display
-{
-  double scale;
-  std::string unit;
-};
-
-Display display(const std::string &unit)
+// Scale and unit for display.
+std::pair<double, std::string> display(const std::string &unit)
 {
   if (unit == "m")
     return {1e2, " cm"};
@@ -37,28 +29,21 @@ Display display(const std::string &unit)
   return {1., unit == "1" ? "" : " " + unit};
 }
 
-std::string format_number(const char *format, int digits, double value)
-{
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), format, digits, value);
-  return text.data();
-}
-
 // A number with a readable unit: lengths in cm, areas in mm^2, times in ms. @param deviation standard deviation in the
 // same unit, or none
 std::string quantity_text(const double value, const std::optional<double> deviation, const std::string &unit)
 {
-  const Display shown = display(unit);
+  const auto [scale, symbol] = display(unit);
   // Equal values have a deviation of round-off.
   if (!deviation || !(*deviation > 1e-12 * std::abs(value)))
-    return format_number("%.*g", 4, shown.scale * value) + shown.unit;
+    return support::formatted("%.4g", scale * value) + symbol;
   // Two digits of the deviation, and the value to the same decimal place.
-  const double spread = shown.scale * *deviation;
+  const double spread = scale * *deviation;
   const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(spread))), 0, 12);
-  if (digits > 6 && std::abs(shown.scale * value) < 1e-3)
-    return format_number("%.*e", 1, shown.scale * value) + " ± " + format_number("%.*e", 1, spread) + shown.unit;
-  return format_number("%.*f", digits, shown.scale * value) + " ± " + format_number("%.*f", digits, spread) +
-         shown.unit;
+  if (digits > 6 && std::abs(scale * value) < 1e-3)
+    return support::formatted("%.1e", scale * value) + " ± " + support::formatted("%.1e", spread) + symbol;
+  return support::formatted("%.*f", digits, scale * value) + " ± " + support::formatted("%.*f", digits, spread) +
+         symbol;
 }
 
 // One quantity: "  wavelength, undeformed   2.359 ± 0.026 cm    reference 2.3 cm, +2.6 %".
@@ -73,11 +58,7 @@ std::string line_of(const std::string &name, const std::optional<analysis::Measu
     return line + "\n";
   line = support::padded(line, 52) + "reference " + quantity_text(*reference, {}, unit);
   if (measured)
-  {
-    std::array<char, 32> percent{};
-    std::snprintf(percent.data(), percent.size(), ", %+.1f %%", 100. * (measured->value / *reference - 1.));
-    line += percent.data();
-  }
+    line += support::formatted(", %+.1f %%", 100. * (measured->value / *reference - 1.));
   return line + "\n";
 }
 
@@ -104,11 +85,7 @@ std::string times_text(const std::vector<std::pair<std::string, double>> &times)
 {
   std::string text;
   for (const auto &[phase, seconds] : times)
-  {
-    std::array<char, 32> number{};
-    std::snprintf(number.data(), number.size(), seconds < 10. ? " %.1f s" : " %.0f s", seconds);
-    text += (text.empty() ? "" : ", ") + phase + number.data();
-  }
+    text += (text.empty() ? "" : ", ") + phase + support::formatted(seconds < 10. ? " %.1f s" : " %.0f s", seconds);
   return text;
 }
 

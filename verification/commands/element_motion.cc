@@ -16,7 +16,6 @@
 #include "verification/commands/equilibrium.h"
 #include "verification/commands/motion.h"
 #include "verification/output/continuum_record.h"
-#include "verification/output/mechanism_names.h"
 
 namespace latcon::commands
 {

@@ -30,16 +30,6 @@ const input::Parameters &declared()
   return parameters;
 }
 
-std::string default_of(const input::Declaration &entry)
-{
-  return entry.presence == input::Presence::required ? "required" : entry.default_text;
-}
-
-std::string unit_of(const input::Declaration &entry)
-{
-  return entry.unit == "1" ? "-" : entry.unit;
-}
-
 // The text in lines that begin below one another, the first after `before`.
 std::string hanging(const std::string &before, const std::string &text)
 {
@@ -57,9 +47,13 @@ std::string section_text(const std::string &section)
   std::string text = section + "\n";
   for (const input::Declaration &entry : declared().declarations())
     if (entry.section == section)
-      text += hanging("  " + support::padded(entry.name, name_width) + support::padded(unit_of(entry), unit_width) +
-                        support::padded(default_of(entry), default_width) + " ",
+    {
+      const std::string value = entry.presence == input::Presence::required ? "required" : entry.default_text;
+      text += hanging("  " + support::padded(entry.name, name_width) +
+                        support::padded(entry.unit == "1" ? "-" : entry.unit, unit_width) +
+                        support::padded(value, default_width) + " ",
                       entry.documentation);
+    }
   return text;
 }
 

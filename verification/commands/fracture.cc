@@ -177,16 +177,12 @@ support::ExitCode end_crack(const input::Case &input, const input::Options &opti
   return exit_code == support::ExitCode::done ? drawn : exit_code;
 }
 
-struct Crack
-{
-  analysis::CrackMeasurement measurement;
-  output::Results results;
-};
-
-// Moves the sheet until the crack reaches the stop position or the time ends. Collective, with the same results on
-// every rank.
-Crack run_crack(const input::Case &input, const lattice::TriangularLattice &sheet, bool skip_verification,
-                output::Checkpoints &checkpoints, Run &run)
+// Moves the sheet until the crack reaches the stop position or the time ends. Collective, with the same measurement and
+// rows on every rank.
+std::pair<analysis::CrackMeasurement, output::Results> run_crack(const input::Case &input,
+                                                                 const lattice::TriangularLattice &sheet,
+                                                                 bool skip_verification,
+                                                                 output::Checkpoints &checkpoints, Run &run)
 {
   const lattice::RowPartition band(sheet, MPI_COMM_WORLD);
   const std::unique_ptr<lattice::Simulation> cracked = input::cracked_sheet(input, band);
@@ -242,9 +238,9 @@ support::ExitCode run_fracture(const input::Options &options)
   if (!options.skip_verification)
     results = passed_or_reported(input, claims_before_fracture(material, options.on_continuum),
                                  bridge::laws_of_lattice(), options, run);
-  const Crack crack = run_crack(input, sheet, options.skip_verification, checkpoints, run);
-  results.add(crack.results);
-  return end_crack(input, options, run, results, crack.measurement);
+  const auto [crack, rows] = run_crack(input, sheet, options.skip_verification, checkpoints, run);
+  results.add(rows);
+  return end_crack(input, options, run, results, crack);
 }
 
 } // namespace latcon::commands

@@ -113,16 +113,8 @@ void Motion::go(const std::string &phase_name)
 output::Result ledger_row(const std::string &claim, const claims::Sides &sides, double imbalance,
                           const output::Tolerance &allowed)
 {
-  return {claim,
-          "energy imbalance over energy exchanged",
-          "1",
-          sides.lattice,
-          sides.continuum,
-          {},
-          imbalance,
-          allowed,
-          false,
-          output::RowKind::ledger};
+  const std::string quantity = "energy imbalance over energy exchanged";
+  return {claim, quantity, "1", sides.lattice, sides.continuum, {}, imbalance, allowed, false, output::RowKind::ledger};
 }
 
 LatticeMotion::LatticeMotion(const input::Case &input, lattice::Simulation &simulation,

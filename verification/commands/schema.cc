@@ -1,4 +1,3 @@
-#include <charconv>
 #include <cmath>
 #include <iostream>
 
@@ -7,7 +6,6 @@
 #include "support/ranks.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
-#include "verification/input/case_text.h"
 #include "verification/input/files.h"
 
 namespace latcon::commands
@@ -20,35 +18,8 @@ using Json = nlohmann::ordered_json;
 // Increases with each change that a reader of the previous document would misunderstand.
 constexpr int format_version = 1;
 
-const char *name_of(input::ValueType type)
-{
-  switch (type)
-  {
-  case input::ValueType::number:
-    return "number";
-  case input::ValueType::whole_number:
-    return "integer";
-  case input::ValueType::numbers:
-    return "numbers";
-  case input::ValueType::boolean:
-    return "boolean";
-  case input::ValueType::word:
-    return "word";
-  case input::ValueType::text:
-    return "text";
-  }
-  return "";
-}
-
-template <typename Number>
-Number parse_number(const std::string &text)
-{
-  Number number{};
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size())
-    throw std::logic_error("schema: '" + text + "' is no number");
-  return number;
-}
+// Names of input::ValueType.
+constexpr const char *type_names[] = {"number", "integer", "numbers", "boolean", "word", "text"};
 
 // Value of an entry in the type of JSON that corresponds to its own; `auto` is null.
 Json value_of(const input::Declaration &entry, const std::string &text)
@@ -57,23 +28,13 @@ Json value_of(const input::Declaration &entry, const std::string &text)
     return nullptr;
   switch (entry.type)
   {
-  case input::ValueType::number:
-    return parse_number<double>(text);
+  case input::ValueType::number: // also 1 is a real number
+    return Json::parse(text).get<double>();
   case input::ValueType::whole_number:
-    return text[0] == '-' ? Json(parse_number<std::int64_t>(text)) : Json(parse_number<std::uint64_t>(text));
   case input::ValueType::boolean:
-    return text == "true";
+    return Json::parse(text);
   case input::ValueType::numbers:
-  {
-    Json list = Json::array();
-    for (std::size_t at = 0; !text.empty() && at <= text.size();)
-    {
-      const std::size_t end = std::min(text.find(',', at), text.size());
-      list.push_back(parse_number<double>(input::trimmed(text.substr(at, end - at))));
-      at = end + 1;
-    }
-    return list;
-  }
+    return Json::parse("[" + text + "]").get<std::vector<double>>();
   default:
     return text;
   }
@@ -105,7 +66,7 @@ Json describe(const input::Declaration &entry)
   const bool required = entry.presence == input::Presence::required;
   Json item{{"section", entry.section},
             {"name", entry.name},
-            {"type", name_of(entry.type)},
+            {"type", type_names[static_cast<std::size_t>(entry.type)]},
             {"unit", entry.unit.empty() ? Json() : Json(entry.unit)},
             {"required", required}};
   if (entry.range)
@@ -119,15 +80,6 @@ Json describe(const input::Declaration &entry)
   item["allowed"] = entry.rule;
   item["documentation"] = entry.documentation;
   return item;
-}
-
-// Files of the shipped cases by name.
-Json shipped_case_files()
-{
-  Json cases = Json::object();
-  for (const std::string &name : input::shipped_cases())
-    cases[name] = input::shipped_case_file(name);
-  return cases;
 }
 
 } // namespace
@@ -145,12 +97,13 @@ nlohmann::ordered_json schema_document(const input::Options &options)
   if (options.case_is_given)
     parameters.finish(); // an invalid case has no material
   const std::vector<input::Declaration> entries = parameters.declarations();
-  Json document;
-  document["format"] = "latcon-schema";
-  document["format_version"] = format_version;
-  document["version"] = output::program_version();
-  document["git_commit"] = output::git_commit();
-  document["cases"] = shipped_case_files();
+  Json document{{"format", "latcon-schema"},
+                {"format_version", format_version},
+                {"version", output::program_version()},
+                {"git_commit", output::git_commit()},
+                {"cases", Json::object()}};
+  for (const std::string &name : input::shipped_cases())
+    document["cases"][name] = input::shipped_case_file(name);
   const lattice::Material material = input.material();
   for (const claims::Claim &claim : claim_registry())
     document["claims"].push_back({{"name", claim.name},

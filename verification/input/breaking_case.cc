@@ -70,13 +70,11 @@ std::shared_ptr<const lattice::BreakingRule> BreakingCase::make(const Case &inpu
     return std::make_shared<lattice::BondEnergy>(material, lattice::energy(material.nearest.law, stretch));
   }
   std::array<double, lattice::n_shells> of_shells{};
-  of_shells.fill(stretch);
-  for (std::size_t shell = 0; shell < std::min(shell_factors.size(), lattice::n_shells); ++shell)
-    of_shells[shell] *= shell_factors[shell];
   // Shells that the sheet lacks do not lower the smallest limit.
   for (std::size_t shell = 0; shell < lattice::n_shells; ++shell)
-    if (!input.has_shell(shell))
-      of_shells[shell] = of_shells[0];
+    of_shells[shell] = !input.has_shell(shell)        ? of_shells[0]
+                       : shell < shell_factors.size() ? stretch * shell_factors[shell]
+                                                      : stretch;
   return std::make_shared<lattice::CriticalStretch>(of_shells);
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -152,14 +153,12 @@ struct ShellCase
   /// Returns whether the bonds have stiffness, as shell() requires.
   bool has_stiffness() const { return has_user_law() ? user_law.is_usable : law == Law::linear || a + b > 0.; }
   bool has_user_law() const { return law == Law::expression || law == Law::library; }
-  UserLaw::Kind user_law_kind() const
-  {
-    return law == Law::library ? UserLaw::Kind::library : UserLaw::Kind::expression;
-  }
   /// @param longest largest stretch of an unbroken bond [-]
   lattice::Shell shell(double longest) const;
 
 private:
+  /// Values that the expression of a law may name [SI].
+  std::map<std::string, double> constants() const { return {{"a", a}, {"b", b}, {"modulus", modulus}}; }
   void declare_memory(Parameters &parameters, const std::string &section);
   void check_memory(Parameters &parameters, const std::string &section) const;
   /// Returns the Maxwell branches or plastic memory; none also if they are not given as these require.

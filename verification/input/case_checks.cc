@@ -156,23 +156,6 @@ void check_time_step(const Case &input, Parameters &p)
             viscosities_and(input, {"Sheet/spacing", "Time/integrator", "Time/stages"}));
 }
 
-void check_relaxation_times(const Case &input, Parameters &p)
-{
-  std::vector<std::size_t> with_branches;
-  for (std::size_t number = 0; number < lattice::n_shells; ++number)
-    if (input.has_shell(number) && !input.shell(number).relaxation_times.empty())
-      with_branches.push_back(number);
-  if (!p.good() || with_branches.empty())
-    return;
-  double step = input.lattice_time_stepping().step;
-  if (input.breaking_stretch) // sites that touch require shorter steps, if they are automatic
-    step = std::max(step, input.fracture_time_stepping().step);
-  for (const std::size_t number : with_branches)
-    input.shell(number).check_relaxation_times(
-      p, Case::shell_sections[number], step,
-      {"Time/step", "Time/integrator", "Time/stages", "Time/safety factor", "Sheet/spacing"});
-}
-
 // Returns whether all shells that the case has fulfil a condition.
 template <class Condition>
 bool all_shells(const Case &input, const Condition &condition)
@@ -181,6 +164,20 @@ bool all_shells(const Case &input, const Condition &condition)
     if (input.has_shell(number) && !condition(input.shell(number)))
       return false;
   return true;
+}
+
+void check_relaxation_times(const Case &input, Parameters &p)
+{
+  if (!p.good() || all_shells(input, [](const ShellCase &shell) { return shell.relaxation_times.empty(); }))
+    return;
+  double step = input.lattice_time_stepping().step;
+  if (input.breaking_stretch) // sites that touch require shorter steps, if they are automatic
+    step = std::max(step, input.fracture_time_stepping().step);
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (input.has_shell(number))
+      input.shell(number).check_relaxation_times(
+        p, Case::shell_sections[number], step,
+        {"Time/step", "Time/integrator", "Time/stages", "Time/safety factor", "Sheet/spacing"});
 }
 
 // Reports a user-defined law without values where a bond can be before it breaks: beyond the breaking stretch by what a
@@ -257,10 +254,7 @@ void Case::check(Parameters &p)
             {"Sheet/hole radius", "Sheet/notch length"});
   continuum.check(p, has_inner_edge());
   if (has_sheet())
-  {
-    const lattice::TriangularLattice sheet = lattice();
-    continuum.check_values(p, {sheet.length(), sheet.height(), hole_radius, notch_length});
-  }
+    continuum.check_values(p, *this);
 
   for (const auto &[name, extent] : {std::pair{"ahead", near_tip_ahead}, std::pair{"behind", near_tip_behind},
                                      std::pair{"half height", near_tip_half_height}})

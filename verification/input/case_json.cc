@@ -1,6 +1,9 @@
 #include "verification/input/case_text.h"
 
 #include <cstddef>
+#include <map>
+#include <optional>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -8,6 +11,16 @@ namespace latcon::input
 {
 namespace
 {
+
+// Role of an object or a list that is open, or of the text itself.
+enum class Role
+{
+  text,
+  sections,
+  entries, // of a section
+  list,    // value of an entry
+  ignored  // not understood, and reported
+};
 
 // Collects values as the JSON parser meets them, so that repeated keys and the digits of numbers are seen.
 class CaseReader
@@ -21,69 +34,58 @@ public:
 
   CaseReader(const std::string &name, CaseText &result) : name_(name), result_(result) {}
 
-  bool null() { return unsuitable("null"); }
+  bool null() { return refuse("null"); }
   bool boolean(const bool value) { return take(value ? "true" : "false"); }
   bool number_integer(const number_integer_t value) { return take(std::to_string(value)); }
   bool number_unsigned(const number_unsigned_t value) { return take(std::to_string(value)); }
   bool number_float(const number_float_t, const string_t &digits) { return take(digits); }
   // cppcheck-suppress constParameter ; as the parser calls it
   bool string(string_t &value) { return take(value); }
-  bool binary(binary_t &) { return unsuitable("binary data"); }
+  bool binary(binary_t &) { return refuse("binary data"); }
 
   bool start_object(std::size_t)
   {
-    if (skipped_ > 0 || in_list_ || depth_ == 2)
-      return skip("an object");
-    if (depth_ == 1)
+    if (role() == Role::entries || role() == Role::list)
+      refuse("an object");
+    if (role() == Role::sections)
       result_.push_back(SectionStart{place(), section_});
-    ++depth_;
+    open_.push_back(role() == Role::text ? Role::sections : role() == Role::sections ? Role::entries : Role::ignored);
+    return true;
+  }
+
+  bool start_array(std::size_t)
+  {
+    if (role() != Role::entries)
+      refuse("a list");
+    open_.push_back(role() == Role::entries ? Role::list : Role::ignored);
+    if (role() == Role::list)
+      list_ = std::string();
     return true;
   }
 
   // cppcheck-suppress constParameter ; as the parser calls it
   bool key(string_t &value)
   {
-    if (skipped_ == 0)
-    {
-      if (depth_ == 1)
-        section_ = value;
-      else
-        key_ = value;
-    }
+    if (role() == Role::sections)
+      section_ = value;
+    else if (role() == Role::entries)
+      key_ = value;
     return true;
   }
 
   bool end_object()
   {
-    if (skipped_ > 0)
-      --skipped_;
-    else
-      --depth_;
-    if (depth_ < 2)
+    if (role() == Role::entries)
       key_.clear();
-    return true;
-  }
-
-  bool start_array(std::size_t)
-  {
-    if (skipped_ > 0 || in_list_ || depth_ < 2)
-      return skip("a list");
-    in_list_ = true;
-    list_good_ = true;
-    list_.clear();
+    open_.pop_back();
     return true;
   }
 
   bool end_array()
   {
-    if (skipped_ > 0)
-    {
-      --skipped_;
-      return true;
-    }
-    in_list_ = false;
-    if (list_good_)
-      result_.push_back(Assignment{place(), section_, key_, list_});
+    if (role() == Role::list && list_)
+      result_.push_back(Assignment{place(), section_, key_, *list_});
+    open_.pop_back();
     return true;
   }
 
@@ -113,53 +115,40 @@ private:
     return name_ + ":/" + printable(section_) + (key_.empty() ? "" : "/" + printable(key_));
   }
 
-  // Reports something where it does not belong.
-  bool unsuitable(const std::string &what)
-  {
-    const char *allowed = "an object of sections";
-    if (in_list_)
-      allowed = "numbers, strings, booleans";
-    else if (depth_ == 1)
-      allowed = "an object with the entries of the section";
-    else if (depth_ == 2)
-      allowed = "a number, a string, a boolean, or a list of those";
-    if (skipped_ == 0)
-      result_.push_back(
-        SyntaxProblem{place(), what + (in_list_ ? " in a list" : "") + " is not understood here; allowed: " + allowed});
-    list_good_ = false;
-    return true;
-  }
+  [[nodiscard]] Role role() const { return open_.back(); }
 
-  // Skips an element together with its content.
-  bool skip(const std::string &what)
+  // Reports something where it does not belong.
+  bool refuse(const std::string &what)
   {
-    unsuitable(what);
-    ++skipped_;
+    static const std::map<Role, std::string> allowed{
+      {Role::text, " is not understood here; allowed: an object of sections"},
+      {Role::sections, " is not understood here; allowed: an object with the entries of the section"},
+      {Role::entries, " is not understood here; allowed: a number, a string, a boolean, or a list of those"},
+      {Role::list, " in a list is not understood here; allowed: numbers, strings, booleans"}};
+    if (role() != Role::ignored)
+      result_.push_back(SyntaxProblem{place(), what + allowed.at(role())});
+    if (role() == Role::list)
+      list_.reset();
     return true;
   }
 
   bool take(const std::string &value)
   {
-    if (skipped_ > 0)
-      return true;
-    if (depth_ < 2)
-      return unsuitable("'" + printable(value) + "'");
-    if (in_list_)
-      list_ += (list_.empty() ? "" : ", ") + value;
-    else
+    if (role() == Role::entries)
       result_.push_back(Assignment{place(), section_, key_, trimmed(value)});
+    else if (role() != Role::list)
+      refuse("'" + printable(value) + "'");
+    else if (list_)
+      *list_ += (list_->empty() ? "" : ", ") + value;
     return true;
   }
 
   const std::string &name_;
   CaseText &result_;
-  std::size_t depth_ = 0;   // of objects: 1 among the sections, 2 among the entries of one
-  std::size_t skipped_ = 0; // objects and lists that were not understood and are still open
-  bool in_list_ = false;
-  bool list_good_ = true;
+  std::vector<Role> open_{Role::text};
   std::string section_;
   std::string key_;
-  std::string list_;
+  std::optional<std::string> list_; // none once something in it was not understood
 };
 
 } // namespace

@@ -1,11 +1,10 @@
-#include "verification/input/continuum_case.h"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 
 #include "support/errors.h"
+#include "verification/input/case.h"
 #include "verification/input/field_expression.h"
 
 namespace latcon::input
@@ -20,37 +19,37 @@ struct Position
 using Points = std::vector<Position>;
 
 // Points on an edge of the sheet, its ends among them, and those where cells of most numbers meet.
-Points points_on(const std::size_t edge, const Outline &outline)
+Points points_on(const std::size_t edge, const Case &input, const lattice::TriangularLattice &sheet)
 {
   constexpr unsigned int n = 720;
   Points points;
   for (unsigned int i = 0; i <= n; ++i)
   {
     const double part = static_cast<double>(i) / n;
-    const double X = part * outline.length, Y = (part - 0.5) * outline.height, angle = 2. * M_PI * part;
+    const double X = part * sheet.length(), Y = (part - 0.5) * sheet.height(), angle = 2. * M_PI * part;
     if (edge < 2)
-      points.push_back({edge == 0 ? 0. : outline.length, Y});
+      points.push_back({edge == 0 ? 0. : sheet.length(), Y});
     else if (edge < 4)
-      points.push_back({X, (edge == 2 ? -0.5 : 0.5) * outline.height});
-    else if (outline.hole_radius > 0.)
-      points.push_back({0.5 * outline.length + outline.hole_radius * std::cos(angle),
-                        outline.hole_radius * std::sin(angle)});
-    else if (outline.notch_length > 0.)
-      points.push_back({part * outline.notch_length, 0.});
+      points.push_back({X, (edge == 2 ? -0.5 : 0.5) * sheet.height()});
+    else if (input.hole_radius > 0.)
+      points.push_back(
+        {0.5 * sheet.length() + input.hole_radius * std::cos(angle), input.hole_radius * std::sin(angle)});
+    else if (input.notch_length > 0.)
+      points.push_back({part * input.notch_length, 0.});
   }
   return points;
 }
 
 // Points all over the sheet, its edges among them.
-Points points_in(const Outline &outline)
+Points points_in(const lattice::TriangularLattice &sheet, const double hole_radius)
 {
   constexpr unsigned int n = 48;
   Points points;
   for (unsigned int i = 0; i <= n; ++i)
     for (unsigned int j = 0; j <= n; ++j)
     {
-      const Position X{outline.length * i / n, outline.height * (static_cast<double>(j) / n - 0.5)};
-      if (std::hypot(X.x - 0.5 * outline.length, X.y) >= outline.hole_radius)
+      const Position X{sheet.length() * i / n, sheet.height() * (static_cast<double>(j) / n - 0.5)};
+      if (std::hypot(X.x - 0.5 * sheet.length(), X.y) >= hole_radius)
         points.push_back(X);
     }
   return points;
@@ -78,35 +77,28 @@ void check_values_at(Parameters &parameters, const std::string &key, const std::
   }
 }
 
-bool is_word(const std::string &text)
-{
-  return text == "loading" || text == "free";
-}
-
-void check_expression(Parameters &parameters, const std::string &key, const std::string &text)
-{
-  if (text == "0")
-    return; // the most frequent value; constructing a parser is slow
-  const std::string problem = problem_with_field(text);
-  if (!problem.empty())
-    parameters.error(key, "not an expression in x, y and pi: " + problem);
-}
-
 } // namespace
 
 void FieldCase::declare(Parameters &p, const std::string &section, const std::string &name, const std::string &unit,
-                        const std::string &documentation)
+                        const std::string &documentation, const std::string &values)
 {
   for (std::string *component : {&x, &y})
     p.add(section, name + (component == &x ? " x" : " y"), *component,
-          documentation + ", component " + (component == &x ? "x" : "y") + " [" + unit +
-            "]: expression in the undeformed x, y [m] and pi");
+          documentation + ", component " + (component == &x ? "x" : "y") + " [" + unit + "]: " + values);
 }
 
-void FieldCase::check(Parameters &p, const std::string &section, const std::string &name) const
+void FieldCase::check(Parameters &p, const std::string &section, const std::string &name,
+                      const std::vector<std::string> &words) const
 {
-  check_expression(p, section + "/" + name + " x", x);
-  check_expression(p, section + "/" + name + " y", y);
+  for (const std::string *text : {&x, &y})
+  {
+    // The most frequent value is excluded because constructing a parser is slow.
+    if (*text == "0" || std::find(words.begin(), words.end(), *text) != words.end())
+      continue;
+    const std::string problem = problem_with_field(*text);
+    if (!problem.empty())
+      p.error(section + "/" + name + (text == &x ? " x" : " y"), "not an expression in x, y and pi: " + problem);
+  }
 }
 
 std::function<double(unsigned int, double, double)> FieldCase::field() const
@@ -123,11 +115,8 @@ void EdgeCase::declare(Parameters &p, const bool can_be_periodic)
   p.add(name, "condition", condition, words,
         "boundary condition: held (displacement prescribed), free (traction prescribed)" +
           std::string(can_be_periodic ? ", periodic with the opposite edge" : ""));
-  for (std::string *component : {&displacement_x, &displacement_y})
-    p.add(name, component == &displacement_x ? "displacement x" : "displacement y", *component,
-          std::string("prescribed displacement of a held edge, component ") +
-            (component == &displacement_x ? "x" : "y") +
-            " [m]: `loading` for the homogeneous loading, `free`, or an expression in x, y [m] and pi");
+  displacement.declare(p, name, "displacement", "m", "prescribed displacement of a held edge",
+                       "`loading` for the homogeneous loading, `free`, or an expression in x, y [m] and pi");
   p.add(
     name, "normal gradient", normal_gradient,
     {{"free", NormalGradient::free}, {"clamped", NormalGradient::clamped}, {"loading", NormalGradient::loading}},
@@ -140,18 +129,15 @@ void EdgeCase::declare(Parameters &p, const bool can_be_periodic)
 
 void EdgeCase::check(Parameters &p) const
 {
-  if (!is_word(displacement_x))
-    check_expression(p, name + "/displacement x", displacement_x);
-  if (!is_word(displacement_y))
-    check_expression(p, name + "/displacement y", displacement_y);
+  displacement.check(p, name, "displacement", {"loading", "free"});
   traction.check(p, name, "traction");
   double_traction.check(p, name, "double traction");
-  if (condition == Condition::held && displacement_x == "free" && displacement_y == "free")
+  if (condition == Condition::held && displacement.x == "free" && displacement.y == "free")
     p.error(name + "/condition", "a held edge needs a displacement that is not `free`, or condition = free");
   // A given load must have an effect: on a held edge for a free component only, on a periodic edge never.
   for (const bool is_x : {true, false})
     if ((is_x ? traction.x : traction.y) != "0" && condition != Condition::free &&
-        (condition == Condition::periodic || (is_x ? displacement_x : displacement_y) != "free"))
+        (condition == Condition::periodic || (is_x ? displacement.x : displacement.y) != "free"))
       p.error(name + (is_x ? "/traction x" : "/traction y"), "a traction needs an edge that is free to move that way",
               {name + "/condition"});
   if (condition == Condition::periodic && normal_gradient != NormalGradient::free)
@@ -160,14 +146,6 @@ void EdgeCase::check(Parameters &p) const
     p.error(name + "/double traction " + double_traction.given(),
             "a double traction needs an edge whose normal gradient is free",
             {name + "/condition", name + "/normal gradient"});
-}
-
-ContinuumCase::ContinuumCase()
-{
-  const char *const names[5] = {"Left edge", "Right edge", "Bottom edge", "Top edge", "Inner edge"};
-  for (std::size_t id = 0; id < edges.size(); ++id)
-    edges[id].name = names[id];
-  edges[4].condition = EdgeCase::Condition::free;
 }
 
 void ContinuumCase::declare(Parameters &p)
@@ -287,14 +265,15 @@ void ContinuumCase::check(Parameters &p, const bool has_inner_edge) const
   initial_velocity.check(p, "Initial state", "velocity");
 }
 
-void ContinuumCase::check_values(Parameters &p, const Outline &outline) const
+void ContinuumCase::check_values(Parameters &p, const Case &input) const
 {
   // The extent of a mesh from a file is known only after reading it.
   if (!mesh_file.empty())
     return;
+  const lattice::TriangularLattice sheet = input.lattice();
   const auto check = [&](const std::string &key, const std::string &text, const Points &points)
   {
-    if (!is_word(text) && text != "0")
+    if (text != "loading" && text != "free" && text != "0")
       check_values_at(p, key, text, points);
   };
   const auto check_field = [&](const std::string &key, const FieldCase &field, const Points &points)
@@ -305,12 +284,12 @@ void ContinuumCase::check_values(Parameters &p, const Outline &outline) const
   for (std::size_t id = 0; id < edges.size(); ++id)
   {
     const EdgeCase &edge = edges[id];
-    const Points points = points_on(id, outline);
-    check_field(edge.name + "/displacement", {edge.displacement_x, edge.displacement_y}, points);
+    const Points points = points_on(id, input, sheet);
+    check_field(edge.name + "/displacement", edge.displacement, points);
     check_field(edge.name + "/traction", edge.traction, points);
     check_field(edge.name + "/double traction", edge.double_traction, points);
   }
-  const Points inside = points_in(outline);
+  const Points inside = points_in(sheet, input.hole_radius);
   check_field("Body force/force", body_force, inside);
   check_field("Initial state/displacement", initial_displacement, inside);
   check_field("Initial state/velocity", initial_velocity, inside);

@@ -4,11 +4,14 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "verification/input/parameters.h"
 
 namespace latcon::input
 {
+
+struct Case;
 
 /// Material law of the finite element sheet.
 enum class ContinuumLaw
@@ -33,23 +36,19 @@ struct FieldCase
   std::string x = "0";
   std::string y = "0";
 
+  /// @param values what a component may be
   void declare(Parameters &parameters, const std::string &section, const std::string &name, const std::string &unit,
-               const std::string &documentation);
-  void check(Parameters &parameters, const std::string &section, const std::string &name) const;
+               const std::string &documentation,
+               const std::string &values = "expression in the undeformed x, y [m] and pi");
+  /// Reports a component that is neither an expression nor one of some words.
+  void check(Parameters &parameters, const std::string &section, const std::string &name,
+             const std::vector<std::string> &words = {}) const;
   bool is_zero() const { return x == "0" && y == "0"; }
   /// "x" or "y": the first component that is not zero.
   const char *given() const { return x != "0" ? "x" : "y"; }
   /// Returns the field as a function of the component (0 or 1) and of the reference position x, y [m]. It throws
   /// InputError with the position where a value is not finite. @throws InputError if it cannot be parsed
   std::function<double(unsigned int component, double x, double y)> field() const;
-};
-
-/// Shape of a sheet: X from 0 to length, Y from -height / 2 to height / 2.
-struct Outline
-{
-  double length, height; ///< [m], > 0
-  double hole_radius;    ///< [m], in the centre; 0 for none
-  double notch_length;   ///< [m], from the left edge along y = 0; 0 for none
 };
 
 /// Boundary conditions on one edge of the sheet. The lattice supports some of them, see require_lattice_sheet.
@@ -71,19 +70,18 @@ struct EdgeCase
 
   std::string name; ///< "Left edge"
   Condition condition = Condition::held;
-  std::string displacement_x = "loading"; ///< expression [m], or "loading", or "free"
-  std::string displacement_y = "loading";
+  FieldCase displacement{"loading", "loading"}; ///< [m]; a component may also be "loading" or "free"
   NormalGradient normal_gradient = NormalGradient::free;
-  FieldCase traction;        ///< [Pa]
-  FieldCase double_traction; ///< [Pa m]
+  FieldCase traction{};        ///< [Pa]
+  FieldCase double_traction{}; ///< [Pa m]
 
   void declare(Parameters &parameters, bool can_be_periodic);
   void check(Parameters &parameters) const;
   /// Returns whether the edge is held at the loading in one component and free in the other one.
   bool is_roller() const
   {
-    return condition == Condition::held && ((displacement_x == "free" && displacement_y == "loading") ||
-                                            (displacement_x == "loading" && displacement_y == "free"));
+    return condition == Condition::held && ((displacement.x == "free" && displacement.y == "loading") ||
+                                            (displacement.x == "loading" && displacement.y == "free"));
   }
 };
 
@@ -123,8 +121,10 @@ struct ContinuumCase
   Rule rule = Rule::average_acceleration;
   double spectral_radius = 0.9; ///< of generalised-alpha at high frequencies [-]
 
-  std::array<EdgeCase, 5> edges; ///< indexed by continuum::edge: left, right, bottom, top, inner
-  FieldCase body_force;          ///< [N/m^3]
+  /// Indexed by continuum::edge.
+  std::array<EdgeCase, 5> edges{
+    {{"Left edge"}, {"Right edge"}, {"Bottom edge"}, {"Top edge"}, {"Inner edge", EdgeCase::Condition::free}}};
+  FieldCase body_force; ///< [N/m^3]
   bool body_force_corrected = false;
   enum class Base
   {
@@ -136,11 +136,11 @@ struct ContinuumCase
   FieldCase initial_displacement; ///< [m], added to the base
   FieldCase initial_velocity;     ///< [m/s]
 
-  ContinuumCase();
   void declare(Parameters &parameters);
   void check(Parameters &parameters, bool has_inner_edge) const;
-  /// Reports expressions that are not finite at one of many points of the sheet and its edges.
-  void check_values(Parameters &parameters, const Outline &outline) const;
+  /// Reports expressions that are not finite at one of many points of the sheet and its edges. @param input a case that
+  /// has a sheet
+  void check_values(Parameters &parameters, const Case &input) const;
 };
 
 } // namespace latcon::input

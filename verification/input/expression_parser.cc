@@ -25,7 +25,8 @@ constexpr std::array functions{"sqrt", "exp", "log"};
 constexpr std::size_t longest_text = 2000;
 
 // muParser computes with doubles. Here each of them is the index of a node, and the operators and functions given to
-// muParser record their nodes in this list instead of computing. muParser passes no context to operators.
+// muParser record their nodes in this list instead of computing, while parse_expression() runs. muParser passes no
+// context to operators.
 thread_local support::Expression *recorded = nullptr;
 
 double record(Operation operation, double left, double right = 0.)
@@ -72,15 +73,6 @@ int record_number(const char *text, int *position, double *value)
   *value = static_cast<double>(recorded->constant(number));
   return 1;
 }
-
-class Recording
-{
-public:
-  explicit Recording(support::Expression &expression) { recorded = &expression; }
-  ~Recording() { recorded = nullptr; }
-  Recording(const Recording &) = delete;
-  Recording &operator=(const Recording &) = delete;
-};
 
 void define_grammar(mu::Parser &parser)
 {
@@ -137,15 +129,10 @@ std::string problem_with(const mu::Parser::exception_type &error, const std::str
 
 bool is_value_name(const std::string &word)
 {
-  if (word.empty() || std::isalpha(static_cast<unsigned char>(word[0])) == 0)
-    return false;
-  for (const char c : word)
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_')
-      return false;
-  for (const char *function : functions)
-    if (word == function)
-      return false;
-  return true;
+  return !word.empty() && std::isalpha(static_cast<unsigned char>(word[0])) != 0 &&
+         std::all_of(word.begin(), word.end(),
+                     [](const unsigned char c) { return std::isalnum(c) != 0 || c == '_'; }) &&
+         std::find(functions.begin(), functions.end(), word) == functions.end();
 }
 
 support::Expression parse_expression(const std::string &text, const std::string &variable,
@@ -175,7 +162,7 @@ support::Expression parse_expression(const std::string &text, const std::string 
                               allowed);
 
   support::Expression expression;
-  const Recording recording(expression);
+  recorded = &expression;
   try
   {
     mu::Parser parser;

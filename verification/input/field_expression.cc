@@ -2,6 +2,7 @@
 
 #include <cctype>
 #include <cmath>
+#include <regex>
 
 #include "support/errors.h"
 #include "support/full_precision.h"
@@ -15,24 +16,14 @@ namespace
 // Returns whether an expression uses random numbers: a sheet must be the same in every run and on every rank.
 bool draws_numbers(const std::string &expression)
 {
-  const auto is_part = [](const char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-  for (const std::string word : {"rand", "rand_seed"})
-    for (std::size_t at = expression.find(word); at != std::string::npos; at = expression.find(word, at + 1))
-      if ((at == 0 || !is_part(expression[at - 1])) &&
-          (at + word.size() == expression.size() || !is_part(expression[at + word.size()])))
-        return true;
-  return false;
+  return std::regex_search(expression, std::regex("\\brand(_seed)?\\b"));
 }
 
 // Returns whether an expression assigns, as in `x = 1`, which muparser evaluates to 1. Comparisons are allowed.
 bool assigns(const std::string &expression)
 {
-  for (std::size_t at = expression.find('='); at != std::string::npos; at = expression.find('=', at + 1))
-    if (at + 1 < expression.size() && expression[at + 1] == '=')
-      ++at;
-    else if (at == 0 || std::string("<>!").find(expression[at - 1]) == std::string::npos)
-      return true;
-  return false;
+  const std::string others = std::regex_replace(expression, std::regex("=="), "##");
+  return std::regex_search(others, std::regex("(^|[^<>!])="));
 }
 
 // Returns the expression without blanks between a function and its arguments, which muparser does not accept.

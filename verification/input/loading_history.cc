@@ -71,7 +71,7 @@ std::vector<lattice::Constraint> edge_constraints(const Case &input, const latti
     const EdgeCase &edge = input.continuum.edges[id];
     if (!edge.is_roller())
       continue;
-    lattice::Constraint roller{{}, edge.displacement_x != "free", edge.displacement_y != "free", motion};
+    lattice::Constraint roller{{}, edge.displacement.x != "free", edge.displacement.y != "free", motion};
     for (const std::size_t place : lattice::sites_at(sheet, input.material(), {id == 0, id == 1, id == 2, id == 3}))
     {
       bool &is_fixed = roller.along_x ? fixed[place].first : fixed[place].second;

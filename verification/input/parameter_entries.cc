@@ -81,8 +81,8 @@ void Parameters::declare(Entry entry)
 }
 
 template <typename Number>
-void Parameters::add_number(const std::string &section, const std::string &name, Number &member, const Range &range,
-                            const std::string &unit, const std::string &documentation, const Presence presence)
+void Parameters::add(const std::string &section, const std::string &name, Number &member, const Range &range,
+                     const std::string &unit, const std::string &documentation, const Presence presence)
 {
   constexpr bool may_be_auto = std::is_same_v<Number, std::optional<double>>;
   std::string rule = range.text();
@@ -111,28 +111,19 @@ void Parameters::add_number(const std::string &section, const std::string &name,
   declare(std::move(entry));
 }
 
-void Parameters::add(const std::string &section, const std::string &name, double &member, const Range &range,
-                     const std::string &unit, const std::string &documentation, const Presence presence)
-{
-  add_number(section, name, member, range, unit, documentation, presence);
-}
-
-void Parameters::add(const std::string &section, const std::string &name, std::optional<double> &member,
-                     const Range &range, const std::string &unit, const std::string &documentation,
-                     const Presence presence)
-{
-  add_number(section, name, member, range, unit, documentation, presence);
-}
+template void Parameters::add(const std::string &, const std::string &, double &, const Range &, const std::string &,
+                              const std::string &, Presence);
+template void Parameters::add(const std::string &, const std::string &, std::optional<double> &, const Range &,
+                              const std::string &, const std::string &, Presence);
 
 void Parameters::add(const std::string &section, const std::string &name, std::vector<double> &member,
-                     const Range &range, const std::string &unit, const std::string &documentation,
-                     const Presence presence)
+                     const Range &range, const std::string &unit, const std::string &documentation)
 {
   const std::string list = std::string("numbers separated by commas") + (range.text().empty() ? "" : ", each");
   const std::string rule = list + (range.text().empty() ? "" : " ") + range.text();
-  Entry entry{{section, name, documentation, unit, rule, presence, ValueType::numbers, range},
+  Entry entry{{section, name, documentation, unit, rule, Presence::optional, ValueType::numbers, range},
               allowed_numbers(list, range, unit)};
-  entry.read = [&member, range, unit, presence](const std::string &text) -> std::string
+  entry.read = [&member, range, unit](const std::string &text) -> std::string
   {
     std::vector<double> values;
     std::size_t n_with_unit = 0;
@@ -146,8 +137,6 @@ void Parameters::add(const std::string &section, const std::string &name, std::v
       n_with_unit += quantity.has_unit ? 1 : 0;
       at = end + 1;
     }
-    if (values.empty() && presence == Presence::required)
-      return "empty";
     // In "1, 2, 3 mm" the first two would be metres, which nobody means.
     if (n_with_unit != 0 && n_with_unit != values.size())
       return "some numbers have a unit and some have none; give it to all of them or to none";
@@ -167,7 +156,7 @@ void Parameters::add(const std::string &section, const std::string &name, std::v
 
 template <typename Integer, typename>
 void Parameters::add(const std::string &section, const std::string &name, Integer &member, const Range &range,
-                     const std::string &documentation, const Presence presence)
+                     const std::string &documentation)
 {
   std::string rule = allowed_numbers("a whole number", range, "1");
   constexpr Integer largest = std::numeric_limits<Integer>::max();
@@ -177,7 +166,8 @@ void Parameters::add(const std::string &section, const std::string &name, Intege
     rule += (range.text().empty() ? " <= " : " and <= ") + std::to_string(largest);
     largest_whole = largest;
   }
-  Entry entry{{section, name, documentation, "", rule, presence, ValueType::whole_number, range, largest_whole}, rule};
+  Entry entry{
+    {section, name, documentation, "", rule, Presence::optional, ValueType::whole_number, range, largest_whole}, rule};
   entry.read = [&member, range](const std::string &text) -> std::string
   {
     std::string digits = text;
@@ -201,19 +191,18 @@ void Parameters::add(const std::string &section, const std::string &name, Intege
   declare(std::move(entry));
 }
 
-template void Parameters::add(const std::string &, const std::string &, int &, const Range &, const std::string &,
-                              Presence);
+template void Parameters::add(const std::string &, const std::string &, int &, const Range &, const std::string &);
 template void Parameters::add(const std::string &, const std::string &, unsigned int &, const Range &,
-                              const std::string &, Presence);
+                              const std::string &);
 template void Parameters::add(const std::string &, const std::string &, std::uint64_t &, const Range &,
-                              const std::string &, Presence);
+                              const std::string &);
 
 void Parameters::add_words(const std::string &section, const std::string &name, const std::vector<std::string> &words,
                            const std::function<void(std::size_t)> &set, const std::function<std::size_t()> &get,
-                           const std::string &documentation, const Presence presence, const ValueType type)
+                           const std::string &documentation, const ValueType type)
 {
   const std::string rule = "one of " + comma_separated(words);
-  Entry entry{{section, name, documentation, "", rule, presence, type}, rule};
+  Entry entry{{section, name, documentation, "", rule, Presence::optional, type}, rule};
   entry.words = words;
   entry.read = [words, set](const std::string &text) -> std::string
   {
@@ -235,21 +224,19 @@ void Parameters::add_words(const std::string &section, const std::string &name, 
 }
 
 void Parameters::add(const std::string &section, const std::string &name, bool &member,
-                     const std::string &documentation, const Presence presence)
+                     const std::string &documentation)
 {
   add_words(
     section, name, {"false", "true"}, [&member](const std::size_t i) { member = i == 1; },
-    [&member] { return std::size_t(member ? 1 : 0); }, documentation, presence, ValueType::boolean);
+    [&member] { return std::size_t(member ? 1 : 0); }, documentation, ValueType::boolean);
 }
 
 void Parameters::add(const std::string &section, const std::string &name, std::string &member,
-                     const std::string &documentation, const Presence presence)
+                     const std::string &documentation)
 {
-  Entry entry{{section, name, documentation, "", "", presence, ValueType::text}, "a text on one line"};
-  entry.read = [&member, presence](const std::string &text) -> std::string
+  Entry entry{{section, name, documentation, "", "", Presence::optional, ValueType::text}, "a text on one line"};
+  entry.read = [&member](const std::string &text) -> std::string
   {
-    if (text.empty() && presence == Presence::required)
-      return "empty";
     if (text != trimmed(text))
       return "blanks around it would be lost";
     member = text;

@@ -48,9 +48,6 @@ std::string Parameters::Entry::place() const
   return file_place.empty() ? "default" : file_place;
 }
 
-Parameters::Parameters() = default;
-Parameters::~Parameters() = default;
-
 void Parameters::read_file(const std::string &path)
 {
   file_ = printable(path, path.size());
@@ -75,32 +72,26 @@ void Parameters::read_text(const std::string &text, const std::string &name)
     if (const auto *problem = std::get_if<SyntaxProblem>(&item))
       report(problem->place, problem->text);
     else if (const auto *start = std::get_if<SectionStart>(&item))
-      enter(*start);
+    {
+      // Reported once, not for each entry in the section.
+      if (!has_section(start->section))
+        report(start->place, "unknown subsection '" + printable(start->section) + "'" +
+                               nearest_section(start->section) + "; known: " + comma_separated(sections()));
+    }
     else if (const auto *assignment = std::get_if<Assignment>(&item))
-      take(*assignment);
+    {
+      const std::string shown = printable(assignment->name) + " = " + printable(assignment->value) + ": ";
+      if (assignment->section.empty())
+        report(assignment->place, shown + "outside of any subsection" + nearest_key("", assignment->name));
+      else if (has_section(assignment->section))
+        set(*assignment, assignment->section + "/" + shown, false);
+    }
 }
 
 void Parameters::read_overrides(const std::vector<std::string> &overrides)
 {
   for (const std::string &text : overrides)
     take_override(text);
-}
-
-void Parameters::enter(const SectionStart &start)
-{
-  // Reported once, not for each entry in the section.
-  if (!has_section(start.section))
-    report(start.place, "unknown subsection '" + printable(start.section) + "'" + nearest_section(start.section) +
-                          "; known: " + comma_separated(sections()));
-}
-
-void Parameters::take(const Assignment &assignment)
-{
-  const std::string shown = printable(assignment.name) + " = " + printable(assignment.value) + ": ";
-  if (assignment.section.empty())
-    report(assignment.place, shown + "outside of any subsection" + nearest_key("", assignment.name));
-  else if (has_section(assignment.section))
-    set(assignment, assignment.section + "/" + shown, false);
 }
 
 void Parameters::take_override(const std::string &text)

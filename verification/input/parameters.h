@@ -1,6 +1,7 @@
 /// Cases: named entries with unit, range and documentation, read from a file and from the command line.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -16,7 +17,6 @@ namespace latcon::input
 {
 
 struct Assignment;
-struct SectionStart;
 
 /// Range of numbers that an entry allows, in its SI unit.
 struct Range
@@ -57,12 +57,6 @@ struct Magnitude : Range
 struct MagnitudeOrZero : Range
 {
   MagnitudeOrZero() : Range({0., true}, {1e20, true}) {}
-};
-
-/// x > lower
-struct Above : Range
-{
-  explicit Above(double lower) : Range({lower, false}, {infinity, false}) {}
 };
 
 /// x >= lower
@@ -131,8 +125,7 @@ struct Declaration
 class Parameters
 {
 public:
-  Parameters();
-  ~Parameters();
+  Parameters() = default;
   Parameters(const Parameters &) = delete;
   Parameters &operator=(const Parameters &) = delete;
 
@@ -143,34 +136,31 @@ public:
   /// @param range         what is allowed, in `unit`
   /// @param unit          SI unit, e.g. "m", "kg/m^3", "N s/m"; "1" for a pure number
   /// @param documentation what it is, in words and symbol
-  void add(const std::string &section, const std::string &name, double &member, const Range &range,
-           const std::string &unit, const std::string &documentation, Presence presence = Presence::optional);
-  void add(const std::string &section, const std::string &name, std::optional<double> &member, const Range &range,
+  /// @tparam Number       double or std::optional<double>
+  template <typename Number>
+  void add(const std::string &section, const std::string &name, Number &member, const Range &range,
            const std::string &unit, const std::string &documentation, Presence presence = Presence::optional);
 
   /// Real numbers, separated by commas, possibly none; `range` holds for each. All have a unit written, or none has.
   void add(const std::string &section, const std::string &name, std::vector<double> &member, const Range &range,
-           const std::string &unit, const std::string &documentation, Presence presence = Presence::optional);
+           const std::string &unit, const std::string &documentation);
 
   /// Whole numbers. The range is compared in double precision, so bounds beyond 2^53 are blurred.
   /// @param member int, unsigned int or std::uint64_t
   template <typename Integer, typename = std::enable_if_t<std::is_integral_v<Integer>>>
   void add(const std::string &section, const std::string &name, Integer &member, const Range &range,
-           const std::string &documentation, Presence presence = Presence::optional);
+           const std::string &documentation);
 
   /// `true` or `false`.
-  void add(const std::string &section, const std::string &name, bool &member, const std::string &documentation,
-           Presence presence = Presence::optional);
+  void add(const std::string &section, const std::string &name, bool &member, const std::string &documentation);
 
-  /// A text on one line, without `#`, not ending in `\`; blanks around it are lost. Not empty if required.
-  void add(const std::string &section, const std::string &name, std::string &member, const std::string &documentation,
-           Presence presence = Presence::optional);
+  /// A text on one line, without `#`, not ending in `\`; blanks around it are lost.
+  void add(const std::string &section, const std::string &name, std::string &member, const std::string &documentation);
 
   /// One word out of several, each standing for a value of an enumeration.
   template <typename Enumeration, typename = std::enable_if_t<std::is_enum_v<Enumeration>>>
   void add(const std::string &section, const std::string &name, Enumeration &member,
-           const std::vector<std::pair<std::string, Enumeration>> &words, const std::string &documentation,
-           Presence presence = Presence::optional);
+           const std::vector<std::pair<std::string, Enumeration>> &words, const std::string &documentation);
 
   /// Reads a case file; problems are kept for finish().
   /// @param path name of the file; JSON if it ends in `.json`, deal.II's format otherwise
@@ -238,14 +228,9 @@ private:
   };
 
   void declare(Entry entry);
-  template <typename Number>
-  void add_number(const std::string &section, const std::string &name, Number &member, const Range &range,
-                  const std::string &unit, const std::string &documentation, Presence presence);
   void add_words(const std::string &section, const std::string &name, const std::vector<std::string> &words,
                  const std::function<void(std::size_t)> &set, const std::function<std::size_t()> &get,
-                 const std::string &documentation, Presence presence, ValueType type = ValueType::word);
-  void enter(const SectionStart &start);
-  void take(const Assignment &assignment);
+                 const std::string &documentation, ValueType type = ValueType::word);
   void take_override(const std::string &text);
   void set(const Assignment &assignment, const std::string &shown, bool is_override);
   void report(const std::string &place, const std::string &text);
@@ -265,8 +250,7 @@ private:
 
 template <typename Enumeration, typename>
 void Parameters::add(const std::string &section, const std::string &name, Enumeration &member,
-                     const std::vector<std::pair<std::string, Enumeration>> &words, const std::string &documentation,
-                     const Presence presence)
+                     const std::vector<std::pair<std::string, Enumeration>> &words, const std::string &documentation)
 {
   std::vector<std::string> names;
   std::vector<Enumeration> values;
@@ -277,14 +261,7 @@ void Parameters::add(const std::string &section, const std::string &name, Enumer
   }
   add_words(
     section, name, names, [&member, values](const std::size_t i) { member = values[i]; },
-    [&member, values]
-    {
-      std::size_t i = 0;
-      while (i < values.size() && values[i] != member)
-        ++i;
-      return i;
-    },
-    documentation, presence);
+    [&member, values] { return std::find(values.begin(), values.end(), member) - values.begin(); }, documentation);
 }
 
 } // namespace latcon::input

@@ -27,7 +27,7 @@ void ShellCase::declare(Parameters &parameters, const std::string &section)
 void ShellCase::check(Parameters &parameters, const std::string &section, const double longest)
 {
   if (has_user_law())
-    user_law.check(parameters, section, user_law_kind(), {{"a", a}, {"b", b}, {"modulus", modulus}}, longest);
+    user_law.check(parameters, section, law == Law::library, constants(), longest);
   else if (!has_stiffness())
     parameters.error(section + "/a", "a bond needs stiffness: a + b must be positive", {section + "/b"});
   check_memory(parameters, section);
@@ -36,8 +36,8 @@ void ShellCase::check(Parameters &parameters, const std::string &section, const 
 lattice::Shell ShellCase::shell(const double longest) const
 {
   if (has_user_law())
-    return {lattice::CustomBond(user_law.law(user_law_kind(), {{"a", a}, {"b", b}, {"modulus", modulus}}, longest)),
-            area_factor, viscosity, memory()};
+    return {lattice::CustomBond(user_law.law(law == Law::library, constants(), longest)), area_factor, viscosity,
+            memory()};
   if (law == Law::linear)
     return {lattice::LinearBond{modulus}, area_factor, viscosity, memory()};
   return {lattice::MooneyRivlinBond{a, b}, area_factor, viscosity, memory()};

@@ -56,9 +56,10 @@ constexpr std::string_view usual_units[][6] = {{"m", "nm", "um", "mm", "cm", "km
                                                {"kg/m^3", "g/cm^3", "", "", "", ""},
                                                {"1", "%", "", "", "", ""}};
 
-bool is_blank(const char c)
+std::string_view without_blanks(const std::string_view text)
 {
-  return c == ' ' || c == '\t';
+  const std::size_t first = std::min(text.find_first_not_of(" \t"), text.size());
+  return text.substr(first, text.find_last_not_of(" \t") + 1 - first);
 }
 
 std::optional<Unit> single_unit(const std::string_view name)
@@ -97,7 +98,7 @@ std::optional<Unit> parse_unit(const std::string &text)
   while (at < all.size())
   {
     const char c = all[at];
-    if (is_blank(c))
+    if (c == ' ' || c == '\t')
       ++at;
     else if (c == '*' || c == '/')
     {
@@ -159,11 +160,7 @@ std::string units_like(const std::string &unit)
 ParsedNumber read_quantity(const std::string &text, const std::string &unit)
 {
   ParsedNumber quantity;
-  std::string_view rest = text;
-  while (!rest.empty() && is_blank(rest.front()))
-    rest.remove_prefix(1);
-  while (!rest.empty() && is_blank(rest.back()))
-    rest.remove_suffix(1);
+  std::string_view rest = without_blanks(text);
   // A leading plus is common in data and unknown to from_chars.
   if (rest.size() > 1 && rest[0] == '+' && rest[1] != '-' && rest[1] != '+')
     rest.remove_prefix(1);
@@ -176,15 +173,13 @@ ParsedNumber read_quantity(const std::string &text, const std::string &unit)
     return quantity;
   }
   const std::string_view number = rest.substr(0, static_cast<std::size_t>(end - rest.data()));
-  std::string_view behind = rest.substr(number.size());
-  while (!behind.empty() && is_blank(behind.front()))
-    behind.remove_prefix(1);
+  const std::string behind(without_blanks(rest.substr(number.size())));
   quantity.has_unit = !behind.empty();
 
   Unit given;
   if (quantity.has_unit)
   {
-    const std::optional<Unit> parsed = parse_unit(std::string(behind));
+    const std::optional<Unit> parsed = parse_unit(behind);
     const char first = behind.front();
     const bool looks_like_unit = (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z') || first == '%' ||
                                  static_cast<unsigned char>(first) >= 0x80;

@@ -142,12 +142,12 @@ void UserLaw::declare(Parameters &p, const std::string &section)
         "SHA-256 that the library must have; if empty, that of the library found, in the resolved case");
 }
 
-void UserLaw::check(Parameters &p, const std::string &section, Kind kind, const Values &constants, double longest)
+void UserLaw::check(Parameters &p, const std::string &section, bool is_library, const Values &constants, double longest)
 {
   try
   {
-    (void)law(kind, constants, longest);
-    if (kind == Kind::library)
+    (void)law(is_library, constants, longest);
+    if (is_library)
       sha256 = loaded_library(library).sha256;
     is_usable = true;
   }
@@ -157,13 +157,14 @@ void UserLaw::check(Parameters &p, const std::string &section, Kind kind, const 
   }
 }
 
-std::shared_ptr<const lattice::CustomBondLaw> UserLaw::law(Kind kind, const Values &constants, double longest) const
+std::shared_ptr<const lattice::CustomBondLaw> UserLaw::law(bool is_library, const Values &constants,
+                                                           double longest) const
 {
   const Values given = parameters_of(parameters);
-  const std::string entry = kind == Kind::expression ? "psi" : "library";
+  const std::string entry = is_library ? "library" : "psi";
   try
   {
-    if (kind == Kind::expression)
+    if (!is_library)
       return std::make_shared<lattice::ExpressionLaw>(expression_of(psi, given, constants), longest);
     const LoadedLibrary &loaded = loaded_library(library);
     if (!sha256.empty() && loaded.sha256 != sha256)

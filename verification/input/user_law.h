@@ -15,12 +15,6 @@ namespace latcon::input
 /// Entries of a bond law that is not built into latcon, for one shell of bonds.
 struct UserLaw
 {
-  enum class Kind
-  {
-    expression,
-    library
-  };
-
   std::string psi;        ///< energy [Pa] as an expression of the stretch `lam`
   std::string parameters; ///< NAME = NUMBER, separated by commas
   std::string library;    ///< path of a shared library
@@ -36,14 +30,15 @@ struct UserLaw
   void declare(Parameters &p, const std::string &section);
 
   /// Reports a law that cannot be used, and sets `is_usable` and `sha256`.
+  /// @param is_library whether the law is from the library, or the expression
   /// @param constants further values that psi, but no library, may name [SI]
   /// @param longest largest stretch of an unbroken bond [-]
-  void check(Parameters &p, const std::string &section, Kind kind, const std::map<std::string, double> &constants,
+  void check(Parameters &p, const std::string &section, bool is_library, const std::map<std::string, double> &constants,
              double longest);
   bool is_usable = false; ///< result of check()
 
-  /// Creates the law. @throws Problem
-  std::shared_ptr<const lattice::CustomBondLaw> law(Kind kind, const std::map<std::string, double> &constants,
+  /// Creates the law, with the arguments of check(). @throws Problem
+  std::shared_ptr<const lattice::CustomBondLaw> law(bool is_library, const std::map<std::string, double> &constants,
                                                     double longest) const;
 };
 

@@ -16,11 +16,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <map>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <typeinfo>
 #include <vector>
 
 #include <Eigen/Core>
@@ -31,24 +30,6 @@ namespace latcon::output
 {
 namespace archive_detail
 {
-
-template <class T>
-struct IsVector : std::false_type
-{
-};
-template <class T, class Allocator>
-struct IsVector<std::vector<T, Allocator>> : std::true_type
-{
-};
-
-template <class T>
-struct IsOptional : std::false_type
-{
-};
-template <class T>
-struct IsOptional<std::optional<T>> : std::true_type
-{
-};
 
 template <class T, class Archive, class = void>
 struct HasArchive : std::false_type
@@ -63,35 +44,25 @@ struct HasArchive<T, Archive, std::void_t<decltype(std::declval<T &>().archive(s
 template <class T>
 constexpr bool is_matrix = std::is_base_of_v<Eigen::MatrixBase<T>, T>;
 
-/// Values of the members of many records, by member name.
-struct Columns
-{
-  std::map<std::string, std::vector<double>> reals;
-  std::map<std::string, std::vector<std::uint64_t>> wholes;
-};
-
-/// Archive that copies the members of one record to or from row `row` of columns.
-/// @tparam Read function of the name of a column and of its values, which it reads for the first row
-template <bool loading, class Read>
-class RecordArchive
+/// Archive that calls a function with the name and the value of each number of a record.
+template <bool loading, class Visit>
+class NumberArchive
 {
 public:
   static constexpr bool loads = loading;
-  RecordArchive(Columns &columns, std::size_t row, const Read &read) : columns_(columns), row_(row), read_(read) {}
+  explicit NumberArchive(const Visit &visit) : visit_(visit) {}
 
   template <class T>
   void operator()(const std::string &name, T &value)
   {
-    if constexpr (std::is_same_v<T, double>)
-      exchange(columns_.reals, name, value);
-    else if constexpr (std::is_same_v<T, std::size_t> || std::is_same_v<T, std::uint64_t>)
-      exchange(columns_.wholes, name, value);
+    if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::uint64_t>)
+      visit_(prefix_ + name, value);
     else if constexpr (is_matrix<T>)
       for (Eigen::Index i = 0; i < value.size(); ++i)
-        exchange(columns_.reals, name + "_" + std::to_string(i), value.data()[i]);
+        visit_(prefix_ + name + "_" + std::to_string(i), value.data()[i]);
     else
     {
-      static_assert(HasArchive<T, RecordArchive>::value, "a record consists of numbers and of records");
+      static_assert(HasArchive<T, NumberArchive>::value, "a record consists of numbers and of records");
       const std::string outer = prefix_;
       prefix_ += name + "_";
       value.archive(*this);
@@ -100,23 +71,7 @@ public:
   }
 
 private:
-  template <class Number>
-  void exchange(std::map<std::string, std::vector<Number>> &columns, const std::string &name, Number &value)
-  {
-    std::vector<Number> &column = columns[prefix_ + name];
-    if constexpr (loading)
-    {
-      if (row_ == 0)
-        read_(prefix_ + name, column);
-      value = column.at(row_);
-    }
-    else
-      column.push_back(value);
-  }
-
-  Columns &columns_;
-  std::size_t row_;
-  const Read &read_;
+  const Visit &visit_;
   std::string prefix_;
 };
 
@@ -125,15 +80,12 @@ template <class Archive>
 class Base
 {
 public:
-  /// Archives a number, a text, a matrix of fixed size, a vector of numbers or of such matrices, an optional number, a
-  /// vector of vectors of numbers, an object with archive(), or a range of such objects. The size of a range must be
+  /// Archives a number, a matrix of fixed size, an object with archive(), or a range of such objects, whose size must be
   /// the same for saving and loading.
   template <class T>
   void operator()(const std::string &name, T &value)
   {
-    if constexpr (std::is_same_v<T, std::string>)
-      self().text(name, value);
-    else if constexpr (std::is_same_v<T, bool>)
+    if constexpr (std::is_same_v<T, bool>)
     {
       std::uint8_t byte = value ? 1 : 0;
       self().elements(name, &byte, 1);
@@ -144,8 +96,6 @@ public:
       self().elements(name, &value, 1);
     else if constexpr (is_matrix<T>)
       self().elements(name, value.data(), static_cast<std::size_t>(value.size()));
-    else if constexpr (IsOptional<T>::value)
-      optional(name, value);
     else if constexpr (HasArchive<T, Archive>::value)
     {
       const std::string outer = prefix_;
@@ -154,54 +104,15 @@ public:
       prefix_ = outer;
     }
     else
-      several(name, value);
+      objects(name, value);
   }
 
-  /// Archives many small objects as columns. Their archive() may contain only numbers and objects of numbers.
-  template <class Record>
-  void records(const std::string &name, std::vector<Record> &all)
-  {
-    std::size_t n = all.size();
-    (*this)(name + "/n", n);
-    if constexpr (Archive::loads)
-      all.clear();
-    Columns columns;
-    // Columns that have this size are not larger than the file.
-    const auto read = [&](const std::string &column, auto &values)
-    {
-      (*this)(name + "/" + column, values);
-      require(values.size() == n, name + "/" + column, "has a length other than `n`");
-    };
-    for (std::size_t row = 0; row < n; ++row)
-    {
-      if constexpr (Archive::loads)
-        all.emplace_back();
-      RecordArchive<Archive::loads, decltype(read)> archive(columns, row, read);
-      all[row].archive(archive);
-    }
-    if constexpr (!Archive::loads)
-    {
-      for (auto &[column, values] : columns.reals)
-        (*this)(name + "/" + column, values);
-      for (auto &[column, values] : columns.wholes)
-        (*this)(name + "/" + column, values);
-    }
-  }
+  /// Archives a text.
+  void operator()(const std::string &name, std::string &text) { self().text(name, text); }
 
-protected:
-  void require(bool holds, const std::string &name, const std::string &problem) const
-  {
-    if (!holds)
-      throw Hdf5Error("`" + prefix_ + name + "` " + problem);
-  }
-
-  std::string prefix_; // of the current object
-
-private:
-  Archive &self() { return static_cast<Archive &>(*this); }
-
+  /// Archives a number or none, as a list.
   template <class T>
-  void optional(const std::string &name, std::optional<T> &value)
+  void operator()(const std::string &name, std::optional<T> &value)
   {
     std::vector<T> values;
     if (value)
@@ -211,9 +122,35 @@ private:
     value = values.empty() ? std::nullopt : std::optional<T>(values.front());
   }
 
-  // Archives concatenated values, and the size of each vector.
+  /// Archives a list of numbers or of matrices, or objects.
+  template <class T>
+  void operator()(const std::string &name, std::vector<T> &values)
+  {
+    if constexpr (std::is_arithmetic_v<T>)
+    {
+      if constexpr (Archive::loads)
+        values.resize(self().size(name));
+      self().elements(name, values.data(), values.size());
+    }
+    else if constexpr (is_matrix<T>)
+    {
+      constexpr auto per_element = static_cast<std::size_t>(T::SizeAtCompileTime);
+      static_assert(sizeof(T) == per_element * sizeof(double));
+      if constexpr (Archive::loads)
+      {
+        const std::size_t n = self().size(name);
+        require(n % per_element == 0, name, "ends with an incomplete element");
+        values.resize(n / per_element);
+      }
+      self().elements(name, values.empty() ? nullptr : values.front().data(), per_element * values.size());
+    }
+    else
+      objects(name, values);
+  }
+
+  /// Archives the concatenated numbers of lists, and the size of each.
   template <class Number>
-  void vectors(const std::string &name, std::vector<std::vector<Number>> &all)
+  void operator()(const std::string &name, std::vector<std::vector<Number>> &all)
   {
     std::vector<Number> values;
     std::vector<std::uint64_t> sizes;
@@ -235,39 +172,75 @@ private:
     require(next == values.end(), name + "/sizes", "are less than the number of values");
   }
 
-  template <class Range>
-  void several(const std::string &name, Range &range)
+  /// Archives many small objects as columns. Their archive() may contain only numbers and objects of numbers.
+  template <class Record>
+  void records(const std::string &name, std::vector<Record> &all)
   {
-    using T = typename Range::value_type;
-    if constexpr (IsVector<Range>::value && std::is_arithmetic_v<T>)
-    {
-      if constexpr (Archive::loads)
-        range.resize(self().size(name));
-      self().elements(name, range.data(), range.size());
-    }
-    else if constexpr (IsVector<Range>::value && is_matrix<T>)
-    {
-      constexpr auto per_element = static_cast<std::size_t>(T::SizeAtCompileTime);
-      static_assert(sizeof(T) == per_element * sizeof(double));
-      if constexpr (Archive::loads)
-      {
-        const std::size_t n = self().size(name);
-        require(n % per_element == 0, name, "ends with an incomplete element");
-        range.resize(n / per_element);
-      }
-      self().elements(name, range.empty() ? nullptr : range.front().data(), per_element * range.size());
-    }
-    else if constexpr (IsVector<Range>::value && IsVector<T>::value)
-      vectors(name, range);
-    else
-    {
-      std::size_t n = range.size();
-      (*this)(name + "/n", n);
-      require(range.size() == n, name, "has another number of objects");
-      std::size_t i = 0;
-      for (T &element : range)
-        (*this)(name + "/" + std::to_string(i++), element);
-    }
+    std::size_t n = all.size();
+    (*this)(name + "/n", n);
+    if constexpr (Archive::loads)
+      all.clear(); // grows as large as its first column is
+    if (n == 0)
+      return;
+    Record any{};
+    for_each_number(any,
+                    [&](const std::string &column, auto &number)
+                    {
+                      std::vector<std::decay_t<decltype(number)>> values;
+                      if constexpr (!Archive::loads)
+                        for_each_in_column(all, column, values, [&](auto &value) { values.push_back(value); });
+                      (*this)(name + "/" + column, values);
+                      require(values.size() == n, name + "/" + column, "has a length other than `n`");
+                      auto next = values.begin();
+                      all.resize(n);
+                      if constexpr (Archive::loads)
+                        for_each_in_column(all, column, values, [&](auto &value) { value = *next++; });
+                    });
+  }
+
+protected:
+  void require(bool holds, const std::string &name, const std::string &problem) const
+  {
+    if (!holds)
+      throw Hdf5Error("`" + prefix_ + name + "` " + problem);
+  }
+
+  std::string prefix_; // of the current object
+
+private:
+  Archive &self() { return static_cast<Archive &>(*this); }
+
+  template <class Record, class Visit>
+  static void for_each_number(Record &record, const Visit &visit)
+  {
+    NumberArchive<Archive::loads, Visit> archive(visit);
+    record.archive(archive);
+  }
+
+  // Visits the number that records have under the name of a column, of the type of its values.
+  template <class Record, class Number, class Visit>
+  static void for_each_in_column(std::vector<Record> &all, const std::string &column, const std::vector<Number> &,
+                                 const Visit &visit)
+  {
+    for (Record &record : all)
+      for_each_number(record,
+                      [&](const std::string &name, auto &number)
+                      {
+                        if constexpr (std::is_same_v<std::decay_t<decltype(number)>, Number>)
+                          if (name == column)
+                            visit(number);
+                      });
+  }
+
+  template <class Range>
+  void objects(const std::string &name, Range &range)
+  {
+    std::size_t n = range.size();
+    (*this)(name + "/n", n);
+    require(range.size() == n, name, "has another number of objects");
+    std::size_t i = 0;
+    for (auto &element : range)
+      (*this)(name + "/" + std::to_string(i++), element);
   }
 };
 
@@ -286,7 +259,7 @@ public:
   void elements(const std::string &name, const T *values, std::size_t n)
   {
     if (image_ != nullptr)
-      image_->write(prefix_ + name, element_type<T>(), values, n);
+      image_->write(prefix_ + name, typeid(T), values, n);
   }
   void text(const std::string &name, const std::string &text)
   {
@@ -310,7 +283,7 @@ public:
   template <class T>
   void elements(const std::string &name, T *values, std::size_t n)
   {
-    file_.read(prefix_ + name, element_type<T>(), values, n);
+    file_.read(prefix_ + name, typeid(T), values, n);
     if constexpr (std::is_same_v<T, double>)
       require(std::all_of(values, values + n, [](double value) { return std::isfinite(value); }), name,
               "is not finite");

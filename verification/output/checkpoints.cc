@@ -11,6 +11,7 @@
 #include "support/errors.h"
 #include "support/folder_lock.h"
 #include "support/ranks.h"
+#include "support/text_wrap.h"
 #include "verification/input/case.h"
 #include "verification/input/options.h"
 #include "verification/input/parameters.h"
@@ -71,9 +72,7 @@ std::string hash_in(const fs::path &path)
 
 std::string name_of(std::size_t step)
 {
-  char name[48];
-  std::snprintf(name, sizeof(name), "checkpoint-%012zu.h5", step);
-  return name;
+  return support::formatted("checkpoint-%012zu.h5", step);
 }
 
 } // namespace
@@ -110,13 +109,11 @@ Checkpoints::Checkpoints(const input::Options &options, const input::Parameters 
         best = place;
     }
   }
-  const auto told = [](const auto &value) { return support::broadcast(value); };
-  best.file = told(best.file.string());
-  best.step = told(best.step);
-  best.time = told(best.time);
-  best.commit = told(best.commit);
-  best.program_hash = told(best.program_hash);
-  problems = told(problems);
+  best.file = support::broadcast(best.file.string());
+  best.step = support::broadcast(best.step);
+  best.time = support::broadcast(best.time);
+  for (std::string *text : {&best.commit, &best.program_hash, &problems})
+    *text = support::broadcast(*text);
   if (!best.file.empty())
   {
     found_ = best;

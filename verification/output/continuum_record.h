@@ -57,24 +57,19 @@ public:
   void write(const std::string &directory) const;
 
 private:
-  using Reactions = std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>>;
-
   struct Equilibrium
   {
-    double load_factor;
-    double energy;
-    Reactions reactions;
+    std::vector<Table::Cell> numbers;
+    std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>> reactions;
   };
-  struct MeshRow
-  {
-    dealii::types::global_cell_index n_cells;
-    dealii::types::global_dof_index n_unknowns;
-    double energy;
-    Reactions reactions;
-  };
-  std::vector<Equilibrium> equilibria_;
-  std::vector<MeshRow> meshes_;
-  std::vector<std::pair<std::size_t, continuum::NewtonIteration>> iterations_; // with the index of the mesh, from 0
+  static double largest_reaction_of(const Equilibrium &state);
+  static void write_reactions(const std::string &path, std::vector<std::string> columns,
+                              const std::vector<Equilibrium> &rows);
+
+  std::vector<Equilibrium> equilibria_; // load factor, energy
+  std::vector<Equilibrium> meshes_;     // cells, unknowns, energy
+  Table iterations_{{"mesh", "load_step", "iteration", "load_factor", "residual", "tolerance", "energy", "step_length",
+                     "linear_iterations"}}; // with the index of the mesh, from 0
   EnergyHistory<continuum::EnergyLedger> motion_;
   LedgerCheck ledger_; // of every step
 };

@@ -11,12 +11,13 @@
 #include "lattice/archive_rows.h"
 #include "support/errors.h"
 #include "verification/analysis/fragments.h"
-#include "verification/output/mechanism_names.h"
 
 namespace latcon::output
 {
 namespace
 {
+
+using Json = nlohmann::ordered_json;
 
 // Fastest site; a site whose position or velocity is not finite takes precedence.
 struct FastestSite
@@ -49,16 +50,15 @@ FastestSite fastest_site(const lattice::Simulation &simulation)
 
 // What crack.json says of every crack: pattern, reason, measured quantities with uncertainties, and the thresholds that
 // decided.
-nlohmann::ordered_json crack_json(const analysis::CrackMeasurement &measurement)
+Json crack_json(const analysis::CrackMeasurement &measurement)
 {
-  nlohmann::ordered_json json;
+  Json json;
   json["pattern"] = to_string(measurement.pattern);
   json["reason"] = measurement.reason;
   const auto put = [&json](const std::string &name, const std::optional<analysis::Measured> &measured)
   {
-    json[name] = measured ? nlohmann::ordered_json(measured->value) : nlohmann::ordered_json(nullptr);
-    json[name + "_uncertainty"] =
-      measured ? nlohmann::ordered_json(measured->uncertainty) : nlohmann::ordered_json(nullptr);
+    json[name] = measured ? Json(measured->value) : Json();
+    json[name + "_uncertainty"] = measured ? Json(measured->uncertainty) : Json();
   };
   put("speed_lagrangian", measurement.speed_lagrangian);
   put("speed_laboratory", measurement.speed_laboratory);
@@ -212,11 +212,11 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   const lattice::State &state = simulation_.gather();
   if (!simulation_.band().is_first())
     return;
-  nlohmann::ordered_json json = crack_json(measurement);
+  Json json = crack_json(measurement);
   if (input.nonlocal.is_used)
     json["side"] = "continuum";
   const auto put_flanks = [&](const std::string &name, double analysis::FlankDamage::*number)
-  { json[name] = measurement.flanks ? nlohmann::ordered_json((*measurement.flanks).*number) : nullptr; };
+  { json[name] = measurement.flanks ? Json((*measurement.flanks).*number) : Json(); };
   put_flanks("flank_damage_depth", &analysis::FlankDamage::depth);
   put_flanks("flank_damage_share", &analysis::FlankDamage::share);
   json["bonds_broken"] = simulation_.n_broken();

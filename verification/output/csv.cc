@@ -6,7 +6,10 @@
 
 namespace latcon::output
 {
+namespace
+{
 
+// Returns a field that contains the text, quoted if it has commas, quotes or line breaks.
 std::string csv_field(const std::string &text)
 {
   if (text.find_first_of(",\"\r\n") == std::string::npos)
@@ -16,6 +19,8 @@ std::string csv_field(const std::string &text)
     quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";
 }
+
+} // namespace
 
 void Table::add(std::vector<Cell> row)
 {

@@ -9,9 +9,6 @@
 namespace latcon::output
 {
 
-/// Returns a CSV field that contains `text`, quoted if it has commas, quotes or line breaks.
-[[nodiscard]] std::string csv_field(const std::string &text);
-
 /// Table with one header line. Numbers are written in full precision.
 class Table
 {

@@ -1,6 +1,5 @@
 #include "verification/output/field_writer.h"
 
-#include <cstdio>
 #include <limits>
 #include <optional>
 #include <system_error>
@@ -29,6 +28,7 @@
 #include "lattice/strain_gradient.h"
 #include "support/atomic_file.h"
 #include "support/pvd.h"
+#include "support/text_wrap.h"
 #include "verification/analysis/fragments.h"
 
 namespace latcon::output
@@ -36,33 +36,18 @@ namespace latcon::output
 namespace
 {
 
-// Sets the unit of a field according to its name, as VTK's `UNITS_LABEL`. Fields that are not quantities get none.
-void set_unit(vtkDataArray &field)
+// Sets the unit of a field as VTK's `UNITS_LABEL`. @param unit null for a field that is no quantity
+void set_unit(vtkDataArray &field, const char *unit)
 {
-  static constexpr std::pair<const char *, const char *> units[] = {{"displacement", "m"},
-                                                                    {"excess_displacement", "m"},
-                                                                    {"velocity", "m/s"},
-                                                                    {"deformation_gradient", "1"},
-                                                                    {"first_piola_stress", "Pa"},
-                                                                    {"cauchy_stress", "Pa"},
-                                                                    {"strain_gradient_x", "1/m"},
-                                                                    {"strain_gradient_y", "1/m"},
-                                                                    {"strain_energy_density", "J/m^3"},
-                                                                    {"damage", "1"},
-                                                                    {"stretch", "1"},
-                                                                    {"occupancy", "1"},
-                                                                    {"TimeValue", "s"},
-                                                                    {"SheetBounds", "m"}};
-  for (const auto &[name, unit] : units)
-    if (field.GetName() == std::string(name))
-      field.GetInformation()->Set(vtkDataArray::UNITS_LABEL(), unit);
+  if (unit != nullptr)
+    field.GetInformation()->Set(vtkDataArray::UNITS_LABEL(), unit);
 }
 
 // Appends a field with its unit to the data of n points, cells, or a whole frame. ParaView expects three components of
 // vectors and nine of tensors.
 // @param value called with a point's index; returns a number, Eigen::Vector2d or Eigen::Matrix2d
 template <class Array, class Value>
-void add_field(vtkFieldData &data, const char *name, std::size_t n, const Value &value)
+void add_field(vtkFieldData &data, const char *name, const char *unit, std::size_t n, const Value &value)
 {
   using T = std::decay_t<decltype(value(n))>;
   constexpr bool is_vector = std::is_same_v<T, Eigen::Vector2d>, is_tensor = std::is_same_v<T, Eigen::Matrix2d>;
@@ -70,7 +55,7 @@ void add_field(vtkFieldData &data, const char *name, std::size_t n, const Value 
   field->SetName(name);
   field->SetNumberOfComponents(is_tensor ? 9 : is_vector ? 3 : 1);
   field->SetNumberOfTuples(static_cast<vtkIdType>(n));
-  set_unit(*field);
+  set_unit(*field, unit);
   for (std::size_t i = 0; i < n; ++i)
   {
     const T v = value(i);
@@ -122,27 +107,28 @@ void add_fields(vtkPolyData &frame, const lattice::State &state, const lattice::
   for (const std::size_t slot : sheet.is_triangular() ? slots : Slots())
     gradients.push_back(gradient_fit.at(state, slot).value_or(lattice::StrainGradient{unknown, unknown}));
   vtkPointData &data = *frame.GetPointData();
-  const auto add = [&](const char *name, const auto &of_slot)
-  { add_field<vtkDoubleArray>(data, name, slots.size(), [&](std::size_t i) { return of_slot[slots[i]]; }); };
-  add("deformation_gradient", fields.deformation_gradient);
-  add("first_piola_stress", fields.first_piola_stress);
-  add("cauchy_stress", fields.cauchy_stress);
+  const std::size_t n = slots.size();
+  const auto add = [&](const char *name, const char *unit, const auto &of_slot)
+  { add_field<vtkDoubleArray>(data, name, unit, n, [&](std::size_t i) { return of_slot[slots[i]]; }); };
+  add("deformation_gradient", "1", fields.deformation_gradient);
+  add("first_piola_stress", "Pa", fields.first_piola_stress);
+  add("cauchy_stress", "Pa", fields.cauchy_stress);
   if (!gradients.empty())
   {
-    add_field<vtkDoubleArray>(data, "strain_gradient_x", slots.size(), [&](std::size_t i) { return gradients[i].x; });
-    add_field<vtkDoubleArray>(data, "strain_gradient_y", slots.size(), [&](std::size_t i) { return gradients[i].y; });
+    add_field<vtkDoubleArray>(data, "strain_gradient_x", "1/m", n, [&](std::size_t i) { return gradients[i].x; });
+    add_field<vtkDoubleArray>(data, "strain_gradient_y", "1/m", n, [&](std::size_t i) { return gradients[i].y; });
   }
-  add("strain_energy_density", fields.strain_energy_density);
-  add("damage", fields.damage);
-  add_field<vtkUnsignedCharArray>(data, "held", slots.size(), [&](std::size_t i) { return state.held[slots[i]]; });
-  add_field<vtkIdTypeArray>(data, "site", slots.size(), [&](std::size_t i) { return sheet.site_number(slots[i]); });
-  add_field<vtkIdTypeArray>(data, "fragment", slots.size(), [&](std::size_t i) { return fragments.number[slots[i]]; });
+  add("strain_energy_density", "J/m^3", fields.strain_energy_density);
+  add("damage", "1", fields.damage);
+  add_field<vtkUnsignedCharArray>(data, "held", nullptr, n, [&](std::size_t i) { return state.held[slots[i]]; });
+  add_field<vtkIdTypeArray>(data, "site", nullptr, n, [&](std::size_t i) { return sheet.site_number(slots[i]); });
+  add_field<vtkIdTypeArray>(data, "fragment", nullptr, n, [&](std::size_t i) { return fragments.number[slots[i]]; });
   // The outermost sites of a periodic sheet are inside its ends.
   vtkNew<vtkDoubleArray> bounds;
   bounds->SetName("SheetBounds");
   bounds->SetNumberOfComponents(4);
   bounds->InsertNextTuple4(0., sheet.length(), -0.5 * sheet.height(), 0.5 * sheet.height());
-  set_unit(*bounds);
+  set_unit(*bounds, "m");
   frame.GetFieldData()->AddArray(bounds);
 }
 
@@ -180,9 +166,9 @@ void add_bonds(vtkPolyData &frame, const lattice::State &state, const lattice::T
   frame.SetLines(lines);
   vtkCellData &data = *frame.GetCellData();
   const std::size_t n = stretches.size();
-  add_field<vtkDoubleArray>(data, "stretch", n, [&](std::size_t i) { return stretches[i]; });
-  add_field<vtkUnsignedCharArray>(data, "shell", n, [&](std::size_t i) { return shells[i]; });
-  add_field<vtkUnsignedCharArray>(data, "toughened", n, [&](std::size_t i) { return toughened[i]; });
+  add_field<vtkDoubleArray>(data, "stretch", "1", n, [&](std::size_t i) { return stretches[i]; });
+  add_field<vtkUnsignedCharArray>(data, "shell", nullptr, n, [&](std::size_t i) { return shells[i]; });
+  add_field<vtkUnsignedCharArray>(data, "toughened", nullptr, n, [&](std::size_t i) { return toughened[i]; });
   data.SetActiveScalars("stretch");
 }
 
@@ -222,24 +208,20 @@ void FieldWriter::add_frame(const lattice::State &state)
   const auto velocity = [&](std::size_t i) { return Eigen::Vector2d(state.vx[slots[i]], state.vy[slots[i]]); };
   if (fields_ == FrameFields::all)
   {
-    add_field<vtkDoubleArray>(data, "displacement", slots.size(), displacement);
-    add_field<vtkDoubleArray>(data, "velocity", slots.size(), velocity);
+    add_field<vtkDoubleArray>(data, "displacement", "m", slots.size(), displacement);
+    add_field<vtkDoubleArray>(data, "velocity", "m/s", slots.size(), velocity);
     add_fields(*frame, state, lattice_, material_, slots);
     add_bonds(*frame, state, lattice_, slots);
   }
   else
   {
-    add_field<vtkFloatArray>(data, "displacement", slots.size(), displacement);
-    add_field<vtkFloatArray>(data, "velocity", slots.size(), velocity);
+    add_field<vtkFloatArray>(data, "displacement", "m", slots.size(), displacement);
+    add_field<vtkFloatArray>(data, "velocity", "m/s", slots.size(), velocity);
     data.SetActiveScalars("displacement");
   }
   // Array that ParaView shows by default; velocities are zero at the start.
   data.SetActiveVectors("displacement");
-  vtkNew<vtkDoubleArray> time_value;
-  time_value->SetName("TimeValue");
-  set_unit(*time_value);
-  time_value->InsertNextValue(state.time);
-  frame->GetFieldData()->AddArray(time_value);
+  add_field<vtkDoubleArray>(*frame->GetFieldData(), "TimeValue", "s", 1, [&](std::size_t) { return state.time; });
 
   if (!times_.empty() && times_.back() == state.time)
     times_.pop_back();
@@ -252,9 +234,7 @@ void FieldWriter::add_frame(const lattice::State &state)
 
 std::string FieldWriter::file_name(std::size_t frame) const
 {
-  char number[32];
-  std::snprintf(number, sizeof(number), "-%04zu.vtp", frame);
-  return name_ + number;
+  return name_ + support::formatted("-%04zu.vtp", frame);
 }
 
 void FieldWriter::write_collection() const
@@ -272,21 +252,21 @@ void write_near_tip_field(const analysis::NearTipField &field, const std::filesy
   image->SetDimensions(grid.columns(), grid.rows(), 1);
   image->SetSpacing(grid.pitch_X, grid.pitch_Y, 1.);
   image->SetOrigin(-grid.behind * grid.pitch_X, -grid.half_height * grid.pitch_Y, 0.);
-  const auto add = [&](const char *name, const auto &values)
-  { add_field<vtkDoubleArray>(*image->GetPointData(), name, grid.size(), [&](std::size_t i) { return values[i]; }); };
-  add("displacement", field.displacement);
-  add("excess_displacement", field.excess_displacement);
-  add("velocity", field.velocity);
-  add("deformation_gradient", field.deformation_gradient);
-  add("first_piola_stress", field.first_piola_stress);
-  add("cauchy_stress", field.cauchy_stress);
-  add("strain_gradient_x", field.strain_gradient_x);
-  add("strain_gradient_y", field.strain_gradient_y);
-  add("occupancy", field.occupancy);
-  vtkNew<vtkDoubleArray> samples;
-  samples->SetName("Samples");
-  samples->InsertNextValue(static_cast<double>(field.samples));
-  image->GetFieldData()->AddArray(samples);
+  const auto add = [&](const char *name, const char *unit, const auto &values)
+  {
+    add_field<vtkDoubleArray>(*image->GetPointData(), name, unit, grid.size(),
+                              [&](std::size_t i) { return values[i]; });
+  };
+  add("displacement", "m", field.displacement);
+  add("excess_displacement", "m", field.excess_displacement);
+  add("velocity", "m/s", field.velocity);
+  add("deformation_gradient", "1", field.deformation_gradient);
+  add("first_piola_stress", "Pa", field.first_piola_stress);
+  add("cauchy_stress", "Pa", field.cauchy_stress);
+  add("strain_gradient_x", "1/m", field.strain_gradient_x);
+  add("strain_gradient_y", "1/m", field.strain_gradient_y);
+  add("occupancy", "1", field.occupancy);
+  add_field<vtkDoubleArray>(*image->GetFieldData(), "Samples", nullptr, 1, [&](std::size_t) { return field.samples; });
 
   vtkNew<vtkXMLImageDataWriter> writer;
   writer->SetInputData(image);

@@ -1,6 +1,9 @@
 #include "verification/output/hdf5_file.h"
 
 #include <algorithm>
+#include <map>
+#include <type_traits>
+#include <typeindex>
 
 #include <hdf5.h>
 
@@ -31,19 +34,15 @@ hid_t open_file(const std::string &path)
   return H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
 }
 
-// Type of the elements in the file and in memory.
-struct NumberType
+// Type of the elements in the file and in memory: the machines that latcon supports are little-endian.
+hid_t type_of(const std::type_info &type)
 {
-  hid_t in_file, in_memory;
-};
-
-NumberType type_of(ElementType type)
-{
-  const NumberType types[] = {{H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE}, {H5T_STD_I32LE, H5T_NATIVE_INT32},
-                              {H5T_STD_I64LE, H5T_NATIVE_INT64},   {H5T_STD_U8LE, H5T_NATIVE_UINT8},
-                              {H5T_STD_U16LE, H5T_NATIVE_UINT16},  {H5T_STD_U32LE, H5T_NATIVE_UINT32},
-                              {H5T_STD_U64LE, H5T_NATIVE_UINT64}};
-  return types[static_cast<std::size_t>(type)];
+  static const std::map<std::type_index, hid_t> types{
+    {typeid(double), H5T_IEEE_F64LE},       {typeid(std::int32_t), H5T_STD_I32LE},
+    {typeid(std::int64_t), H5T_STD_I64LE},  {typeid(std::uint8_t), H5T_STD_U8LE},
+    {typeid(std::uint16_t), H5T_STD_U16LE}, {typeid(std::uint32_t), H5T_STD_U32LE},
+    {typeid(std::uint64_t), H5T_STD_U64LE}};
+  return types.at(type);
 }
 
 // Links to other files are not followed: arrays must be in the file itself.
@@ -81,17 +80,16 @@ std::size_t size_of(hid_t file, hid_t array, const std::string &path)
   return static_cast<std::size_t>(n);
 }
 
-void write_array(hid_t file, const std::string &path, hid_t in_file, hid_t in_memory, const void *elements,
-                 std::size_t n)
+void write_array(hid_t file, const std::string &path, hid_t type, const void *elements, std::size_t n)
 {
   const std::string what = "cannot write `" + path + "`";
   const hsize_t extent = n;
   const Handle space(H5Screate_simple(1, &extent, nullptr), H5Sclose, what);
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, what);
   require(H5Pset_create_intermediate_group(links, 1), what);
-  const Handle array(H5Dcreate2(file, path.c_str(), in_file, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose, what);
+  const Handle array(H5Dcreate2(file, path.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose, what);
   if (n > 0)
-    require(H5Dwrite(array, in_memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, elements), what);
+    require(H5Dwrite(array, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, elements), what);
 }
 
 } // namespace
@@ -115,9 +113,9 @@ Hdf5Image::Hdf5Image()
   file_.emplace(H5Fcreate("checkpoint", H5F_ACC_TRUNC, creation, access), H5Fclose, what);
 }
 
-void Hdf5Image::write(const std::string &path, ElementType type, const void *elements, std::size_t n)
+void Hdf5Image::write(const std::string &path, const std::type_info &type, const void *elements, std::size_t n)
 {
-  write_array(*file_, path, type_of(type).in_file, type_of(type).in_memory, elements, n);
+  write_array(*file_, path, type_of(type), elements, n);
 }
 
 void Hdf5Image::write_text(const std::string &path, const std::string &text)
@@ -125,7 +123,7 @@ void Hdf5Image::write_text(const std::string &path, const std::string &text)
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "cannot write `" + path + "`");
   require(H5Tset_size(type, text.size() + 1), "cannot write `" + path + "`"); // including the terminating zero
   require(H5Tset_cset(type, H5T_CSET_UTF8), "cannot write `" + path + "`");
-  write_array(*file_, path, type, type, text.c_str(), 1);
+  write_array(*file_, path, type, text.c_str(), 1);
 }
 
 std::string Hdf5Image::take_bytes()
@@ -150,17 +148,16 @@ std::size_t Hdf5File::size(const std::string &path) const
   return size_of(file_, open_array(file_, path), path);
 }
 
-void Hdf5File::read(const std::string &path, ElementType type, void *elements, std::size_t n) const
+void Hdf5File::read(const std::string &path, const std::type_info &type, void *elements, std::size_t n) const
 {
   const Handle array = open_array(file_, path);
   const Handle stored(H5Dget_type(array), H5Tclose, "`" + path + "` has no type");
-  if (H5Tequal(stored, type_of(type).in_file) <= 0)
+  if (H5Tequal(stored, type_of(type)) <= 0)
     throw Hdf5Error("`" + path + "` has another type");
   if (size_of(file_, array, path) != n)
     throw Hdf5Error("`" + path + "` has another size");
   if (n > 0)
-    require(H5Dread(array, type_of(type).in_memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, elements),
-            "cannot read `" + path + "`");
+    require(H5Dread(array, type_of(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, elements), "cannot read `" + path + "`");
 }
 
 std::string Hdf5File::read_text(const std::string &path) const

@@ -6,7 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
+#include <typeinfo>
 
 namespace latcon::output
 {
@@ -17,37 +17,6 @@ class Hdf5Error : public std::runtime_error
 public:
   using std::runtime_error::runtime_error;
 };
-
-/// Types of array elements, little-endian in files.
-enum class ElementType
-{
-  float64,
-  int32,
-  int64,
-  uint8,
-  uint16,
-  uint32,
-  uint64
-};
-
-/// Returns the element type for numbers of type T.
-template <class T>
-constexpr ElementType element_type()
-{
-  static_assert(std::is_same_v<T, double> || std::is_integral_v<T>);
-  if constexpr (std::is_same_v<T, double>)
-    return ElementType::float64;
-  else if constexpr (std::is_signed_v<T>)
-  {
-    static_assert(sizeof(T) == 4 || sizeof(T) == 8);
-    return sizeof(T) == 4 ? ElementType::int32 : ElementType::int64;
-  }
-  else
-    return sizeof(T) == 1   ? ElementType::uint8
-           : sizeof(T) == 2 ? ElementType::uint16
-           : sizeof(T) == 4 ? ElementType::uint32
-                            : ElementType::uint64;
-}
 
 /// Owner of a handle of HDF5.
 class Hdf5Handle
@@ -75,8 +44,9 @@ public:
   /// Size of the HDF5 user block: bytes before the HDF5 part, for use by the caller.
   static constexpr std::size_t user_block = 512;
 
-  /// Writes an array. @throws Hdf5Error if the path already exists, or if there is not enough memory
-  void write(const std::string &path, ElementType type, const void *elements, std::size_t n);
+  /// Writes an array of real numbers, or of integers, little-endian.
+  /// @throws Hdf5Error if the path already exists, or if there is not enough memory
+  void write(const std::string &path, const std::type_info &type, const void *elements, std::size_t n);
   void write_text(const std::string &path, const std::string &text);
 
   /// Returns the whole file, with zeros in its user block. Nothing can be written afterwards.
@@ -98,7 +68,7 @@ public:
   std::size_t size(const std::string &path) const;
 
   /// Reads a whole array. @throws Hdf5Error if the type or size differs
-  void read(const std::string &path, ElementType type, void *elements, std::size_t n) const;
+  void read(const std::string &path, const std::type_info &type, void *elements, std::size_t n) const;
   /// Reads a text. @throws Hdf5Error unless it is a single text whose only zero byte is at its end
   std::string read_text(const std::string &path) const;
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
+#include <numeric>
 
 #include <nlohmann/json.hpp>
 
@@ -53,17 +54,19 @@ double number_above(const std::vector<double> &speeds, double limit)
   return static_cast<double>(std::count_if(speeds.begin(), speeds.end(), [&](double speed) { return speed > limit; }));
 }
 
-double number_below(const std::vector<double> &speeds, double limit)
-{
-  return static_cast<double>(std::count_if(speeds.begin(), speeds.end(), [&](double speed) { return speed < limit; }));
-}
-
 // Returns the fraction of `speeds` above a limit; none if there are no speeds.
 std::optional<double> share_above(const std::vector<double> &speeds, double limit)
 {
   if (speeds.empty())
     return std::nullopt;
   return number_above(speeds, limit) / static_cast<double>(speeds.size());
+}
+
+// Returns a member of an object, or a function of it; none without the object.
+template <class Object, class Part>
+std::optional<double> part_of(const std::optional<Object> &object, const Part &part)
+{
+  return object ? std::optional<double>(std::invoke(part, *object)) : std::nullopt;
 }
 
 using Number = std::pair<std::string, std::optional<double>>;
@@ -83,36 +86,36 @@ std::vector<Number> field_numbers(const analysis::NearTipField &field, std::opti
     negative = analysis::negative_zone(field, *laboratory_speed);
     vortices = analysis::vortices(field, vortex_limit * *laboratory_speed);
   }
-  const auto of_zone = [&](auto value) { return negative ? std::optional<double>(value(*negative)) : std::nullopt; };
-  add("negative_zone_area", of_zone([](const auto &zone) { return zone.area; }));
-  add("negative_zone_length", of_zone([](const auto &zone) { return zone.length; }));
-  add("negative_zone_distance", negative ? negative->distance : std::nullopt);
-  add("negative_zone_depth", of_zone([](const auto &zone) { return zone.depth; }));
-  add("negative_zone_depth_X", of_zone([](const auto &zone) { return zone.deepest.x(); }));
-  add("negative_zone_depth_Y", of_zone([](const auto &zone) { return zone.deepest.y(); }));
+  add("negative_zone_area", part_of(negative, &analysis::NegativeZone::area));
+  add("negative_zone_length", part_of(negative, &analysis::NegativeZone::length));
+  add("negative_zone_distance", part_of(negative, &analysis::NegativeZone::distance));
+  add("negative_zone_depth", part_of(negative, &analysis::NegativeZone::depth));
+  add("negative_zone_depth_X", part_of(negative, [](const auto &zone) { return zone.deepest.x(); }));
+  add("negative_zone_depth_Y", part_of(negative, [](const auto &zone) { return zone.deepest.y(); }));
   add("velocity_asymmetry", analysis::velocity_asymmetry(field));
-  add("vortices", vortices ? std::optional<double>(vortices->size()) : std::nullopt);
-  const bool any = vortices && !vortices->empty();
-  add("vortex_distance", any ? std::optional<double>(vortices->front().position.norm()) : std::nullopt);
-  add("vortex_circulation", any ? std::optional<double>(vortices->front().circulation) : std::nullopt);
+  add("vortices", part_of(vortices, [](const auto &all) { return static_cast<double>(all.size()); }));
+  std::optional<analysis::Vortex> nearest;
+  if (vortices && !vortices->empty())
+    nearest = vortices->front();
+  add("vortex_distance", part_of(nearest, [](const auto &vortex) { return vortex.position.norm(); }));
+  add("vortex_circulation", part_of(nearest, &analysis::Vortex::circulation));
   add("tip_circulation", analysis::circulation(field, Eigen::Vector2d::Zero(), tip_loop * spacing, true));
   std::optional<analysis::FollowingZone> process;
   if (process_zone_speed)
     process = analysis::following_zone(field, *process_zone_speed);
-  add("process_zone_length", process ? std::optional<double>(process->length) : std::nullopt);
-  add("process_zone_fastest", process ? std::optional<double>(process->fastest) : std::nullopt);
-  add("process_zone_share",
-      process_zone_speed ? share_above(analysis::speeds_behind_tip(field), *process_zone_speed) : std::nullopt);
+  add("process_zone_length", part_of(process, &analysis::FollowingZone::length));
+  add("process_zone_fastest", part_of(process, &analysis::FollowingZone::fastest));
+  add("process_zone_share", part_of(process_zone_speed, [&](double speed)
+                                    { return share_above(analysis::speeds_behind_tip(field), speed); }));
   for (const int radius : {4, 8})
   {
     const std::optional<analysis::OpeningStress> stress = analysis::opening_stress(field, radius * spacing);
-    const auto of_stress = [&](auto value) { return stress ? std::optional<double>(value(*stress)) : std::nullopt; };
     const std::string at = "_" + std::to_string(radius) + "d";
-    add("opening_stress_angle" + at, of_stress([](const auto &s) { return s.angle; }));
-    add("opening_stress_ratio" + at, of_stress([](const auto &s) { return s.ratio; }));
-    add("opening_stress_peak" + at, of_stress([](const auto &s) { return s.peak; }));
-    add("opening_stress_concentration" + at,
-        far_opening_stress > 0. ? of_stress([&](const auto &s) { return s.peak / far_opening_stress; }) : std::nullopt);
+    add("opening_stress_angle" + at, part_of(stress, &analysis::OpeningStress::angle));
+    add("opening_stress_ratio" + at, part_of(stress, &analysis::OpeningStress::ratio));
+    add("opening_stress_peak" + at, part_of(stress, &analysis::OpeningStress::peak));
+    const auto over_far = [&](const auto &s) { return s.peak / far_opening_stress; };
+    add("opening_stress_concentration" + at, far_opening_stress > 0. ? part_of(stress, over_far) : std::nullopt);
   }
   return numbers;
 }
@@ -133,35 +136,30 @@ Eigen::Matrix2d stress_of_loaded_sheet(const input::Case &input)
   return lattice::SiteEvaluator(sheet, material).at(state, sheet.index(row, sheet.sites_in_row(row) / 2)).cauchy_stress;
 }
 
-// Returns the standard deviation of the mean over all blocks, estimated from blocks with a value; none for fewer than
-// two.
-std::optional<double> uncertainty(const std::vector<std::optional<double>> &blocks)
+// Returns the standard deviation of the mean over all blocks, estimated from those of blocks that have one; none for
+// fewer than two.
+std::optional<double> uncertainty(const std::vector<double> &means)
 {
-  double sum = 0., squares = 0.;
-  double n = 0.;
-  for (const std::optional<double> &block : blocks)
-    if (block)
-    {
-      sum += *block;
-      n += 1.;
-    }
+  const double n = static_cast<double>(means.size()), mean = std::accumulate(means.begin(), means.end(), 0.) / n;
   if (n < 2.)
     return std::nullopt;
-  for (const std::optional<double> &block : blocks)
-    if (block)
-      squares += std::pow(*block - sum / n, 2);
+  double squares = 0.;
+  for (const double of_block : means)
+    squares += std::pow(of_block - mean, 2);
   return std::sqrt(squares / ((n - 1.) * n));
 }
 
-} // namespace
-
-WaveSpeeds wave_speeds_along_crack(const input::Case &input)
+// Returns the speeds of long waves along x in the loaded sheet, without dashpots (theory-comparison.md, eq. (W.2)):
+// longitudinal and shear, referential [m/s], the laboratory speeds divided by the stretch along x.
+std::array<double, 2> wave_speeds_along_crack(const input::Case &input)
 {
   constexpr double kd = 1e-3; // relative error of about kd^2 / 10
   const double k = kd / input.spacing;
   const auto waves = bridge::bloch_waves(input.sheet(), input.material(), input.deformation(), {k, 0.});
   return {waves[0].frequency / k, waves[1].frequency / k};
 }
+
+} // namespace
 
 double near_tip_interval(const input::Case &input)
 {
@@ -177,7 +175,7 @@ double near_tip_window(const input::Case &input)
 
 NearTipRecord::NearTipRecord(const input::Case &input, lattice::Simulation &simulation, double seed_tip_X)
   : simulation_(simulation), interval_(near_tip_interval(input)), deformation_(input.deformation()),
-    far_opening_stress_(stress_of_loaded_sheet(input)(1, 1)), waves_(wave_speeds_along_crack(input)),
+    far_opening_stress_(stress_of_loaded_sheet(input)(1, 1)), wave_speeds_(wave_speeds_along_crack(input)),
     X_begin_(seed_tip_X + sampled_from * (input.stop_position * simulation.lattice().length() - seed_tip_X)),
     X_end_(seed_tip_X + sampled_to * (input.stop_position * simulation.lattice().length() - seed_tip_X)),
     sampler_(simulation.lattice(), simulation.material(), sampler_options(input, X_begin_, X_end_))
@@ -255,7 +253,7 @@ std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack)
 {
   nlohmann::ordered_json json;
   const auto put = [&json](const std::string &name, const std::optional<double> &value)
-  { json[name] = value && std::isfinite(*value) ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr); };
+  { json[name] = value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(); }; // null also if it is not finite
   const auto put_measured =
     [&](const std::string &name, const std::optional<double> &value, const std::optional<double> &deviation)
   {
@@ -272,9 +270,8 @@ std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack)
   json["sampled_to"] = X_end_;
 
   const double d = simulation_.lattice().lattice_spacing();
-  std::optional<double> laboratory_speed, process_zone_speed;
-  if (crack.speed_laboratory)
-    laboratory_speed = crack.speed_laboratory->value;
+  std::optional<double> laboratory_speed = part_of(crack.speed_laboratory, &analysis::Measured::value),
+                        process_zone_speed;
   // Fraction of the speed of fully relaxed rubber behind a steady crack (theory.md, eq. (N.1)).
   if (laboratory_speed && deformation_(0, 0) > 1.)
     process_zone_speed = process_zone_part * (1. - 1. / deformation_(0, 0)) * *laboratory_speed;
@@ -290,26 +287,25 @@ std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack)
     field_numbers(sampler_.folded(), laboratory_speed, process_zone_speed, far_opening_stress_, d);
   for (std::size_t n = 0; n < numbers.size(); ++n)
   {
-    std::vector<std::optional<double>> values;
+    std::vector<double> values;
     for (const std::vector<Number> &block : of_blocks)
-      values.push_back(block[n].second);
+      if (block[n].second)
+        values.push_back(*block[n].second);
     put_measured(numbers[n].first, numbers[n].second, uncertainty(values));
   }
   const auto put_sums = [&](const std::string &name, auto sum_of)
   {
     Sum all;
-    std::vector<std::optional<double>> means;
+    std::vector<double> means;
     for (const Block &block : blocks_)
     {
       const Sum sum = sum_of(block);
       all.value += sum.value;
       all.samples += sum.samples;
       if (sum.samples > 0)
-        means.push_back(sum.value / static_cast<double>(sum.samples));
+        means.push_back(*sum.mean());
     }
-    put_measured(name,
-                 all.samples > 0 ? std::optional<double>(all.value / static_cast<double>(all.samples)) : std::nullopt,
-                 uncertainty(means));
+    put_measured(name, all.mean(), uncertainty(means));
   };
   put_sums("velocity_asymmetry_of_samples", [](const Block &block) { return block.asymmetry; });
   put_sums("negative_zone_depth_of_samples", [](const Block &block) { return block.negative_zone_depth; });
@@ -335,20 +331,26 @@ std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack)
   const double site_area = sampler_.grid().pitch_X * sampler_.grid().pitch_Y;
   put_speeds("negative_zone_area_of_samples", &Block::backward_speeds, laboratory_speed,
              [&](const auto &speeds)
-             { return site_area * number_below(speeds, -analysis::negative_zone_limit * *laboratory_speed); });
+             {
+               const double limit = -analysis::negative_zone_limit * *laboratory_speed;
+               return site_area * static_cast<double>(std::count_if(speeds.begin(), speeds.end(),
+                                                                    [&](double speed) { return speed < limit; }));
+             });
   put_speeds("process_zone_share_of_samples", &Block::following_speeds, process_zone_speed,
              [&](const auto &speeds) { return share_above(speeds, *process_zone_speed); });
   put_sums("wedge_angle", [](const Block &block) { return block.wedge_angle; });
   put("process_zone_speed", process_zone_speed);
   put("far_opening_stress", far_opening_stress_);
-  put("longitudinal_speed", waves_.longitudinal);
-  put("shear_speed", waves_.shear);
-  const auto over = [&](double wave) -> std::optional<double>
-  { return crack.speed_lagrangian ? std::optional<double>(crack.speed_lagrangian->value / wave) : std::nullopt; };
-  const auto deviation = [&](double wave) -> std::optional<double>
-  { return crack.speed_lagrangian ? std::optional<double>(crack.speed_lagrangian->uncertainty / wave) : std::nullopt; };
-  put_measured("speed_over_longitudinal", over(waves_.longitudinal), deviation(waves_.longitudinal));
-  put_measured("speed_over_shear", over(waves_.shear), deviation(waves_.shear));
+  put("longitudinal_speed", wave_speeds_[0]);
+  put("shear_speed", wave_speeds_[1]);
+  const auto put_ratio = [&](const std::string &name, double wave)
+  {
+    const auto over = [&](double analysis::Measured::*number)
+    { return part_of(crack.speed_lagrangian, [&](const auto &speed) { return speed.*number / wave; }); };
+    put_measured(name, over(&analysis::Measured::value), over(&analysis::Measured::uncertainty));
+  };
+  put_ratio("speed_over_longitudinal", wave_speeds_[0]);
+  put_ratio("speed_over_shear", wave_speeds_[1]);
   json["units"] =
     "lengths m, areas m^2, wave speeds m/s in the undeformed sheet; velocities m/s of the laboratory; "
     "circulations m^2/s in the current sheet; stresses Pa (Cauchy); angles degrees, that of the peak stress "

@@ -13,15 +13,6 @@
 namespace latcon::output
 {
 
-/// Speeds of long waves along x in the loaded sheet, without dashpots (theory-comparison.md, eq. (W.2)).
-struct WaveSpeeds
-{
-  double longitudinal, shear; ///< referential [m/s]: laboratory speed divided by the stretch along x
-};
-
-/// Computes the wave speeds of the loaded sheet of a case.
-WaveSpeeds wave_speeds_along_crack(const input::Case &input);
-
 /// Returns the time between samples [s]; 0: no samples. The default is d / (2 c_S), with the speed c_S of long shear
 /// waves in the undeformed sheet: a crack at about that speed advances half a spacing between two samples, for any time
 /// step.
@@ -71,6 +62,10 @@ private:
       value += number;
       ++samples;
     }
+    std::optional<double> mean() const
+    {
+      return samples > 0 ? std::optional<double>(value / static_cast<double>(samples)) : std::nullopt;
+    }
     template <class Archive>
     void archive(Archive &archive)
     {
@@ -105,7 +100,7 @@ private:
   double intervals_ = 0.; // number of complete intervals
   Eigen::Matrix2d deformation_;
   double far_opening_stress_; // Cauchy sigma_yy of the loaded sheet [Pa]
-  WaveSpeeds waves_;
+  std::array<double, 2> wave_speeds_; // longitudinal and shear, of long waves along x in the loaded sheet [m/s]
   double X_begin_, X_end_;
   analysis::NearTipSampler sampler_;
   std::array<Block, analysis::NearTipSampler::n_blocks> blocks_;

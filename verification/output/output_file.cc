@@ -1,14 +1,102 @@
 #include "verification/output/output_file.h"
 
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <set>
+#include <system_error>
+#include <vector>
+
 #include "support/atomic_file.h"
-#include "verification/output/output_list.h"
+#include "support/errors.h"
 
 namespace latcon::output
 {
+namespace
+{
+
+namespace fs = std::filesystem;
+using Names = std::set<std::string>;
+
+// Files written by the libraries of both sides.
+const Names frames{"lattice.pvd", "lattice-*.vtp", "motion.pvd", "motion-*.vtp", "continuum.pvd", "continuum_*.vtu",
+                   "continuum_*.pvtu", "near_tip.vti", "near_tip_folded.vti",
+                   // of the claim running-crack
+                   "crack-nn-nnn-lattice.pvd", "crack-nn-nnn-lattice-*.vtp", "crack-nn-nnn-local.pvd",
+                   "crack-nn-nnn-local_*.vtu", "crack-nn-nnn-gradient.pvd", "crack-nn-nnn-gradient_*.vtu",
+                   "crack-nn-lattice.pvd", "crack-nn-lattice-*.vtp", "crack-nn-local.pvd", "crack-nn-local_*.vtu",
+                   "crack-nn-gradient.pvd", "crack-nn-gradient_*.vtu"};
+
+Names names_in(const fs::path &folder)
+{
+  std::ifstream in(folder / output_list_name);
+  Names names;
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty())
+      names.insert(line);
+  return names;
+}
+
+void write_names(const fs::path &folder, const Names &names)
+{
+  std::string text;
+  for (const std::string &name : names)
+    text += name + "\n";
+  support::write_atomically(folder / output_list_name, text, support::Sync::yes);
+}
+
+bool fits(const std::string &file, const std::string &name)
+{
+  const std::size_t star = name.find('*');
+  if (star == std::string::npos)
+    return file == name;
+  const std::string begin = name.substr(0, star), end = name.substr(star + 1);
+  return file.size() > begin.size() + end.size() && file.compare(0, begin.size(), begin) == 0 &&
+         file.compare(file.size() - end.size(), end.size(), end) == 0 &&
+         std::all_of(file.begin() + static_cast<std::ptrdiff_t>(begin.size()),
+                     file.end() - static_cast<std::ptrdiff_t>(end.size()),
+                     [](const unsigned char c) { return std::isdigit(c) != 0 || c == '.'; });
+}
+
+bool is_in(const Names &names, const fs::path &file)
+{
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string &name) { return fits(file.filename().string(), name); });
+}
+
+// Returns the first name that is free.
+fs::path folder_for_earlier(const fs::path &folder)
+{
+  const fs::path plain = folder / "earlier-run";
+  fs::path aside = plain;
+  for (int i = 2; fs::exists(fs::symlink_status(aside)); ++i)
+    aside = plain.string() + "-" + std::to_string(i);
+  return aside;
+}
+
+} // namespace
+
+bool is_listed_output(const fs::path &file)
+{
+  return is_in(names_in(file.parent_path()), file);
+}
+
+void begin_output_list(const fs::path &folder)
+{
+  Names names = names_in(folder);
+  names.insert(frames.begin(), frames.end());
+  write_names(folder, names);
+}
 
 void write_file(const std::string &path, const std::string &text)
 {
-  list_output(path);
+  const fs::path file = path, folder = file.parent_path();
+  if (std::error_code none; fs::exists(folder / output_list_name, none))
+  {
+    Names names = names_in(folder);
+    if (names.insert(file.filename().string()).second)
+      write_names(folder, names);
+  }
   support::write_atomically(path, text, support::Sync::yes);
 }
 
@@ -16,6 +104,33 @@ void write_files(const TextFiles &files)
 {
   for (const auto &[path, text] : files)
     write_file(path, text);
+}
+
+fs::path archive_earlier_output(const fs::path &folder, const fs::path &keep)
+{
+  try
+  {
+    const Names names = names_in(folder);
+    std::vector<fs::path> files; // the list is not in itself
+    std::error_code none;
+    for (const fs::directory_entry &entry : fs::directory_iterator(folder))
+      if (entry.is_regular_file() && !entry.is_symlink() && is_in(names, entry.path()) &&
+          !fs::equivalent(entry.path(), keep, none))
+        files.push_back(entry.path());
+    if (files.empty())
+      return {};
+    const fs::path aside = folder_for_earlier(folder);
+    fs::create_directory(aside);
+    for (const fs::path &file : files)
+      fs::rename(file, aside / file.filename());
+    write_names(aside, names);
+    return aside;
+  }
+  catch (const fs::filesystem_error &error)
+  {
+    throw support::OutputError(folder.string(),
+                               std::string("the files of the previous run cannot be moved: ") + error.what());
+  }
 }
 
 } // namespace latcon::output

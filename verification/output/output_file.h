@@ -1,6 +1,8 @@
-/// Atomic writing of text files.
+/// Files in an output directory, and the list of those that latcon wrote, so that files of a later run are not mixed
+/// with those of an earlier one.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,7 +11,7 @@ namespace latcon::output
 {
 
 /// Replaces the file `path` by `text` and synchronises it with the disk; see support::AtomicFile. First adds the file
-/// to the list of its folder (output_list.h).
+/// to the list of its folder, if the folder has one.
 /// @throws OutputError with `path` and the reason given by the system; the old file is unchanged
 void write_file(const std::string &path, const std::string &text);
 
@@ -18,5 +20,23 @@ using TextFiles = std::vector<std::pair<std::string, std::string>>;
 
 /// Replaces files one after the other, each as write_file() does.
 void write_files(const TextFiles &files);
+
+/// Name of the list in an output directory: sorted, with a line per file that latcon wrote. A `*` represents the digits
+/// and dots in the number of a frame.
+inline constexpr const char *output_list_name = ".latcon-files";
+
+/// Returns true if a file is in the list of its folder.
+[[nodiscard]] bool is_listed_output(const std::filesystem::path &file);
+
+/// Creates the list of an output directory with the names of frames and fields, or keeps an existing one.
+/// @throws OutputError
+void begin_output_list(const std::filesystem::path &folder);
+
+/// Moves the listed files of an output directory to its subfolder `earlier-run`, or if that exists to `earlier-run-2`
+/// and so on. Files that are not listed are not moved.
+/// @param keep file that is not moved, listed or not; may be empty
+/// @return the folder, or an empty path if there was nothing to move
+/// @throws OutputError
+std::filesystem::path archive_earlier_output(const std::filesystem::path &folder, const std::filesystem::path &keep);
 
 } // namespace latcon::output

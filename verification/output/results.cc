@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <new>
@@ -25,18 +24,30 @@ namespace
 {
 
 using Value = std::optional<double>;
+using Json = nlohmann::ordered_json;
 
-nlohmann::ordered_json json_of(const Value &value)
+// Returns the columns of a row by their names. JSON has no numbers that are not finite, and null means that there is no
+// value.
+Json columns_of(const Result &row)
 {
-  if (!value)
-    return nullptr;
-  // JSON has no such numbers, and null means that there is no value.
-  if (!std::isfinite(*value))
-    return support::full_precision(*value);
-  return *value;
+  const auto number = [](const Value &value) {
+    return !value ? Json() : std::isfinite(*value) ? Json(*value) : Json(support::full_precision(*value));
+  };
+  return {{"claim", row.claim},
+          {"quantity", row.quantity},
+          {"unit", row.unit},
+          {"lattice", number(row.lattice)},
+          {"continuum", number(row.continuum)},
+          {"theory", number(row.theory)},
+          {"error", number(row.error)},
+          {"tolerance", number(row.tolerance)},
+          {"verdict", to_string(row.verdict())},
+          {"reason", row.tolerance.reason},
+          {"gate", row.gate},
+          {"kind", to_string(row.kind)}};
 }
 
-// Reads what json_of() wrote.
+// Reads a number of columns_of().
 Value value_of(const nlohmann::json &number)
 {
   if (number.is_null())
@@ -44,18 +55,9 @@ Value value_of(const nlohmann::json &number)
   return number.is_string() ? std::stod(number.get<std::string>()) : number.get<double>();
 }
 
-std::string csv_of(const Value &value)
-{
-  return value ? support::full_precision(*value) : "";
-}
-
 std::string table_number(const Value &value, const int digits)
 {
-  if (!value)
-    return "";
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", digits, *value);
-  return text.data();
+  return value ? support::formatted("%.*g", digits, *value) : "";
 }
 
 } // namespace
@@ -131,20 +133,12 @@ bool Results::attempt(const std::string &claim, const std::string &quantity, con
     compute();
     return true;
   }
-  catch (const support::Error &)
-  {
-    throw;
-  }
-  catch (const std::bad_alloc &)
-  {
-    throw;
-  }
-  catch (const std::system_error &)
-  {
-    throw;
-  }
   catch (const std::exception &error)
   {
+    if (dynamic_cast<const support::Error *>(&error) != nullptr ||
+        dynamic_cast<const std::bad_alloc *>(&error) != nullptr ||
+        dynamic_cast<const std::system_error *>(&error) != nullptr)
+      throw;
     add(not_computed(claim, quantity, error.what()));
     return false;
   }
@@ -203,28 +197,10 @@ std::string Results::verdict_text(const std::size_t most) const
 
 std::string Results::json() const
 {
-  nlohmann::ordered_json claims = nlohmann::ordered_json::array();
+  Json document{{"claims", Json::array()}, {"verdict", to_string(verdict())}};
   for (const Result &row : rows_)
-  {
-    nlohmann::ordered_json claim;
-    claim["claim"] = row.claim;
-    claim["quantity"] = row.quantity;
-    claim["unit"] = row.unit;
-    claim["lattice"] = json_of(row.lattice);
-    claim["continuum"] = json_of(row.continuum);
-    claim["theory"] = json_of(row.theory);
-    claim["error"] = json_of(row.error);
-    claim["tolerance"] = json_of(row.tolerance);
-    claim["verdict"] = to_string(row.verdict());
-    claim["reason"] = row.tolerance.reason;
-    claim["gate"] = row.gate;
-    claim["kind"] = to_string(row.kind);
-    claims.push_back(std::move(claim));
-  }
-  nlohmann::ordered_json document;
-  document["claims"] = std::move(claims);
-  document["verdict"] = to_string(verdict());
-  return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    document["claims"].push_back(columns_of(row));
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Results Results::read(const std::string &json)
@@ -246,13 +222,22 @@ Results Results::read(const std::string &json)
 
 std::string Results::csv() const
 {
-  std::string text = "claim,quantity,unit,lattice,continuum,theory,error,tolerance,verdict,reason,gate,kind\n";
+  std::vector<std::string> names;
+  const Json empty = columns_of({});
+  for (const auto &[name, value] : empty.items())
+    names.push_back(name);
+  Table table(std::move(names));
   for (const Result &row : rows_)
-    text += csv_field(row.claim) + ',' + csv_field(row.quantity) + ',' + csv_field(row.unit) + ',' +
-            csv_of(row.lattice) + ',' + csv_of(row.continuum) + ',' + csv_of(row.theory) + ',' + csv_of(row.error) +
-            ',' + csv_of(row.tolerance) + ',' + to_string(row.verdict()) + ',' + csv_field(row.tolerance.reason) + ',' +
-            (row.gate ? "true," : "false,") + to_string(row.kind) + '\n';
-  return text;
+  {
+    std::vector<Table::Cell> cells;
+    for (const Json &value : columns_of(row))
+      if (value.is_number())
+        cells.emplace_back(value.get<double>());
+      else
+        cells.emplace_back(value.is_string() ? value.get<std::string>() : value.is_null() ? "" : value.dump());
+    table.add(std::move(cells));
+  }
+  return table.csv();
 }
 
 void Results::write(const std::string &folder) const
@@ -266,7 +251,7 @@ void Results::print(std::ostream &out) const
 {
   constexpr std::size_t n_columns = 8;
   constexpr std::size_t n_words =
-    2; // columns of words on the left, which may be wrapped, followed by numbers and the verdict
+    2; // columns of words on the left, which may be wrapped; numbers and the verdict follow
   constexpr std::size_t widest = 120;
   constexpr std::size_t gap = 2;
   using Cells = std::array<std::string, n_columns>;
@@ -292,23 +277,19 @@ void Results::print(std::ostream &out) const
 
   for (std::size_t r = 0; r < table.size(); ++r)
   {
-    std::array<std::vector<std::string>, n_words> words;
+    std::array<std::vector<std::string>, n_columns> lines;
     std::size_t n_lines = 1;
-    for (std::size_t i = 0; i < n_words; ++i)
+    for (std::size_t i = 0; i < n_columns; ++i)
     {
-      words[i] = support::wrap_text(table[r][i], width[i]);
-      n_lines = std::max(n_lines, words[i].size());
+      lines[i] = support::wrap_text(table[r][i], width[i]);
+      n_lines = std::max(n_lines, lines[i].size());
     }
     for (std::size_t l = 0; l < n_lines; ++l)
     {
       std::string line;
       for (std::size_t i = 0; i < n_columns; ++i)
       {
-        std::string cell;
-        if (i < n_words)
-          cell = l < words[i].size() ? words[i][l] : "";
-        else if (l == 0)
-          cell = table[r][i];
+        const std::string cell = l < lines[i].size() ? lines[i][l] : "";
         const bool is_number = i >= n_words && i + 1 < n_columns; // of ASCII alone
         line += std::string(gap * (i > 0) + (is_number ? width[i] - cell.size() : 0), ' ');
         line += is_number ? cell : support::padded(cell, width[i]);

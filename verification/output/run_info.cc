@@ -1,6 +1,7 @@
 #include "verification/output/run_info.h"
 
 #include "support/full_precision.h"
+#include "support/ranks.h"
 #include "verification/input/files.h"
 #include "verification/input/sha256.h"
 #include "verification/output/output_file.h"
@@ -10,9 +11,7 @@
 
 #include <mpi.h>
 #include <nlohmann/json.hpp>
-#ifdef _OPENMP
 #include <omp.h>
-#endif
 
 #include <algorithm>
 #include <array>
@@ -40,25 +39,11 @@ std::string mpi_version()
 }
 
 // Returns the number of ranks; 1 if MPI is not initialised.
-int n_ranks()
+unsigned int n_ranks()
 {
   int running = 0;
-  int finalized = 0;
-  int n = 1;
   MPI_Initialized(&running);
-  MPI_Finalized(&finalized);
-  if (running != 0 && finalized == 0)
-    MPI_Comm_size(MPI_COMM_WORLD, &n);
-  return n;
-}
-
-int n_threads()
-{
-#ifdef _OPENMP
-  return omp_get_max_threads();
-#else
-  return 1;
-#endif
+  return running != 0 ? support::n_ranks() : 1;
 }
 
 } // namespace
@@ -66,34 +51,33 @@ int n_threads()
 Json RunInfo::standard_facts(const std::optional<support::ExitCode> exit_code, const std::string &verdict) const
 {
   const std::chrono::duration<double> total = std::chrono::steady_clock::now() - start_;
-  Json document;
-  document["program"] = "latcon";
-  document["version"] = program_version();
-  document["git_commit"] = git_commit();
-  document["program_hash"] = program_hash();
-  document["compiler"] = LATCON_COMPILER;
-  document["build_type"] = LATCON_BUILD_TYPE;
-  document["flags"] = LATCON_FLAGS;
-  document["lattice_flags"] = LATCON_LATTICE_FLAGS;
-  document["libraries"] = {
-    {"deal.II", LATCON_DEALII_VERSION},
-    {"Trilinos", LATCON_TRILINOS_VERSION},
-    {"p4est", LATCON_P4EST_VERSION},
-    {"VTK", LATCON_VTK_VERSION},
-    {"Eigen", LATCON_EIGEN_VERSION},
-    {"MPI", mpi_version()}};
-  document["hardware_threads"] = std::thread::hardware_concurrency();
-  document["threads"] = n_threads_;
-  document["mpi_ranks"] = n_ranks_;
-  document["command_line"] = command_line_;
-  document["wall_time_total_s"] = total.count();
-  Json &phases = document["wall_time_s"] = Json::object();
+  Json phases = Json::object();
   for (const auto &[name, seconds] : stopwatch_.times())
     phases[name] = seconds;
-  document["peak_memory_bytes"] = peak_memory();
-  document["verdict"] = verdict.empty() ? Json(nullptr) : Json(verdict);
-  document["exit_code"] = exit_code ? Json(static_cast<int>(*exit_code)) : Json(nullptr);
-  return document;
+  return {{"program", "latcon"},
+          {"version", program_version()},
+          {"git_commit", git_commit()},
+          {"program_hash", program_hash()},
+          {"compiler", LATCON_COMPILER},
+          {"build_type", LATCON_BUILD_TYPE},
+          {"flags", LATCON_FLAGS},
+          {"lattice_flags", LATCON_LATTICE_FLAGS},
+          {"libraries",
+           {{"deal.II", LATCON_DEALII_VERSION},
+            {"Trilinos", LATCON_TRILINOS_VERSION},
+            {"p4est", LATCON_P4EST_VERSION},
+            {"VTK", LATCON_VTK_VERSION},
+            {"Eigen", LATCON_EIGEN_VERSION},
+            {"MPI", mpi_version()}}},
+          {"hardware_threads", std::thread::hardware_concurrency()},
+          {"threads", n_threads_},
+          {"mpi_ranks", n_ranks_},
+          {"command_line", command_line_},
+          {"wall_time_total_s", total.count()},
+          {"wall_time_s", std::move(phases)},
+          {"peak_memory_bytes", peak_memory()},
+          {"verdict", verdict.empty() ? Json() : Json(verdict)},
+          {"exit_code", exit_code ? Json(static_cast<int>(*exit_code)) : Json()}};
 }
 
 Stopwatch::Phase::Phase(Stopwatch &stopwatch, std::string name)
@@ -163,7 +147,7 @@ std::uint64_t peak_memory()
 }
 
 RunInfo::RunInfo(std::vector<std::string> command_line)
-  : command_line_(std::move(command_line)), start_(std::chrono::steady_clock::now()), n_threads_(n_threads()),
+  : command_line_(std::move(command_line)), start_(std::chrono::steady_clock::now()), n_threads_(omp_get_max_threads()),
     n_ranks_(n_ranks()), facts_(std::make_shared<Json>(Json::object()))
 {
 }

@@ -100,7 +100,8 @@ private:
   std::vector<std::string> command_line_;
   std::chrono::steady_clock::time_point start_;
   Stopwatch stopwatch_;
-  int n_threads_, n_ranks_;  // as seen by the constructing thread
+  int n_threads_; // as seen by the constructing thread
+  unsigned int n_ranks_;
   mutable std::mutex mutex_; // of facts_
   std::shared_ptr<nlohmann::ordered_json> facts_; // added by the run
 };

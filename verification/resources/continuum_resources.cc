@@ -1,4 +1,4 @@
-#include "verification/resources/continuum_resources.h"
+#include "verification/resources/resources.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,8 +48,8 @@ bool is_homogeneous(const input::Case &input)
          std::all_of(c.edges.begin(), c.edges.begin() + 4,
                      [](const input::EdgeCase &edge)
                      {
-                       return edge.condition == input::EdgeCase::Condition::held && edge.displacement_x == "loading" &&
-                              edge.displacement_y == "loading" &&
+                       return edge.condition == input::EdgeCase::Condition::held && edge.displacement.x == "loading" &&
+                              edge.displacement.y == "loading" &&
                               edge.normal_gradient != input::EdgeCase::NormalGradient::clamped;
                      });
 }

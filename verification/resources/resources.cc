@@ -46,27 +46,17 @@ constexpr double beside_kernel = 1.2;
 // With more steps, a step does not change a time in double precision.
 constexpr double max_steps = 1e15;
 
-bool is_first_rank()
-{
-  return support::is_root_rank();
-}
-
 // Current and additional memory of the ranks on this machine.
-struct OnMachine
-{
-  double held, needed;
-};
-
-OnMachine on_machine(const MemoryNeed &need)
+std::array<double, 2> on_machine(const MemoryNeed &need)
 {
   const double ranks = support::n_ranks();
   std::array<double, 2> sums{support::resident_memory(),
-                             need.shared / ranks + (is_first_rank() ? need.first_rank : 0.)};
+                             need.shared / ranks + (support::is_root_rank() ? need.first_rank : 0.)};
   MPI_Comm machine = MPI_COMM_NULL;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, machine);
   MPI_Comm_free(&machine);
-  return {sums[0], sums[1]};
+  return sums;
 }
 
 // Bonds per site.
@@ -166,7 +156,7 @@ MemoryNeed lattice_memory(const input::Case &input, const RunKind run, const boo
 
 void require_memory(const MemoryNeed &need)
 {
-  const OnMachine machine = on_machine(need);
+  const double needed = on_machine(need)[1];
   const double available = support::available_memory();
   // All ranks report the same numbers, those of the machine with the largest deficit.
   const int rank = static_cast<int>(support::rank());
@@ -174,9 +164,9 @@ void require_memory(const MemoryNeed &need)
   {
     double missing;
     int rank;
-  } worst{machine.needed - available, rank};
+  } worst{needed - available, rank};
   MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, MPI_COMM_WORLD);
-  std::array<double, 2> numbers{machine.needed, available};
+  std::array<double, 2> numbers{needed, available};
   MPI_Bcast(numbers.data(), 2, MPI_DOUBLE, worst.rank, MPI_COMM_WORLD);
   if (!(worst.missing > 0.))
     return;
@@ -191,12 +181,12 @@ void require_memory(const MemoryNeed &need)
 
 std::string memory_text(const MemoryNeed &need)
 {
-  const OnMachine machine = on_machine(need);
+  const auto [held, needed] = on_machine(need);
   std::ostringstream text;
   text.precision(0);
-  text << std::fixed << "# memory: about " << machine.held + machine.needed << " bytes ("
-       << support::readable_bytes(machine.held + machine.needed) << ") at the peak, of which the program itself takes "
-       << machine.held << " bytes; available: " << support::available_memory() << " bytes\n";
+  text << std::fixed << "# memory: about " << held + needed << " bytes (" << support::readable_bytes(held + needed)
+       << ") at the peak, of which the program itself takes " << held
+       << " bytes; available: " << support::available_memory() << " bytes\n";
   return text.str();
 }
 

@@ -65,9 +65,9 @@ TEST(ContinuumCase, ReadsEveryEdge)
                        "subsection Inner edge\n  set traction y = 2*pi\nend\n",
                        "a.prm");
   parameters.finish();
-  EXPECT_EQ(input.edges[3].displacement_x, "1e-3 * y");
-  EXPECT_EQ(input.edges[3].displacement_y, "free");
-  EXPECT_EQ(input.edges[2].displacement_x, "loading");
+  EXPECT_EQ(input.edges[3].displacement.x, "1e-3 * y");
+  EXPECT_EQ(input.edges[3].displacement.y, "free");
+  EXPECT_EQ(input.edges[2].displacement.x, "loading");
   EXPECT_EQ(input.edges[4].condition, EdgeCase::Condition::free);
   EXPECT_NEAR(input.edges[4].traction.field()(1, 0.1, 0.2), 2. * std::acos(-1.), 1e-15);
 }

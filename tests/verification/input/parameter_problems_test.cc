@@ -146,20 +146,6 @@ TEST(Parameters, WholeNumbersWithoutASignEndWhereTheProgramStops)
   EXPECT_NE(all[0].find("allowed: a whole number >= 0 and <= 4294967295"), std::string::npos) << all[0];
 }
 
-TEST(Parameters, RequiredTextsAndListsMustNotBeEmpty)
-{
-  std::string text;
-  std::vector<double> list;
-  Parameters p;
-  p.add("A", "text", text, "a text", Presence::required);
-  p.add("A", "list", list, Any(), "m", "a list", Presence::required);
-  p.read_overrides({"A/text=", "A/list= "});
-  const std::vector<std::string> all = problems_of(p);
-  ASSERT_EQ(all.size(), 2u);
-  EXPECT_EQ(all[0], "--set: A/text = : empty; allowed: a text on one line");
-  EXPECT_EQ(all[1].find("--set: A/list = : empty"), 0u);
-}
-
 TEST(Parameters, AllProblemsAreToldAtOnce)
 {
   const std::vector<std::string> all = problems("subsection Lattice\n"

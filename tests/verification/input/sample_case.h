@@ -19,6 +19,12 @@ namespace sample_case
 
 using namespace latcon::input;
 
+/// x > lower
+struct Above : Range
+{
+  explicit Above(double lower) : Range({lower, false}, {infinity, false}) {}
+};
+
 enum class Law
 {
   mooney_rivlin,

@@ -195,7 +195,7 @@ protected:
   template <class T>
   void put(const std::string &name, const std::vector<T> &values)
   {
-    image_->write(name, element_type<T>(), values.data(), values.size());
+    image_->write(name, typeid(T), values.data(), values.size());
   }
   // Expects that the file with what was put is refused; the next file begins.
   template <class T>

@@ -1,4 +1,4 @@
-#include "verification/output/output_list.h"
+#include "verification/output/output_file.h"
 
 #include <fstream>
 

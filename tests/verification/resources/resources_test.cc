@@ -1,5 +1,5 @@
 // Estimates of what a run takes: sizes are those of the sheets, and no size is too large for an estimate.
-#include "verification/resources/continuum_resources.h"
+#include "verification/resources/resources.h"
 
 #include <cmath>
 
