@@ -1,9 +1,7 @@
 #include "verification/claims/claim_inputs.h"
 
 #include <algorithm>
-#include <array>
 #include <set>
-#include <stdexcept>
 #include <utility>
 
 #include "support/full_precision.h"
@@ -15,26 +13,6 @@ namespace latcon::claims
 {
 namespace
 {
-
-// Entries of which a Subject is made. Further ones are in the table of claims.
-constexpr std::array entries_of_subject{
-  "Sheet/spacing",    "Sheet/orientation", "Material/density", "Loading/strain x",
-  "Loading/strain y", "Loading/shear",     "Continuum/ratio",
-};
-// Those of each shell, in its section; claims are about bonds without plastic stretch, which has no continuum
-// counterpart.
-constexpr std::array entries_of_shell{
-  "present",          "law",         "a",          "b",
-  "modulus",          "psi",         "parameters", "library",
-  "library sha256",   "area factor", "viscosity",  "branch moduli",
-  "relaxation times",
-};
-
-// Entries of which the largest stretch of a bond follows, up to which a law of the user must have values.
-constexpr std::array entries_of_user_law{
-  "Fracture/breaking stretch", "Fracture/toughening",   "Fracture/factor",          "Fracture/shell factors",
-  "Fracture/rate factor",      "Loading/history times", "Loading/history strain x", "Loading/history strain y",
-};
 
 bool has_user_law(const input::Case &input)
 {
@@ -50,27 +28,17 @@ constexpr double sheet_size = 12.; // spacings
 // Lines `Section/Name=value` of the entries that claims may read.
 std::vector<std::string> assignments(const input::Case &input, const std::vector<std::string> &further)
 {
-  std::set<std::string> allowed(entries_of_subject.begin(), entries_of_subject.end());
-  for (const char *section : input::Case::shell_sections)
-    for (const char *entry : entries_of_shell)
-      allowed.insert(std::string(section) + "/" + entry);
-  allowed.insert(further.begin(), further.end());
-  if (has_user_law(input))
-    allowed.insert(entries_of_user_law.begin(), entries_of_user_law.end());
   input::Case copy = input; // declaring binds entries to members that may be written
   input::Parameters parameters;
   copy.declare(parameters);
+  std::set<std::string> keys(further.begin(), further.end());
+  for (const input::Declaration &entry : parameters.declarations())
+    if (entry.read_by == input::ReadBy::claims ||
+        (entry.read_by == input::ReadBy::claims_on_user_laws && has_user_law(input)))
+      keys.insert(entry.key());
   std::vector<std::string> lines;
-  std::set<std::string> declared;
-  for (const auto &[key, value] : parameters.values())
-  {
-    if (allowed.count(key) > 0)
-      lines.push_back(key + "=" + value);
-    declared.insert(key);
-  }
-  for (const std::string &key : further)
-    if (declared.count(key) == 0)
-      throw std::logic_error("the table of claims names `" + key + "`, which is no entry of a case");
+  for (const std::string &key : keys)
+    lines.push_back(key + "=" + parameters.value(key));
   return lines;
 }
 

@@ -44,7 +44,8 @@ struct HasArchive<T, Archive, std::void_t<decltype(std::declval<T &>().archive(s
 template <class T>
 constexpr bool is_matrix = std::is_base_of_v<Eigen::MatrixBase<T>, T>;
 
-/// Archive that calls a function with the name and the value of each number of a record.
+/// Archive that calls a function with each number of a record: which it is, a function that returns its name, its
+/// value.
 template <bool loading, class Visit>
 class NumberArchive
 {
@@ -56,10 +57,12 @@ public:
   void operator()(const std::string &name, T &value)
   {
     if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::uint64_t>)
-      visit_(prefix_ + name, value);
+      visit_(
+        number_++, [&] { return prefix_ + name; }, value);
     else if constexpr (is_matrix<T>)
       for (Eigen::Index i = 0; i < value.size(); ++i)
-        visit_(prefix_ + name + "_" + std::to_string(i), value.data()[i]);
+        visit_(
+          number_++, [&] { return prefix_ + name + "_" + std::to_string(i); }, value.data()[i]);
     else
     {
       static_assert(HasArchive<T, NumberArchive>::value, "a record consists of numbers and of records");
@@ -73,6 +76,7 @@ public:
 private:
   const Visit &visit_;
   std::string prefix_;
+  std::size_t number_ = 0;
 };
 
 /// Common base of both archives, which decomposes objects into arrays and texts.
@@ -184,13 +188,14 @@ public:
       return;
     Record any{};
     for_each_number(any,
-                    [&](const std::string &column, auto &number)
+                    [&](std::size_t column, const auto &name_of, auto &number)
                     {
+                      const std::string column_name = name + "/" + name_of();
                       std::vector<std::decay_t<decltype(number)>> values;
                       if constexpr (!Archive::loads)
                         for_each_in_column(all, column, values, [&](auto &value) { values.push_back(value); });
-                      (*this)(name + "/" + column, values);
-                      require(values.size() == n, name + "/" + column, "has a length other than `n`");
+                      (*this)(column_name, values);
+                      require(values.size() == n, column_name, "has a length other than `n`");
                       auto next = values.begin();
                       all.resize(n);
                       if constexpr (Archive::loads)
@@ -217,17 +222,17 @@ private:
     record.archive(archive);
   }
 
-  // Visits the number that records have under the name of a column, of the type of its values.
+  // Visits a number of each record, of the type of the values of its column.
   template <class Record, class Number, class Visit>
-  static void for_each_in_column(std::vector<Record> &all, const std::string &column, const std::vector<Number> &,
+  static void for_each_in_column(std::vector<Record> &all, std::size_t column, const std::vector<Number> &,
                                  const Visit &visit)
   {
     for (Record &record : all)
       for_each_number(record,
-                      [&](const std::string &name, auto &number)
+                      [&](std::size_t position, const auto &, auto &number)
                       {
                         if constexpr (std::is_same_v<std::decay_t<decltype(number)>, Number>)
-                          if (name == column)
+                          if (position == column)
                             visit(number);
                       });
   }
