@@ -244,10 +244,11 @@ private:
 
   void add_missing(const std::string &name, const std::string &failure, bool is_judged) const
   {
+    const std::string reason = failure.substr(0, failure.find('\n')); // the steps of the solver follow
     if (is_judged)
       rows_.add_not_computed(name, failure);
     else
-      rows_.add(name + ": no equilibrium: " + failure, "1", {});
+      rows_.add(name + ": no equilibrium: " + reason, "1", {});
   }
 
   std::string size_text(double size) const
