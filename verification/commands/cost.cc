@@ -44,8 +44,9 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
   std::ostringstream out;
   out << (sheet.is_triangular() ? "# lattice: " : "# nonlocal continuum: ") << sites << " sites, " << bonds
       << " bonds, " << 2 * sites << " unknowns, " << sheet.length() << " m x " << sheet.height() << " m\n";
-  double steps = 0., frames = 2. /* the first and the last */,
-         at_most = 1.; // at_most: maximum number of steps over the expected one
+  double steps = 0.;
+  double frames = 2.;  // the first and the last
+  double at_most = 1.; // maximum number of steps over the expected one
   if (run != resources::RunKind::equilibrium)
   {
     steps = std::ceil(input.end_time / stepping.step);
