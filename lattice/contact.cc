@@ -17,8 +17,8 @@ namespace
 // proportion.
 constexpr double skin_over_distance = 1.;
 
-// Pairs below which one thread is faster.
-constexpr std::size_t min_pairs_for_threads = 4096;
+// Candidates below which one thread is faster.
+constexpr std::size_t min_candidates_for_threads = 512;
 
 // Calls work(begin, end, part) for shares of 0 ... n - 1 that follow each other, each by another thread, and appends
 // the parts to `all` in the order of the shares, which does not depend on their number.
@@ -26,7 +26,7 @@ constexpr std::size_t min_pairs_for_threads = 4096;
 template <class Item, class Work>
 void in_shares(std::size_t n, std::vector<std::vector<Item>> &parts, std::vector<Item> &all, const Work &work)
 {
-  if (n < min_pairs_for_threads)
+  if (n < min_candidates_for_threads)
   {
     work(std::size_t{0}, n, all);
     return;
@@ -47,14 +47,12 @@ void in_shares(std::size_t n, std::vector<std::vector<Item>> &parts, std::vector
 
 constexpr double nowhere = std::numeric_limits<double>::infinity();
 
-template <class Item>
-void insert(std::vector<Item> &sorted, const Item &item)
+void insert(std::vector<std::size_t> &sorted, std::size_t item)
 {
   sorted.insert(std::lower_bound(sorted.begin(), sorted.end(), item), item);
 }
 
-template <class Item>
-void erase(std::vector<Item> &sorted, const Item &item)
+void erase(std::vector<std::size_t> &sorted, std::size_t item)
 {
   sorted.erase(std::lower_bound(sorted.begin(), sorted.end(), item));
 }
@@ -89,7 +87,7 @@ void Contact::find_candidates(const State &state)
   listed_at_.clear();
   neighbours_.clear();
   has_exchanged_.clear();
-  pairs_.clear();
+  order_.clear();
   own_.clear();
   cells_.clear();
   for (std::size_t place = 0; place < lattice_.n_places(); ++place)
@@ -101,6 +99,7 @@ void Contact::add_candidate(std::size_t place)
 {
   if (band_.owns(place))
     own_.push_back(places_.size());
+  order_.push_back(places_.size());
   places_.push_back(place);
   listed_at_.emplace_back(nowhere, nowhere);
   neighbours_.emplace_back();
@@ -143,8 +142,18 @@ void Contact::update_lists(const State &state)
     list(state, index);
   }
   n_listings_ += all.size();
+  sort_candidates();
   if (band_.is_shared() && !all.empty())
     find_exchanged_sites();
+}
+
+// Sorts those added since it was called last into the others.
+void Contact::sort_candidates()
+{
+  const auto is_before = [this](std::size_t first, std::size_t second) { return places_[first] < places_[second]; };
+  const auto added = std::is_sorted_until(order_.begin(), order_.end(), is_before);
+  std::sort(added, order_.end(), is_before);
+  std::inplace_merge(order_.begin(), added, order_.end(), is_before);
 }
 
 void Contact::list(const State &state, std::size_t index)
@@ -166,16 +175,10 @@ void Contact::list(const State &state, std::size_t index)
     return;
   for (const std::size_t other : listed)
     if (!std::binary_search(found.begin(), found.end(), other))
-    {
       erase(neighbours_[number_[other] - 1], place);
-      erase(pairs_, Pair(std::minmax(place, other)));
-    }
   for (const std::size_t other : found)
     if (!std::binary_search(listed.begin(), listed.end(), other))
-    {
       insert(neighbours_[number_[other] - 1], place);
-      insert(pairs_, Pair(std::minmax(place, other)));
-    }
   listed = found;
   if (band_.is_shared())
     has_exchanged_[index] =
@@ -239,30 +242,31 @@ const std::vector<SiteForce> &Contact::evaluate(State &state, Field &vx, Field &
   const auto push_apart = [&](std::size_t begin, std::size_t end, std::vector<SiteForce> &forces)
   {
     std::size_t touching = 0;
-    for (std::size_t pair = begin; pair < end; ++pair)
-    {
-      const auto &[first, second] = pairs_[pair];
-      const Eigen::Vector2d between(state.x[second] - state.x[first], state.y[second] - state.y[first]);
-      const double square = between.squaredNorm();
-      // Sites in one place have no line between them to act along.
-      if (!(square < law_.distance * law_.distance) || square == 0.)
-        continue;
-      touching += band_.owns(first) ? 1 : 0;
-      const double r = std::sqrt(square);
-      const Eigen::Vector2d direction = between / r;
-      const double approach = -direction.dot(Eigen::Vector2d(vx[second] - vx[first], vy[second] - vy[first]));
-      const double repulsion = law_.stiffness * (law_.distance - r) + law_.viscosity * approach;
-      if (!(repulsion > 0.))
-        continue;
-      const Eigen::Vector2d force = repulsion * direction;
-      if (band_.owns(first))
-        forces.push_back({first, -force});
-      if (band_.owns(second))
-        forces.push_back({second, force});
-    }
+    for_each_pair(begin, end,
+                  [&](std::size_t first, std::size_t second)
+                  {
+                    const Eigen::Vector2d between(state.x[second] - state.x[first], state.y[second] - state.y[first]);
+                    const double square = between.squaredNorm();
+                    // Sites in one place have no line between them to act along.
+                    if (!(square < law_.distance * law_.distance) || square == 0.)
+                      return;
+                    touching += band_.owns(first) ? 1 : 0;
+                    const double r = std::sqrt(square);
+                    const Eigen::Vector2d direction = between / r;
+                    const double approach =
+                      -direction.dot(Eigen::Vector2d(vx[second] - vx[first], vy[second] - vy[first]));
+                    const double repulsion = law_.stiffness * (law_.distance - r) + law_.viscosity * approach;
+                    if (!(repulsion > 0.))
+                      return;
+                    const Eigen::Vector2d force = repulsion * direction;
+                    if (band_.owns(first))
+                      forces.push_back({first, -force});
+                    if (band_.owns(second))
+                      forces.push_back({second, force});
+                  });
     n_touching += touching;
   };
-  in_shares(pairs_.size(), forces_of_threads_, forces_, push_apart);
+  in_shares(order_.size(), forces_of_threads_, forces_, push_apart);
   n_touching_ = n_touching;
   return forces_;
 }
@@ -270,14 +274,15 @@ const std::vector<SiteForce> &Contact::evaluate(State &state, Field &vx, Field &
 double Contact::elastic_energy(const State &state) const
 {
   double energy = 0.;
-  for (const auto &[first, second] : pairs_)
-  {
-    if (!band_.owns(first))
-      continue;
-    const double r = std::hypot(state.x[second] - state.x[first], state.y[second] - state.y[first]);
-    const double overlap = std::max(0., law_.distance - r);
-    energy += 0.5 * law_.stiffness * overlap * overlap;
-  }
+  for_each_pair(0, order_.size(),
+                [&](std::size_t first, std::size_t second)
+                {
+                  if (!band_.owns(first))
+                    return;
+                  const double r = std::hypot(state.x[second] - state.x[first], state.y[second] - state.y[first]);
+                  const double overlap = std::max(0., law_.distance - r);
+                  energy += 0.5 * law_.stiffness * overlap * overlap;
+                });
   return energy;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "lattice/fracture.h"
@@ -64,12 +64,24 @@ public:
   std::size_t n_listings() const { return n_listings_; }
 
 private:
-  using Pair = std::pair<std::size_t, std::size_t>; // places, the smaller one first
-
   void add_candidate(std::size_t place);
   void update_lists(const State &state);
+  void sort_candidates();
   void list(const State &state, std::size_t index);
   bool may_touch(const State &state, std::size_t first, std::size_t second) const;
+  // Calls visit(first, second) for each pair of which one of order_[begin] ... order_[end - 1] is the first: the place
+  // of a pair that is smaller.
+  template <class Visitor>
+  void for_each_pair(std::size_t begin, std::size_t end, const Visitor &visit) const
+  {
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const std::size_t first = places_[order_[i]];
+      const std::vector<std::size_t> &near = neighbours_[order_[i]];
+      for (auto second = std::upper_bound(near.begin(), near.end(), first); second != near.end(); ++second)
+        visit(first, *second);
+    }
+  }
   bool is_exchanged(std::size_t first, std::size_t second) const;
   void find_exchanged_sites();
 
@@ -86,7 +98,7 @@ private:
 
   std::vector<std::uint32_t, ZeroPages<std::uint32_t>> number_; // by place: index of the candidate + 1; 0: none
   std::vector<std::size_t> own_;                                // indices of candidates in the band
-  std::vector<Pair> pairs_;                                     // of all lists, sorted
+  std::vector<std::size_t> order_;                              // indices of all candidates, by increasing places
   std::vector<std::vector<SiteForce>> forces_of_threads_;       // scratch
   std::vector<std::size_t> found_;                              // scratch
   SitesOfRanks sent_, received_;

@@ -254,14 +254,29 @@ kernels::RowOfBonds Forces::sites_of_row(const Motion &motion, std::size_t row) 
           &motion.vy[near],   state.breaking_stretch, state.toughened_stretch, shortness_limit_};
 }
 
-bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ahead) const
+kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row,
+                                         std::vector<kernels::BondsOfKind> &kinds) const
 {
-  std::vector<kernels::BondsOfKind> kinds(n_kinds_);
-  bonds_of_kinds(state, row, kinds);
-  kernels::RowOfBonds bonds = sites_of_row({state, state.vx, state.vy}, row);
+  kinds.resize(n_kinds_);
+  bonds_of_kinds(motion.state, row, kinds);
+  kernels::RowOfBonds bonds = sites_of_row(motion, row);
   bonds.kinds = kinds.data();
   bonds.n_kinds = n_kinds_;
-  return kernels::any_event_ahead(bonds, ahead);
+  return bonds;
+}
+
+bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ahead) const
+{
+  std::vector<kernels::BondsOfKind> kinds;
+  return kernels::any_event_ahead(row_of_bonds({state, state.vx, state.vy}, row, kinds), ahead);
+}
+
+bool Forces::row_has_short_bonds_ahead(const State &state, const Field &vx, const Field &vy, std::size_t row,
+                                       double ahead, double stretch) const
+{
+  std::vector<kernels::BondsOfKind> kinds;
+  return row_has_short_bonds(row) &&
+         kernels::any_short_ahead(row_of_bonds({state, vx, vy}, row, kinds), ahead, stretch);
 }
 
 // The bonds of row `from` as those of `row`: the same, or below the edge of a periodic sheet.

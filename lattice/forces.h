@@ -98,6 +98,11 @@ public:
   /// after its ends have moved for `ahead` [s] at the velocities of the state.
   bool row_has_events_ahead(const State &state, std::size_t row, double ahead) const;
 
+  /// Returns whether one of the short bonds that start in a row of the band has at most a stretch of `stretch` [-], or
+  /// will have it in `ahead` [s] at its rate now, with the velocities vx, vy [m/s] of the last evaluation.
+  bool row_has_short_bonds_ahead(const State &state, const Field &vx, const Field &vy, std::size_t row, double ahead,
+                                 double stretch) const;
+
   /// Takes a bond that has just broken out of viscous_power(), if it is there.
   /// @param state as at the last evaluation
   /// @param vx,vy velocities of that evaluation
@@ -178,6 +183,8 @@ private:
                      const RowCallbacks &work);
   void bonds_of_kinds(const State &state, std::size_t row, std::vector<kernels::BondsOfKind> &kinds) const;
   kernels::RowOfBonds sites_of_row(const Motion &motion, std::size_t row) const;
+  kernels::RowOfBonds row_of_bonds(const Motion &motion, std::size_t row,
+                                   std::vector<kernels::BondsOfKind> &kinds) const;
   bool has_shell(std::size_t shell) const { return has_shell_[shell]; }
   void bonds_from_below(const Motion &motion, std::ptrdiff_t row, std::ptrdiff_t begin, Scratch &scratch) const;
   kernels::RowSums scatter_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, std::ptrdiff_t begin,

@@ -82,14 +82,6 @@ void Fracture::set_lookahead(double duration)
   lookahead_ = duration;
 }
 
-std::vector<std::uint8_t> Fracture::rows_with_events_ahead(const State &state, const Forces &forces) const
-{
-  std::vector<std::uint8_t> rows(lattice_.rows(), 0);
-  for_each_row(lattice_, band_.rows(),
-               [&](std::size_t row) { rows[row] = forces.row_has_events_ahead(state, row, lookahead_) ? 1 : 0; });
-  return rows;
-}
-
 double Fracture::limit(const State &state, const Bond &bond, double rate) const
 {
   const auto [near, kind, far] = bond;
@@ -196,24 +188,29 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
   if (state.breaking_stretch != breaking_stretch_ || state.toughened_stretch != toughened_stretch_ ||
       state.strength.empty() != material_.disorder.strength.is_none())
     throw std::logic_error("the breaking stretches of a state are set by configure() before bonds break");
-  std::vector<Loss> own;
-  std::vector<std::uint8_t> ahead;
-  if (lookahead_ > 0.)
-    ahead = rows_with_events_ahead(state, forces);
-  for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
+  std::vector<std::vector<Loss>> of_rows(lattice_.rows());
+  const auto find = [&](std::size_t row)
   {
-    if (lookahead_ > 0. ? ahead[row] == 0 : !forces.row_has_events(row))
-      continue;
+    if (!(lookahead_ > 0. ? forces.row_has_events_ahead(state, row, lookahead_) : forces.row_has_events(row)))
+      return;
     for_each_bond(state, lattice_, {row, row + 1},
                   [&](const Bond &bond)
                   {
                     const Event now = event(state, bond, evaluated_vx, evaluated_vy);
                     if (now == Event::broken)
-                      own.push_back(loss(state, bond));
+                      of_rows[row].push_back(loss(state, bond));
                     else if (now == Event::retracted)
                       state.bonds.toughen(bond.near, bond.kind);
                   });
-  }
+  };
+  if (lookahead_ > 0.)
+    for_each_row(lattice_, band_.rows(), find);
+  else // rows are flagged already: not worth waking threads
+    for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
+      find(row);
+  std::vector<Loss> own;
+  for (const std::vector<Loss> &of_row : of_rows)
+    own.insert(own.end(), of_row.begin(), of_row.end());
   broken_ = lose_bonds(state, own, number);
   for (const BrokenBond &bond : broken_)
     forces.remove_bond(state, evaluated_vx, evaluated_vy, bond);

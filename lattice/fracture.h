@@ -160,7 +160,6 @@ public:
   }
 
 private:
-  std::vector<std::uint8_t> rows_with_events_ahead(const State &state, const Forces &forces) const;
   enum class Event
   {
     none,

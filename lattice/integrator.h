@@ -33,7 +33,7 @@ public:
   double time_step() const { return time_step_; } ///< h [s]
 
   /// Sets h [s] of the steps to come, > 0.
-  void set_time_step(double time_step) { time_step_ = time_step; }
+  virtual void set_time_step(double time_step) { time_step_ = time_step; }
 
   /// Adds forces to those of the bonds, at the same positions and velocities; they must outlive this object.
   void add(SiteForces &forces) { site_forces_.push_back(&forces); }

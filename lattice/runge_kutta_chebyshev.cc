@@ -9,7 +9,7 @@ namespace latcon::lattice
 
 RungeKuttaChebyshev::RungeKuttaChebyshev(const RowPartition &band, Forces &forces, double time_step,
                                          unsigned int stages)
-  : Integrator(band, forces, time_step), stages_(stages)
+  : Integrator(band, forces, time_step), stages_(stages), damping_limit_(stages_.real_limit() / time_step)
 {
   for (Motion *motion : {&start_, &previous_})
     for (Field *field : {&motion->x, &motion->y, &motion->vx, &motion->vy})
@@ -19,6 +19,15 @@ RungeKuttaChebyshev::RungeKuttaChebyshev(const RowPartition &band, Forces &force
 std::vector<Field *> RungeKuttaChebyshev::evaluated_fields(State &state)
 {
   return {&state.x, &state.y, &state.vx, &state.vy};
+}
+
+void RungeKuttaChebyshev::set_time_step(double time_step)
+{
+  if (time_step == this->time_step())
+    return;
+  Integrator::set_time_step(time_step);
+  // Less a hair, so that the step at the start has its own number again.
+  stages_ = ChebyshevStages(ChebyshevStages::needed((1. - 1e-9) * damping_limit_ * time_step));
 }
 
 void RungeKuttaChebyshev::initialise(State &state)

@@ -15,9 +15,11 @@ class RungeKuttaChebyshev : public Integrator
 {
 public:
   /// @param time_step h [s], > 0
-  /// @param stages s, >= 2
+  /// @param stages s of steps of that length, >= 2
   RungeKuttaChebyshev(const RowPartition &band, Forces &forces, double time_step, unsigned int stages);
 
+  /// Shorter steps take fewer stages: no more than (L.22) requires.
+  void set_time_step(double time_step) override;
   void initialise(State &state) override;
   void step(State &state) override;
 
@@ -35,6 +37,7 @@ private:
   };
 
   ChebyshevStages stages_;
+  double damping_limit_;               // beta over h of the stages and step at the start [1/s]
   Motion start_;                       // of the step, in own rows
   Motion previous_;                    // those of the stage before the one that the state holds
   std::vector<const Field *> touched_; // by a stage

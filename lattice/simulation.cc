@@ -77,23 +77,16 @@ int Simulation::needed_parts() const
   const double h = time_stepping_.step;
   const ContactLaw *const contact = contact_law_ ? &*contact_law_ : nullptr;
   const Field &vx = integrator_->evaluated_vx(state_), &vy = integrator_->evaluated_vy(state_);
-  // Squares of lengths with a hair's room for rounding; 0: bonds that do not stiffen, all of which are longer.
-  std::vector<double> short_square(lattice_.n_kinds());
-  for (std::size_t kind = 0; kind < lattice_.n_kinds(); ++kind)
-    if (const Shell *shell = material_.shell(lattice_, kind); shell != nullptr && stiffens_when_short(shell->law))
-      short_square[kind] = std::pow((1. + 1e-9) * short_stretch * lattice_.rest_length(kind), 2);
   const auto divide_for = [&](const Bond &short_bond, int &parts)
   {
     const auto [near, kind, far] = short_bond;
+    const Shell *const shell = material_.shell(lattice_, kind);
+    if (shell == nullptr || !stiffens_when_short(shell->law))
+      return;
     const double ratio = lattice_.length_ratio(near, kind);
     const Eigen::Vector2d bond =
       ratio * Eigen::Vector2d(state_.x[far] - state_.x[near], state_.y[far] - state_.y[near]);
     const double product = bond.dot(ratio * Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near]));
-    // Most bonds will not be short after the whole step, length + h min(product, 0) / length > the short length, which
-    // needs neither root nor quotient.
-    const double square = bond.squaredNorm(), then_by_now = square + h * std::min(product, 0.);
-    if (short_square[kind] == 0. || (then_by_now > 0. && then_by_now * then_by_now > short_square[kind] * square))
-      return;
     const double now = stretch(state_, lattice_, short_bond);
     const double rate = product / (bond.norm() * lattice_.rest_length(kind));
     int needed = 1;
@@ -112,13 +105,15 @@ int Simulation::needed_parts() const
       rows.push_back(row);
   int parts = 1;
   const auto n = static_cast<std::ptrdiff_t>(rows.size());
-#pragma omp parallel for schedule(static)                                                                              \
+#pragma omp parallel for schedule(dynamic)                                                                             \
   reduction(max                                                                                                        \
             : parts) if (rows.size() * lattice_.stride() >= min_places_for_threads)
   for (std::ptrdiff_t i = 0; i < n; ++i)
   {
     const std::size_t row = rows[static_cast<std::size_t>(i)];
-    for_each_bond(state_, lattice_, {row, row + 1}, [&](const Bond &bond) { divide_for(bond, parts); });
+    // A hair more for round-off.
+    if (forces_.row_has_short_bonds_ahead(state_, vx, vy, row, h, (1. + 1e-9) * short_stretch))
+      for_each_bond(state_, lattice_, {row, row + 1}, [&](const Bond &bond) { divide_for(bond, parts); });
   }
   return parts;
 }
@@ -250,28 +245,28 @@ void Simulation::set_velocities(const Field &vx, const Field &vy)
 
 const std::vector<BrokenBond> &Simulation::step()
 {
+  const double h = time_stepping_.step, end = state_.time + h;
   if (parts_ == 1)
-    return advance(time_stepping_.step);
+    return advance(h, end);
   broken_in_parts_.clear();
-  const double end = state_.time + time_stepping_.step;
   // Shares are powers of two, so that their sum is exact. After each part the rest is divided anew.
   for (double left = 1.; left > 0.;)
   {
     const double share = std::min(left, 1. / parts_);
-    const std::vector<BrokenBond> &broken = advance(share * time_stepping_.step);
-    broken_in_parts_.insert(broken_in_parts_.end(), broken.begin(), broken.end());
     left -= share;
+    const std::vector<BrokenBond> &broken = advance(share * h, end - left * h);
+    broken_in_parts_.insert(broken_in_parts_.end(), broken.begin(), broken.end());
   }
-  state_.time = end;
   ++n_divided_steps_;
   return broken_in_parts_;
 }
 
-const std::vector<BrokenBond> &Simulation::advance(double duration)
+const std::vector<BrokenBond> &Simulation::advance(double duration, double end)
 {
   prescribe_motion(duration);
   integrator_->set_time_step(duration);
   integrator_->step(state_);
+  state_.time = end; // without the round-off of added parts: what breaks from here on breaks then
 
   // Powers are taken before bonds break, so that each interval of the trapezoidal rule sees one set of bonds.
   const Ledger before = powers_;

@@ -143,7 +143,7 @@ private:
   void update_rollers();
   void update_powers();
   void add_work(const Ledger &before, double duration);
-  const std::vector<BrokenBond> &advance(double duration);
+  const std::vector<BrokenBond> &advance(double duration, double end);
   int needed_parts() const;
   /// Refuses a loaded state that cannot have followed from the one set up, of which these were bonds and energy.
   /// @throws std::invalid_argument

@@ -137,6 +137,31 @@ bool AnyEventAhead(const RowOfBonds &row, double ahead)
   return !hn::AllFalse(D(), events);
 }
 
+bool AnyShortAhead(const RowOfBonds &row, double ahead, double stretch)
+{
+  auto is_short = hn::FirstN(D(), 0);
+  for (std::size_t site = 0; site < row.n; site += width())
+  {
+    const Lanes x = load(row.x + site), y = load(row.y + site), vx = load(row.vx + site), vy = load(row.vy + site);
+    for (std::size_t kind = 0; kind < row.n_kinds; ++kind)
+    {
+      const BondsOfKind &bonds = row.kinds[kind];
+      const std::size_t far = site + static_cast<std::size_t>(bonds.shift);
+      const Lanes ratio = load_factors(bonds.length_ratio, site);
+      const Lanes dx = ratio * (load(row.x + far) - x), dy = ratio * (load(row.y + far) - y);
+      const Lanes product = dx * (ratio * (load(row.vx + far) - vx)) + dy * (ratio * (load(row.vy + far) - vy));
+      // length + ahead min(product, 0) / length <= the short length, without root or quotient.
+      const Lanes square = dx * dx + dy * dy;
+      const Lanes then_by_now = square + ahead * Lanes{hn::Min(product.v, lanes(0.).v)};
+      const double short_square = stretch * bonds.constants.rest_length * (stretch * bonds.constants.rest_length);
+      const auto shorter =
+        hn::Or(hn::Le(then_by_now.v, lanes(0.).v), hn::Le((then_by_now * then_by_now).v, (short_square * square).v));
+      is_short = hn::Or(is_short, hn::And(mask_of_bit(load_states(bonds.states + site), bonds.present), shorter));
+    }
+  }
+  return !hn::AllFalse(D(), is_short);
+}
+
 } // namespace latcon::lattice::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -147,6 +172,7 @@ namespace latcon::lattice::kernels
 HWY_EXPORT(BondsOfStencil);
 HWY_EXPORT(Scatter);
 HWY_EXPORT(AnyEventAhead);
+HWY_EXPORT(AnyShortAhead);
 
 void bonds_of_stencil(const BondLaw &law, const RowOfBonds &row, RowSums &sums)
 {
@@ -161,6 +187,11 @@ void scatter(std::size_t n, const double *force, double *near, double *far)
 bool any_event_ahead(const RowOfBonds &row, double ahead)
 {
   return HWY_DYNAMIC_DISPATCH(AnyEventAhead)(row, ahead);
+}
+
+bool any_short_ahead(const RowOfBonds &row, double ahead, double stretch)
+{
+  return HWY_DYNAMIC_DISPATCH(AnyShortAhead)(row, ahead, stretch);
 }
 
 BondForce bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx, double dy, double dvx,

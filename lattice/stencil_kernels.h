@@ -21,6 +21,10 @@ void scatter(std::size_t n, const double *force, double *near, double *far);
 /// ends have moved for `ahead` [s] at their velocities. Does not use the forces.
 bool any_event_ahead(const RowOfBonds &row, double ahead);
 
+/// Returns whether one of the bonds of all kinds of a row has at most a stretch of `stretch` [-] now, or will have it
+/// in `ahead` [s] at its present rate. Does not use the forces.
+bool any_short_ahead(const RowOfBonds &row, double ahead, double stretch);
+
 /// A bond's force, one at a time: the operations of the loops, so that both have the same bits.
 struct BondForce
 {

@@ -10,6 +10,7 @@
 #include "lattice/energy.h"
 #include "lattice/forces.h"
 #include "support/largest_error.h"
+#include "tests/lattice/nonlocal_sheets.h"
 #include "tests/lattice/reference_forces.h"
 #include "tests/lattice/sheets.h"
 
@@ -196,6 +197,52 @@ TEST(Forces, ReportRowsWithShortBonds)
   }
   EXPECT_GT(n_short, 20u);
   EXPECT_GT(n_others, 20u);
+}
+
+// Rows with a bond that will be shorter than a limit at its rate now, and no others, of lattices and stencils.
+TEST(Forces, FindRowsWithBondsThatWillBeShort)
+{
+  std::size_t n_short = 0, n_others = 0;
+  const auto check = [&](const TriangularLattice &sheet, const Material &material)
+  {
+    const State state = random_state(sheet, material, 3);
+    Forces forces(sheet, material);
+    forces.set_shortness_threshold(1e3);
+    forces.evaluate(state, state.vx, state.vy);
+    for (const double ahead : {0., 1e-6, 1e-4})
+      for (const double limit : {0.5, 0.9, 1.1})
+      {
+        std::vector<double> shortest(sheet.rows(), 1e9);
+        for_each_bond(state, sheet,
+                      [&](const Bond &bond)
+                      {
+                        const double l = sheet.rest_length(bond.kind) / sheet.length_ratio(bond.near, bond.kind);
+                        const Eigen::Vector2d x(state.x[bond.far] - state.x[bond.near],
+                                                state.y[bond.far] - state.y[bond.near]),
+                          v(state.vx[bond.far] - state.vx[bond.near], state.vy[bond.far] - state.vy[bond.near]);
+                        double &of_row = shortest[sheet.row_of(bond.near)];
+                        of_row = std::min(of_row, (x.norm() + ahead * std::min(0., v.dot(x.normalized()))) / l);
+                      });
+        for (std::size_t row = 0; row < sheet.rows(); ++row)
+        {
+          if (std::abs(shortest[row] / limit - 1.) > 1e-12) // a row at the limit may be either
+          {
+            EXPECT_EQ(forces.row_has_short_bonds_ahead(state, state.vx, state.vy, row, ahead, limit),
+                      shortest[row] < limit)
+              << row << ' ' << limit << ' ' << ahead;
+          }
+          ++(shortest[row] < limit ? n_short : n_others);
+        }
+      }
+  };
+  for (const Subject &subject : subjects())
+    if (!std::holds_alternative<LinearBond>(subject.material.nearest.law))
+      check(sheet_of(subject), subject.material);
+  check(nonlocal_sheets::sheet(Grid::Kind::square, 2., 12., 10.), sheets::rubber());
+  check(nonlocal_sheets::sheet(Grid::Kind::square, 2., 12., 10., 30., Orientation::rows_along_crack, 0.5),
+        sheets::rubber());
+  EXPECT_GT(n_short, 100u);
+  EXPECT_GT(n_others, 100u);
 }
 
 bool same_bits(const Field &a, const Field &b)

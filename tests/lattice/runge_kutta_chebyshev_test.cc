@@ -139,6 +139,44 @@ TEST(RungeKuttaChebyshev, IsStableUpToItsLimitAndNotBeyond)
   }
 }
 
+// Shorter steps take as few stages as the same limit requires, and damp the same noise.
+TEST(RungeKuttaChebyshev, TakesFewerStagesInShorterSteps)
+{
+  struct Counter : SiteForces
+  {
+    const std::vector<SiteForce> &evaluate(State &, Field &, Field &) override
+    {
+      ++n;
+      return forces_;
+    }
+    unsigned int n = 0;
+  } counter;
+  const TriangularLattice sheet = sheets::square(30);
+  const Material material = sheets::rubber();
+  const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
+  double fastest = 0.;
+  for (const Complex &rate : plane_modes::rates(sheet, material, F))
+    fastest = support::largest_of({fastest, std::abs(rate)});
+  const double limit = ChebyshevStages(7).real_limit();
+  for (const double share : {1., 0.5, 0.25, 0.125, 1.})
+  {
+    State state = homogeneous_state(sheet, material, F, Edges::held);
+    add_noise(state, sheet, 1e-3 * sheets::spacing, 5);
+    Forces forces(sheet, material);
+    RungeKuttaChebyshev integrator(sheet, forces, limit / fastest, 7);
+    integrator.set_time_step(share * limit / fastest);
+    integrator.add(counter);
+    integrator.initialise(state);
+    integrator.step(state);
+    const double before = kinetic_energy(state, sheet);
+    counter.n = 0;
+    for (int step = 0; step < 100; ++step)
+      integrator.step(state);
+    EXPECT_EQ(counter.n, 100 * (share == 1. ? 7 : ChebyshevStages::needed(share * limit))) << share;
+    EXPECT_LT(kinetic_energy(state, sheet), before) << share;
+  }
+}
+
 // Loads on free ends balance the stretched sheet in each stage, or it would not stay at rest.
 TEST(RungeKuttaChebyshev, AppliesForcesOnSitesInEachStage)
 {

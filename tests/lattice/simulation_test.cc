@@ -195,7 +195,7 @@ TEST(TimeStep, WatchesBondsByWhatTheyCanLoseInIt)
   EXPECT_DOUBLE_EQ(watched_stretch(1e-7, sheet, material, unbreakable), 0.8);
 }
 
-// Whole steps and divided ones end at the same times.
+// Whole steps and divided ones end at the same times, and what breaks in a step breaks until its end.
 TEST(Simulation, KeepsItsClockInDividedSteps)
 {
   Recoil recoil(1e10);
@@ -203,11 +203,18 @@ TEST(Simulation, KeepsItsClockInDividedSteps)
   double time = recoil.simulation->state().time;
   for (int step = 0; step < 100; ++step)
   {
-    recoil.simulation->step();
+    const double before = time;
+    const std::vector<BrokenBond> &broken = recoil.simulation->step();
     time += h;
     ASSERT_EQ(recoil.simulation->state().time, time);
+    for (const BrokenBond &bond : broken)
+    {
+      ASSERT_GT(bond.time, before);
+      ASSERT_LE(bond.time, time);
+    }
   }
   EXPECT_GT(recoil.simulation->n_divided_steps(), 3u);
+  EXPECT_GT(recoil.simulation->n_broken(), 10u);
 }
 
 // Fast motion sees the springs of all branches.

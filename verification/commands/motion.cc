@@ -60,7 +60,7 @@ void Motion::go(const std::string &phase_name)
     write_resumed();
   else
     write();
-  output::Progress shown(run_.is_verbose());
+  output::Progress shown(run_.is_verbose(), progress().second);
   try
   {
     const auto phase = run_.info().stopwatch().phase(phase_name);

@@ -29,8 +29,9 @@ int descriptor_of_viewer()
 
 } // namespace
 
-Progress::Progress(bool wanted, std::chrono::milliseconds log_interval)
+Progress::Progress(bool wanted, double done_before, std::chrono::milliseconds log_interval)
   : shown_(wanted), on_terminal_(descriptor_of_viewer() < 0 && isatty(STDERR_FILENO) != 0 && !is_dumb_terminal()),
+    done_before_(done_before),
     interval_(on_terminal_ || descriptor_of_viewer() >= 0 ? std::chrono::milliseconds(200) : log_interval),
     start_(Clock::now()), last_(start_)
 {
@@ -53,7 +54,9 @@ void Progress::show(const std::string &text, double fraction_done)
     return;
   last_ = Clock::now();
   const double elapsed = std::chrono::duration<double>(last_ - start_).count();
-  const long left = fraction_done > 0.01 ? std::lround(elapsed * (1. / fraction_done - 1.)) : -1;
+  const double done_here = fraction_done - done_before_;
+  const long left =
+    done_here > 0.01 * (1. - done_before_) ? std::lround(elapsed * (1. - fraction_done) / done_here) : -1;
   std::string line = text + (left >= 0 ? ", " + std::to_string(left) + " s left" : "");
   if (const int viewer = descriptor_of_viewer(); viewer >= 0)
   {

@@ -12,8 +12,10 @@ class Progress
 {
 public:
   /// @param wanted false for no output
+  /// @param done_before fraction of the run that was done before, 0 to 1: that of a resumed run
   /// @param log_interval interval between lines if standard error is not a terminal
-  explicit Progress(bool wanted, std::chrono::milliseconds log_interval = std::chrono::minutes(1));
+  explicit Progress(bool wanted, double done_before = 0.,
+                    std::chrono::milliseconds log_interval = std::chrono::minutes(1));
   ~Progress(); ///< clears the line of a terminal
   Progress(const Progress &) = delete;
   Progress &operator=(const Progress &) = delete;
@@ -29,6 +31,7 @@ private:
   using Clock = std::chrono::steady_clock;
 
   bool shown_, on_terminal_;
+  double done_before_;
   std::chrono::milliseconds interval_;
   Clock::time_point start_;
   Clock::time_point last_;

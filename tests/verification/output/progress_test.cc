@@ -23,7 +23,7 @@ TEST(Progress, WritesLinesToADumbTerminal)
   const int end = open(ptsname(terminal), O_RDWR | O_NOCTTY);
   dup2(end, STDERR_FILENO);
   setenv("TERM", "dumb", 1);
-  Progress(true, 1h).show("step 1", 0.);
+  Progress(true, 0., 1h).show("step 1", 0.);
   dup2(old, STDERR_FILENO);
   char shown[80] = {};
   EXPECT_EQ(read(terminal, shown, sizeof(shown) - 1), 8);
@@ -37,8 +37,8 @@ TEST(Progress, AddsALineToALogEverySoOften)
 {
   testing::internal::CaptureStderr();
   {
-    Progress progress(true, 5ms);
-    EXPECT_FALSE(Progress(true, 1h).due());
+    Progress progress(true, 0., 5ms);
+    EXPECT_FALSE(Progress(true, 0., 1h).due());
     std::this_thread::sleep_for(6ms);
     EXPECT_TRUE(progress.due());
     progress.show("step 1", 0.);
@@ -49,11 +49,27 @@ TEST(Progress, AddsALineToALogEverySoOften)
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "step 1\nstep 2, 0 s left\n");
 }
 
+// A resumed run of which this process has done a hundredth in at least 50 ms: 74 are left.
+TEST(Progress, EstimatesFromWhatThisProcessHasDone)
+{
+  testing::internal::CaptureStderr();
+  {
+    Progress progress(true, 0.25, 1h);
+    std::this_thread::sleep_for(50ms);
+    progress.show("step 2", 0.255);
+    progress.show("step 3", 0.26);
+  }
+  const std::string shown = testing::internal::GetCapturedStderr();
+  int left = 0;
+  ASSERT_EQ(std::sscanf(shown.c_str(), "step 2\nstep 3, %d s left", &left), 1) << shown;
+  EXPECT_GE(left, 4);
+}
+
 TEST(Progress, IsSilentWhereItIsNotWanted)
 {
   testing::internal::CaptureStderr();
   {
-    Progress progress(false, 0ms);
+    Progress progress(false, 0., 0ms);
     EXPECT_FALSE(progress.due());
     progress.show("step 1", 0.5);
   }
