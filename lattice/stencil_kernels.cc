@@ -117,9 +117,11 @@ void Scatter(std::size_t n, const double *force, double *near, double *far)
     far[i] -= force[i];
 }
 
-bool AnyEventAhead(const RowOfBonds &row, double ahead)
+// Whether test(bonds of a kind, first site, vectors between the ends of bonds, their rates) holds for a bond of a row.
+template <class Test>
+HWY_INLINE bool any_bond(const RowOfBonds &row, const Test &test)
 {
-  auto events = hn::FirstN(D(), 0);
+  auto found = hn::FirstN(D(), 0);
   for (std::size_t site = 0; site < row.n; site += width())
   {
     const Lanes x = load(row.x + site), y = load(row.y + site), vx = load(row.vx + site), vy = load(row.vy + site);
@@ -128,38 +130,37 @@ bool AnyEventAhead(const RowOfBonds &row, double ahead)
       const BondsOfKind &bonds = row.kinds[kind];
       const std::size_t far = site + static_cast<std::size_t>(bonds.shift);
       const Lanes ratio = load_factors(bonds.length_ratio, site);
-      const Lanes square = squared_length_after(ahead, ratio * (load(row.x + far) - x), ratio * (load(row.y + far) - y),
-                                                ratio * (load(row.vx + far) - vx), ratio * (load(row.vy + far) - vy));
-      const auto squared = [l = bonds.constants.rest_length](Lanes stretch) { return (l * stretch) * (l * stretch); };
-      events = hn::Or(events, are_events(row, bonds, site, square, squared));
+      found = hn::Or(found, test(bonds, site, ratio * (load(row.x + far) - x), ratio * (load(row.y + far) - y),
+                                 ratio * (load(row.vx + far) - vx), ratio * (load(row.vy + far) - vy)));
     }
   }
-  return !hn::AllFalse(D(), events);
+  return !hn::AllFalse(D(), found);
+}
+
+bool AnyEventAhead(const RowOfBonds &row, double ahead)
+{
+  return any_bond(row,
+                  [&](const BondsOfKind &bonds, std::size_t site, Lanes dx, Lanes dy, Lanes dvx, Lanes dvy)
+                  {
+                    const double l = bonds.constants.rest_length;
+                    return are_events(row, bonds, site, squared_length_after(ahead, dx, dy, dvx, dvy),
+                                      [l](Lanes stretch) { return (l * stretch) * (l * stretch); });
+                  });
 }
 
 bool AnyShortAhead(const RowOfBonds &row, double ahead, double stretch)
 {
-  auto is_short = hn::FirstN(D(), 0);
-  for (std::size_t site = 0; site < row.n; site += width())
-  {
-    const Lanes x = load(row.x + site), y = load(row.y + site), vx = load(row.vx + site), vy = load(row.vy + site);
-    for (std::size_t kind = 0; kind < row.n_kinds; ++kind)
-    {
-      const BondsOfKind &bonds = row.kinds[kind];
-      const std::size_t far = site + static_cast<std::size_t>(bonds.shift);
-      const Lanes ratio = load_factors(bonds.length_ratio, site);
-      const Lanes dx = ratio * (load(row.x + far) - x), dy = ratio * (load(row.y + far) - y);
-      const Lanes product = dx * (ratio * (load(row.vx + far) - vx)) + dy * (ratio * (load(row.vy + far) - vy));
-      // length + ahead min(product, 0) / length <= the short length, without root or quotient.
-      const Lanes square = dx * dx + dy * dy;
-      const Lanes then_by_now = square + ahead * Lanes{hn::Min(product.v, lanes(0.).v)};
-      const double short_square = stretch * bonds.constants.rest_length * (stretch * bonds.constants.rest_length);
-      const auto shorter =
-        hn::Or(hn::Le(then_by_now.v, lanes(0.).v), hn::Le((then_by_now * then_by_now).v, (short_square * square).v));
-      is_short = hn::Or(is_short, hn::And(mask_of_bit(load_states(bonds.states + site), bonds.present), shorter));
-    }
-  }
-  return !hn::AllFalse(D(), is_short);
+  return any_bond(row,
+                  [&](const BondsOfKind &bonds, std::size_t site, Lanes dx, Lanes dy, Lanes dvx, Lanes dvy)
+                  {
+                    // length + ahead min(product, 0) / length <= short length, without root or quotient.
+                    const Lanes square = dx * dx + dy * dy, product = dx * dvx + dy * dvy;
+                    const Lanes then_by_now = square + ahead * Lanes{hn::Min(product.v, lanes(0.).v)};
+                    const double length = stretch * bonds.constants.rest_length;
+                    const auto is_short = hn::Or(hn::Le(then_by_now.v, lanes(0.).v),
+                                                 hn::Le((then_by_now * then_by_now).v, (length * length * square).v));
+                    return hn::And(mask_of_bit(load_states(bonds.states + site), bonds.present), is_short);
+                  });
 }
 
 } // namespace latcon::lattice::kernels::HWY_NAMESPACE
