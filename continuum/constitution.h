@@ -39,11 +39,10 @@ struct Constitution
   const Material *local;
   const GradientLaw *gradient = nullptr; ///< nullptr: local theory
 
-  /// Factor gamma > 0 [-] of the interior penalty, gamma p (p + 1) / h times the normal stiffness of the gradient law
-  /// at F = I. For coercivity the penalty must exceed the mean double traction on a face. By an inverse estimate that
-  /// traction grows as p^2 / h, which requires gamma of about 0.3; the rest is a margin for laws that stiffen under
-  /// deformation and for non-uniform meshes. With gamma < 2, quadratic elements converge at their full order only on
-  /// finer meshes; a larger gamma costs linear iterations.
-  double penalty = 2.;
+  /// Factor gamma >= 0 [-] of the penalty gamma p (p + 1) / h times the normal stiffness of the gradient law at F = I
+  /// on jumps of the normal derivative, eq. (C.28). The lifted gradient needs none to be stable; a small one keeps
+  /// jumps from growing on coarse meshes where a law is soft in some directions. A larger gamma costs linear
+  /// iterations.
+  double penalty = 0.5;
 };
 } // namespace latcon::continuum

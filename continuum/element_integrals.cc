@@ -3,8 +3,8 @@
 #include "continuum/collective.h"
 #include "continuum/element_kernels.h"
 #include "continuum/errors.h"
+#include "continuum/lifted_shapes.h"
 #include "continuum/local_to_global.h"
-#include "continuum/mesh_loop.h"
 #include "continuum/shape_tables.h"
 #include "continuum/vector_kernels.h"
 
@@ -20,9 +20,9 @@ namespace latcon::continuum
 {
 namespace
 {
-using Contributions = std::vector<Contribution>;
 using Iterator = DoFHandler<2>::active_cell_iterator;
 using MeshIterator = Triangulation<2>::cell_iterator;
+using Add = std::function<void(const Contribution &)>;
 
 // Read access to a ghosted vector, without a search for owned entries.
 class NodalValues
@@ -45,88 +45,127 @@ private:
   const double *own_; // a ghosted vector is sorted, so the owned entries are contiguous
 };
 
-// Integrates over cells and faces, at one state u, densities of the energy or of other forces.
+// Integrates over cells, at one state u, densities of the energy or of other forces.
 class Integrator
 {
 public:
   Integrator(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order,
              const PointForces *forces = nullptr)
-    : sheet_(sheet), fields_{NodalValues(u, sheet.owned())}, load_factor_(load_factor), order_(order), forces_(forces),
-      tables_(sheet)
+    : sheet_(sheet), fields_{NodalValues(u, sheet.owned())}, load_factors_{load_factor}, order_(order), forces_(forces),
+      tables_(sheet), lifted_(sheet.degree())
   {
     if (forces && forces->velocity)
+    {
       fields_.emplace_back(*forces->velocity, sheet.owned());
+      load_factors_.push_back(forces->load_rate);
+    }
     for (unsigned int n = 0; n < sheet.element().n_dofs_per_cell() / 2; ++n)
       for (unsigned int i = 0; i < 2; ++i)
         system_index_[i].push_back(sheet.element().component_to_system_index(i, n));
   }
 
-  // Whether densities depend on second derivatives, and faces have any.
-  bool has_faces() const { return forces_ ? forces_->faces != nullptr : sheet_.has_gradient(); }
-
-  void cell(const Iterator &cell, Contributions &contributions)
+  void cell(const Iterator &cell, const Add &add)
   {
     const ShapeTable &table = tables_.cell(MeshIterator(cell));
-    begin(contributions);
+    const bool lifts = forces_ ? forces_->gradient != nullptr : sheet_.has_gradient();
+    const std::vector<LiftedFace> faces = lifts ? lifted_faces(sheet_, cell) : std::vector<LiftedFace>();
+    const bool has_gradient = lifts && faces.empty();
+    begin();
     add_nodes(cell, 0);
-    start(1);
-    const Rows rows = {1, has_faces() ? n_derivatives : n_first};
+    start();
     for (unsigned int q = 0; q < table.n_points; ++q)
     {
-      const double *basis = table.row(q, 0);
-      evaluate_sides(basis, rows);
+      const Basis basis = {table.row(q, 0), table.row(q, 0)};
+      evaluate(basis, sheet_.has_gradient() ? n_derivatives : n_first);
       if (forces_)
-        forces_->density({n_points_++, table.JxW[q], derivatives_[0], rates_[0]}, density_);
+        forces_->density({n_points_++, table.JxW[q], derivatives_[0], derivatives_.back()}, density_);
       else
-        cell_density(sheet_.constitution(), sheet_.has_gradient(), derivatives_[0], order_, density_);
-      add_point(basis, rows, table.JxW[q], contributions.back());
+        add_energy(*sheet_.constitution().local, derivatives_[0], order_, density_);
+      if (has_gradient)
+        add_gradient_density();
+      add_point(basis, has_gradient ? n_derivatives : n_first, table.JxW[q]);
     }
-    end(contributions.back());
-  }
-
-  void boundary(const Iterator &cell, const unsigned int face, Contributions &contributions)
-  {
-    for (const PrescribedNormalGradient &condition : sheet_.conditions().normal_gradients)
-      if (condition.boundary == cell->face(face)->boundary_id())
-      {
-        constexpr unsigned int whole = numbers::invalid_unsigned_int;
-        const std::array<const ShapeTable *, 2> tables = {&tables_.face(MeshIterator(cell), face, whole, 0), nullptr};
-        const auto &points = tables_.face_values(MeshIterator(cell), face).get_quadrature_points();
-        std::vector<Tensor<1, 2>> prescribed(points.size());
-        for (std::size_t q = 0; q < points.size(); ++q)
-          for (unsigned int i = 0; i < 2; ++i)
-            prescribed[q][i] = (forces_ ? forces_->load_rate : load_factor_) * condition.gradient->value(points[q], i);
-        begin(contributions);
-        add_nodes(cell, 0);
-        integrate_face(tables, 1, extent(cell, face), &prescribed, {condition.components[0], condition.components[1]},
-                       contributions.back());
-        return; // the first condition in the list applies, as for displacements
-      }
-  }
-
-  void interior(const Iterator &cell, const unsigned int face, const unsigned int subface, const Iterator &neighbor,
-                const unsigned int neighbor_face, const unsigned int neighbor_subface, Contributions &contributions)
-  {
-    const std::array<const ShapeTable *, 2> tables = {
-      &tables_.face(MeshIterator(cell), face, subface, 0),
-      &tables_.face(MeshIterator(neighbor), neighbor_face, neighbor_subface, 1)};
-    begin(contributions);
-    add_nodes(cell, 0);
-    add_nodes(neighbor, 1);
-    const double smaller = std::min(extent(cell, face), extent(neighbor, neighbor_face));
-    integrate_face(tables, 2, smaller, nullptr, {true, true}, contributions.back());
+    end(add);
+    for (const LiftedFace &face : faces)
+      lifted_face(cell, table, face, faces.size(), add);
   }
 
 private:
-  // Returns the extent of a cell normal to a face [m].
-  static double extent(const Iterator &cell, const unsigned int face)
+  using Basis = std::array<const double *, 2>; // of each component
+
+  // Adds the share of a face in the energy of the gradient law, and half of its penalty, eq. (C.28).
+  void lifted_face(const Iterator &cell, const ShapeTable &table, const LiftedFace &at, const std::size_t n_faces,
+                   const Add &add)
   {
-    return cell->measure() / cell->face(face)->measure();
+    const ShapeTable &face = tables_.face(MeshIterator(cell), at.face, at.subface, 0);
+    const ShapeTable *beyond = nullptr;
+    begin();
+    add_nodes(cell, 0);
+    node_of_[1].clear();
+    if (at.condition == nullptr)
+    {
+      beyond = &tables_.face(MeshIterator(at.neighbor), at.neighbor_face, at.neighbor_subface, 1);
+      add_nodes(at.neighbor, 1);
+    }
+    start();
+    lifted_.reinit(table, face, beyond, at, n_faces, node_of_[1], stride_);
+
+    // Prescribed normal gradients at the points of the face; a component without one is not lifted.
+    std::array<bool, 2> held = {true, true};
+    std::array<std::vector<double>, 2> prescribed;
+    if (at.condition != nullptr)
+      for (const Point<2> &X : tables_.face_values(MeshIterator(cell), at.face).get_quadrature_points())
+        for (unsigned int i = 0; i < 2; ++i)
+        {
+          held[i] = at.condition->components[i];
+          prescribed[i].push_back(held[i] ? at.condition->gradient->value(X, i) : 0.);
+        }
+
+    for (unsigned int q = 0; q < table.n_points; ++q)
+    {
+      const Basis basis = {held[0] ? lifted_.basis(q) : table.row(q, 0), held[1] ? lifted_.basis(q) : table.row(q, 0)};
+      evaluate(basis, n_derivatives);
+      for (unsigned int i = 0; i < 2 && at.condition != nullptr; ++i)
+      {
+        const ComponentDerivatives of_prescribed = lifted_.lift(q, prescribed[i]);
+        for (std::size_t field = 0; field < fields_.size(); ++field)
+          for (unsigned int c = n_first; c < n_derivatives; ++c)
+            derivatives_[field][i][c] -= load_factors_[field] * of_prescribed[c];
+      }
+      add_gradient_density();
+      add_point(basis, n_derivatives, table.JxW[q] / static_cast<double>(n_faces));
+    }
+
+    const double sigma = sheet_.penalty(cell->measure() / cell->face(at.face)->measure());
+    for (unsigned int f = 0; f < face.n_points && !forces_; ++f)
+    {
+      const Basis basis = {lifted_.jump(f), lifted_.jump(f)};
+      evaluate(basis, 1);
+      for (unsigned int i = 0; i < 2; ++i)
+        if (held[i])
+        {
+          const double z = derivatives_[0][i][0] - (at.condition != nullptr ? load_factors_[0] * prescribed[i][f] : 0.);
+          density_.value += 0.5 * sigma * z * z;
+          density_.first[i][0] = sigma * z;
+          density_.second[i][i][0][0] = sigma;
+        }
+      add_point(basis, 1, (at.condition == nullptr ? 0.5 : 1.) * face.JxW[f]);
+    }
+    end(add);
   }
 
-  void begin(Contributions &contributions)
+  void add_gradient_density()
   {
-    contributions.emplace_back();
+    if (forces_)
+      forces_->gradient->add_density(derivatives_[0], derivatives_.back(), order_, forces_->rate_by_displacement,
+                                     density_);
+    else
+      add_energy(*sheet_.constitution().gradient, derivatives_[0], order_, density_);
+  }
+
+  void begin()
+  {
+    contribution_ = Contribution();
     nodes_.clear();
   }
 
@@ -153,7 +192,7 @@ private:
   }
 
   // Resizes the arrays to the nodes, with zeros in the padding.
-  void start(const unsigned int n_sides)
+  void start()
   {
     const auto n = static_cast<unsigned int>(nodes_.size());
     stride_ = padded_size(n);
@@ -169,80 +208,40 @@ private:
     }
     if (order_ == Order::second)
     {
-      work_.resize(2 * n_derivatives * stride_);
+      work_.resize(n_derivatives * stride_);
       for (unsigned int block = 0; block < n_blocks(); ++block)
         second_[block].assign(n * stride_, 0.);
     }
-    basis_.assign(n_sides * n_derivatives * stride_, 0.);
-  }
-
-  void integrate_face(const std::array<const ShapeTable *, 2> &tables, const unsigned int n_sides, const double extent,
-                      const std::vector<Tensor<1, 2>> *prescribed, const std::array<bool, 2> &held,
-                      Contribution &contribution)
-  {
-    start(n_sides);
-    const FacePenalty penalty{sheet_.penalty(extent), sheet_.supported_stiffness()};
-    const Rows rows = {n_sides, n_derivatives};
-    for (unsigned int q = 0; q < tables[0]->n_points; ++q)
-    {
-      for (unsigned int s = 0; s < n_sides; ++s)
-        for (unsigned int c = 0; c < n_derivatives; ++c)
-        {
-          const double *from = tables[s]->row(q, c);
-          double *to = &basis_[(s * n_derivatives + c) * stride_];
-          for (std::size_t n = 0; n < node_of_[s].size(); ++n)
-            to[node_of_[s][n]] = from[n];
-        }
-      evaluate_sides(basis_.data(), rows);
-      const Tensor<1, 2> &N = tables[0]->normals[q];
-      const Tensor<1, 2> given = prescribed ? (*prescribed)[q] : Tensor<1, 2>();
-      if (forces_)
-        forces_->faces->face_density(derivatives_, rates_, n_sides, N, given, held,
-                                     sheet_.penalty(extent, forces_->faces->resistance_across(N)), order_,
-                                     forces_->rate_by_displacement, density_);
-      else
-        face_density(*sheet_.constitution().gradient, derivatives_, n_sides, N, given, held, penalty, order_, density_);
-      add_point(basis_.data(), rows, tables[0]->JxW[q], contribution);
-    }
-    end(contribution);
   }
 
   // Computes the derivatives of the fields from the basis, and clears the density.
-  void evaluate_sides(const double *basis, const Rows &rows)
+  void evaluate(const Basis &basis, const unsigned int n_rows)
   {
     clear(density_, order_);
-    evaluate_field(basis, rows, nodal_.data(), derivatives_);
-    if (fields_.size() > 1)
-      evaluate_field(basis, rows, &nodal_[2 * stride_], rates_);
+    derivatives_.resize(fields_.size());
+    for (std::size_t f = 0; f < fields_.size(); ++f)
+      evaluate_derivatives(basis, stride_, n_rows, &nodal_[2 * f * stride_], derivatives_[f]);
   }
 
-  void evaluate_field(const double *basis, const Rows &rows, const double *nodal,
-                      std::array<FieldDerivatives, 2> &field) const
+  void add_point(const Basis &basis, const unsigned int n_rows, const double weight)
   {
-    double derivatives[2][2][n_derivatives] = {};
-    evaluate_derivatives(basis, stride_, rows, nodal, derivatives[0][0]);
-    for (unsigned int s = 0; s < rows.n_sides; ++s)
-      for (unsigned int i = 0; i < 2; ++i)
-        std::copy(derivatives[i][s], derivatives[i][s] + n_derivatives, field[s][i].begin());
-  }
-
-  void add_point(const double *basis, const Rows &rows, const double JxW, Contribution &contribution)
-  {
-    contribution.energy += density_.value * JxW;
+    contribution_.energy += density_.value * weight;
     if (order_ == Order::first)
       for (unsigned int i = 0; i < 2; ++i)
-        add_first(basis, stride_, rows, density_.first[i][0], JxW, &first_[i * stride_], &magnitude_[i * stride_]);
+        add_first(basis[i], stride_, n_rows, density_.first[i], weight, &first_[i * stride_], &magnitude_[i * stride_]);
     if (order_ == Order::second)
       for (unsigned int block = 0; block < n_blocks(); ++block)
       {
         const auto &[i, k] = components[block];
-        add_second(basis, stride_, rows, density_.second[i][k][0][0][0], JxW, i == k && is_symmetric(), nodes_.size(),
-                   work_.data(), second_[block].data());
+        add_second(basis[i], basis[k], stride_, n_rows, density_.second[i][k][0], weight, i == k && is_symmetric(),
+                   nodes_.size(), work_.data(), second_[block].data());
       }
   }
 
-  void end(Contribution &contribution)
+  // Passes the sums to add(contribution).
+  void end(const Add &add)
   {
+    Contribution &contribution = contribution_;
     const std::size_t n = nodes_.size();
     for (const auto &node : nodes_)
       contribution.dofs.insert(contribution.dofs.end(), node.begin(), node.end());
@@ -257,11 +256,16 @@ private:
           contribution.magnitude[2 * a + i] = magnitude_[i * stride_ + a];
         }
     }
-    if (order_ != Order::second)
-      return;
-    // The second derivative of an energy is symmetric: only one triangle of the blocks of equal components was summed,
-    // and only one of the two mixed blocks.
-    FullMatrix<double> &K = contribution.tangent;
+    if (order_ == Order::second)
+      fill_tangent(contribution.tangent);
+    add(contribution);
+  }
+
+  // The second derivative of an energy is symmetric: only one triangle of the blocks of equal components was summed,
+  // and only one of the two mixed blocks.
+  void fill_tangent(FullMatrix<double> &K) const
+  {
+    const std::size_t n = nodes_.size();
     K.reinit(2 * n, 2 * n);
     for (unsigned int block = 0; block < n_blocks() && !is_symmetric(); ++block)
       for (std::size_t a = 0; a < n; ++a)
@@ -285,76 +289,42 @@ private:
 
   const Sheet &sheet_;
   std::vector<NodalValues> fields_; // u, and the velocity if there is one
-  double load_factor_;
+  std::vector<double> load_factors_; // of prescribed normal gradients, per field
   Order order_;
   const PointForces *forces_; // nullptr: those of the energy
   std::size_t n_points_ = 0;  // visited
   ShapeTables tables_;
+  LiftedShapes lifted_;
   std::array<std::vector<unsigned int>, 2> system_index_; // of the scalar shape functions, per component
 
   std::vector<std::array<types::global_dof_index, 2>> nodes_; // degrees of freedom of both components
   std::array<std::vector<unsigned int>, 2> node_of_;          // node of each shape function, per side
   std::vector<types::global_dof_index> cell_dofs_;
   unsigned int stride_ = 0;
-  std::vector<double> basis_; // see element_kernels.h
   std::vector<double> nodal_; // [field][component][node]
   std::vector<double> first_; // [component][node], as magnitude_
   std::vector<double> magnitude_;
   std::array<std::vector<double>, 4> second_; // [node][node]
   std::vector<double> work_;
-  std::array<FieldDerivatives, 2> derivatives_; // of u, per side
-  std::array<FieldDerivatives, 2> rates_;       // of the velocity, per side
+  std::vector<FieldDerivatives> derivatives_; // per field
   PointIntegrand density_{};
+  Contribution contribution_;
 };
 
-// Passes the contributions of a cell and its faces to `add`, in the order of visits.
-struct AddingVisitor
+void integrate_with(Integrator &integrator, const Sheet &sheet, const Add &add)
 {
-  Integrator &integrator;
-  const std::function<void(const Contribution &)> &add;
-  Contributions contributions;
-
-  void cell(const Iterator &cell)
-  {
-    try
-    {
-      integrator.cell(cell, contributions);
-    }
-    catch (const NonPhysicalState &failure)
-    {
-      std::ostringstream place;
-      place << ", in the cell about X = (" << cell->center()[0] << ", " << cell->center()[1] << ") m";
-      throw NonPhysicalState(failure.what() + place.str());
-    }
-  }
-  void boundary(const Iterator &cell, const unsigned int face) { integrator.boundary(cell, face, contributions); }
-  void interior(const Iterator &cell, const unsigned int face, const unsigned int subface, const Iterator &neighbor,
-                const unsigned int neighbor_face, const unsigned int neighbor_subface)
-  {
-    integrator.interior(cell, face, subface, neighbor, neighbor_face, neighbor_subface, contributions);
-  }
-  void cell_end()
-  {
-    for (const Contribution &contribution : contributions)
-      add(contribution);
-    contributions.clear();
-  }
-};
-
-void integrate_with(Integrator &integrator, const Sheet &sheet, const std::function<void(const Contribution &)> &add)
-{
-  AddingVisitor visitor{integrator, add, {}};
-  if (integrator.has_faces())
-  {
-    for_each_cell_and_face(sheet.dof_handler(), visitor);
-    return;
-  }
   for (const Iterator &cell : sheet.dof_handler().active_cell_iterators())
     if (cell->is_locally_owned())
-    {
-      visitor.cell(cell);
-      visitor.cell_end();
-    }
+      try
+      {
+        integrator.cell(cell, add);
+      }
+      catch (const NonPhysicalState &failure)
+      {
+        std::ostringstream place;
+        place << ", in the cell about X = (" << cell->center()[0] << ", " << cell->center()[1] << ") m";
+        throw NonPhysicalState(failure.what() + place.str());
+      }
 }
 } // namespace
 
@@ -417,13 +387,16 @@ void for_each_point(const Sheet &sheet, const Sheet::Vector &u, const std::funct
 
 void add_stresses(const Sheet &sheet, const Sheet::Vector &u, PointForces forces, std::vector<Tensor<2, 2>> &stresses)
 {
-  forces.density = [&, density = forces.density](const CellPoint &point, PointIntegrand &d)
+  forces.density = [&, density = forces.density, gradient = forces.gradient](const CellPoint &point, PointIntegrand &d)
   {
     density(point, d);
+    if (gradient != nullptr)
+      gradient->add_density(point.u, point.v, Order::first, 0., d);
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int J = 0; J < 2; ++J)
-        stresses[point.number][i][J] += d.first[i][0][J];
+        stresses[point.number][i][J] += d.first[i][J];
   };
+  forces.gradient = nullptr;
   run_collectively(sheet.communicator(),
                    [&] { integrate(sheet, u, forces, Order::first, [](const Contribution &) {}); });
 }

@@ -12,8 +12,8 @@
 
 namespace latcon::continuum
 {
-/// Contribution of one cell or face to the functional of eq. (C.28) and its derivatives up to the requested order.
-/// Local unknown 2 a + i belongs to scalar shape function a and component i.
+/// Contribution of one cell, or of one of its faces, to the functional of eq. (C.28) and its derivatives up to the
+/// requested order. Local unknown 2 a + i belongs to scalar shape function a and component i.
 struct Contribution
 {
   double energy = 0.; ///< [J/m], or dissipated power [W/m]
@@ -23,9 +23,9 @@ struct Contribution
   dealii::FullMatrix<double> tangent;
 };
 
-/// Calls add(contribution) for every locally owned cell and every face assigned to this rank, at the state `u` [m]
-/// (with ghost entries). Order::second omits the first derivatives. Throws NonPhysicalState, only on the rank where it
-/// occurs.
+/// Calls add(contribution) for every locally owned cell and, with a gradient law, each of its lifted faces, at the
+/// state `u` [m] (with ghost entries). Order::second omits the first derivatives. Throws NonPhysicalState, only on the
+/// rank where it occurs.
 void integrate(const Sheet &sheet, const Sheet::Vector &u, double load_factor, Order order,
                const std::function<void(const Contribution &)> &add);
 
@@ -41,19 +41,18 @@ struct CellPoint
 /// Forces that no energy of u gives, those of viscosity and memory.
 struct PointForces
 {
-  /// Adds the density at a point, as cell_density() does for an energy: dissipated power [W/m^3] as `value`, stresses
-  /// as `first`, their derivatives by u as `second`. The density has been cleared.
+  /// Adds the density at a point: dissipated power [W/m^3] as `value`, stresses as `first`, their derivatives by u as
+  /// `second`. The density has been cleared.
   std::function<void(const CellPoint &, PointIntegrand &)> density;
-  bool is_symmetric = false;                ///< whether that derivative is symmetric
-  const Sheet::Vector *velocity = nullptr;  ///< [m/s], with ghost entries; nullptr: none
-  const GradientViscosity *faces = nullptr; ///< law of the densities of faces and second derivatives; nullptr: none
-  double load_rate = 0.;                    ///< rate of the load factor [1/s], for faces
-  double rate_by_displacement = 0.;         ///< dv/du [1/s], for faces and Order::second
+  bool is_symmetric = false;                   ///< whether that derivative is symmetric
+  const Sheet::Vector *velocity = nullptr;     ///< [m/s], with ghost entries; nullptr: none
+  const GradientViscosity *gradient = nullptr; ///< law of the lifted gradients of u and v; nullptr: none
+  double load_rate = 0.;                       ///< rate of the load factor [1/s], for prescribed normal gradients
+  double rate_by_displacement = 0.;            ///< dv/du [1/s], for `gradient` and Order::second
 };
 
 /// Calls add(contribution) likewise for `forces` at the state `u`: dissipated power as energy, forces as residual,
-/// their derivative by u as tangent. A sheet with densities of faces must have a gradient law, whose penalty factor is
-/// theirs.
+/// their derivative by u as tangent. With `gradient` the sheet must have a gradient law.
 void integrate(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, Order order,
                const std::function<void(const Contribution &)> &add);
 

@@ -59,6 +59,7 @@ public:
       std::min(cell->measure() / cell->face(f)->measure(), neighbor->measure() / neighbor->face(nf)->measure());
     for (unsigned int s = 0; s < 2; ++s)
       sides_[s].read(values_.get_fe_face_values(s), u_);
+    const double p = sheet_.degree();
     double sum = 0.;
     for (unsigned int q = 0; q < values_.n_quadrature_points; ++q)
     {
@@ -77,10 +78,10 @@ public:
         if (sheet_.has_gradient())
           double_traction_jump += sign * ((laws.double_stress(F, sides_[s].hessians[q]) * N) * N);
       }
-      double at_point = h / (2. * sheet_.degree() * shear_modulus_) * (P_jump * N).norm_square();
+      double at_point = h / (2. * p * shear_modulus_) * (P_jump * N).norm_square();
       if (sheet_.has_gradient())
-        at_point +=
-          sheet_.penalty(h) * slope_jump.norm_square() + h / normal_stiffness_ * double_traction_jump.norm_square();
+        at_point += 2. * p * (p + 1.) / h * normal_stiffness_ * slope_jump.norm_square() +
+                    h / normal_stiffness_ * double_traction_jump.norm_square();
       sum += at_point * values_.JxW(q);
     }
     return {{cell->global_active_cell_index(), neighbor->global_active_cell_index()}, 0.5 * sum};

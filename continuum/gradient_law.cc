@@ -9,22 +9,6 @@ using dealii::Tensor;
 
 namespace latcon::continuum
 {
-GradientLaw::Gradient GradientLaw::unit_jump(const unsigned int i, const Tensor<2, 2> &NN)
-{
-  Gradient Z;
-  Z[i] = NN;
-  return Z;
-}
-
-double GradientLaw::stiffness_across(const Tensor<2, 2> &F, const Tensor<1, 2> &N) const
-{
-  const Tensor<2, 2> NN = outer_product(N, N);
-  double sum = 0.;
-  for (unsigned int i = 0; i < 2; ++i)
-    sum += evaluate(F, unit_jump(i, NN), unit_jump(i, NN), Order::value).value;
-  return sum;
-}
-
 double GradientLaw::normal_stiffness() const
 {
   const Tensor<2, 2> I(dealii::unit_symmetric_tensor<2>());

@@ -4,28 +4,24 @@
 
 namespace latcon::continuum
 {
-/// Form B(F; G, Z) of a gradient law at a point and its derivatives up to an order; those beyond it are zero. The form
-/// is linear in G and Z, so that derivatives by these are those of the double stress Q: Q(F, G) = dB/dZ.
-struct GradientForm
+/// Energy of a gradient law at a point and its derivatives by F and G up to an order; those beyond it are zero. Third
+/// and higher tensors are symmetric in the two indices of each G.
+struct GradientResponse
 {
-  double value = 0.;          ///< B [Pa]
-  dealii::Tensor<2, 2> by_F;  ///< [Pa]
-  dealii::Tensor<3, 2> by_G;  ///< Q(F, Z) [Pa m], symmetric in J and K
-  dealii::Tensor<3, 2> by_Z;  ///< Q(F, G) [Pa m], symmetric in J and K
-  dealii::Tensor<4, 2> by_FF; ///< [Pa], index order [i][J][k][L]
-  dealii::Tensor<5, 2> by_GF; ///< dQ(F, Z)_iJK/dF_lM [Pa m], index order [i][J][K][l][M]
-  dealii::Tensor<5, 2> by_ZF; ///< dQ(F, G)_iJK/dF_lM [Pa m], index order [i][J][K][l][M]
-  dealii::Tensor<6, 2> by_GZ; ///< dQ_iJK/dG_lMN [Pa m^2], symmetric in J and K and in M and N; independent of G and Z
+  double energy = 0.;                      ///< W_g [Pa = J/m^3]
+  dealii::Tensor<2, 2> first_piola;        ///< dW_g/dF_iJ [Pa]: its contribution to the first Piola stress
+  dealii::Tensor<3, 2> double_stress;      ///< Q_iJK = dW_g/dG_iJK [Pa m]
+  dealii::Tensor<4, 2> tangent;            ///< d2W_g/dF_iJ dF_kL [Pa], index order [i][J][k][L]
+  dealii::Tensor<5, 2> double_stress_by_F; ///< dQ_iJK/dF_lM [Pa m], index order [i][J][K][l][M]
+  dealii::Tensor<6, 2> double_stress_by_G; ///< dQ_iJK/dG_lMN [Pa m^2], index order [i][J][K][l][M][N]
 };
 
-/// Law of the energy that depends on the gradient of deformation, added to the energy of the local law:
-///   W_g(F, G) = B(F; G, G) / 2    [Pa = J/m^3],        G_iJK = dF_iJ/dX_K = d2x_i/dX_J dX_K  [1/m]
-/// with B(F; G, Z) symmetric and bilinear in G and Z, so that the energy vanishes with the gradient
-/// (theory-continuum.md, eq. (C.20)). Laws are const and stateless. F as in Material; densities per reference volume.
-///
-/// A subclass implements B with its derivatives, from which energy and stresses follow. The discretisation uses B with
-/// two different arguments where the normal derivative of the displacement jumps (eq. (C.28)). All functions throw
-/// NonPhysicalState if the law depends on F and F is invalid (det F <= 0 or not finite).
+/// Law of the energy W_g(F, G) [Pa = J/m^3] that depends on the gradient of deformation, added to the energy of the
+/// local law (theory-continuum.md, eq. (C.20)):
+///   G_iJK = dF_iJ/dX_K = d2x_i/dX_J dX_K  [1/m]
+/// W_g vanishes with G and is never negative; the discretisation is as stable as the law is (eq. (C.28)). Laws are
+/// const and stateless. F as in Material; densities per reference volume. All functions throw NonPhysicalState if the
+/// law depends on F and F is invalid (det F <= 0 or not finite).
 class GradientLaw
 {
 public:
@@ -33,44 +29,28 @@ public:
 
   virtual ~GradientLaw() = default;
 
-  /// Returns true if B = 0 for every F, G and Z. Such a law is ignored: no gradient energy, no face terms. A law that
-  /// vanishes only for some F must return false.
+  /// Returns true if W_g = 0 for every F and G. Such a law is ignored. A law that vanishes only for some F must return
+  /// false.
   virtual bool is_zero() const { return false; }
 
-  /// Returns B(F; G, Z) and its derivatives up to `order`.
-  virtual GradientForm evaluate(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z,
-                                Order order) const = 0;
+  /// Returns the energy and its derivatives up to `order`.
+  virtual GradientResponse evaluate(const dealii::Tensor<2, 2> &F, const Gradient &G, Order order) const = 0;
 
-  /// W_g [Pa].
-  double energy(const dealii::Tensor<2, 2> &F, const Gradient &G) const
-  {
-    return 0.5 * evaluate(F, G, G, Order::value).value;
-  }
-
-  /// dW_g/dF_iJ [Pa]: contribution of the gradient energy to the first Piola stress.
+  double energy(const dealii::Tensor<2, 2> &F, const Gradient &G) const { return evaluate(F, G, Order::value).energy; }
   dealii::Tensor<2, 2> first_piola_stress(const dealii::Tensor<2, 2> &F, const Gradient &G) const
   {
-    return 0.5 * evaluate(F, G, G, Order::first).by_F;
+    return evaluate(F, G, Order::first).first_piola;
   }
-
-  /// Double stress Q_iJK = dW_g/dG_iJK [Pa m], with Q : Z = B(F; G, Z) for every Z; symmetric in J and K.
   Gradient double_stress(const dealii::Tensor<2, 2> &F, const Gradient &G) const
   {
-    return evaluate(F, G, G, Order::first).by_Z;
+    return evaluate(F, G, Order::first).double_stress;
   }
 
-  /// dQ_iJK/dG_lMN [Pa m^2], index order [i][J][K][l][M][N].
+  /// Returns dQ_iJK/dG_lMN [Pa m^2] at G = 0, index order [i][J][K][l][M][N].
   dealii::Tensor<6, 2> double_stress_by_G(const dealii::Tensor<2, 2> &F) const
   {
-    return evaluate(F, Gradient(), Gradient(), Order::second).by_GZ;
+    return evaluate(F, Gradient(), Order::second).double_stress_by_G;
   }
-
-  /// Returns the stiffness [Pa m^2] against a second derivative along the unit vector N in both directions: the sum
-  /// over i of B(F; Z, Z) with Z = unit_jump(i, N N), an upper bound and at most twice that in any one direction.
-  double stiffness_across(const dealii::Tensor<2, 2> &F, const dealii::Tensor<1, 2> &N) const;
-
-  /// Returns e_i (x) NN, the second gradient of a unit jump of component i of the normal derivative.
-  static Gradient unit_jump(unsigned int i, const dealii::Tensor<2, 2> &NN);
 
   /// Returns the largest stiffness [Pa m^2] against a second normal derivative at F = I: the largest eigenvalue of n_J
   /// n_K (dQ_iJK/dG_lMN) n_M n_N over all unit vectors n.

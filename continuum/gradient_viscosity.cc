@@ -119,24 +119,14 @@ GradientViscosity::GradientViscosity(const std::vector<FibreDashpot> &dashpots, 
     const auto term = [&](const Tensor<1, 2> &M, const double squared_length)
     {
       return Term{dashpot.weight * dashpot.viscosity * squared_length,
-                  {0., 0., N[0] * M[0], N[1] * M[1], N[0] * M[1] + N[1] * M[0]},
-                  0.5 * (outer_product(N, M) + outer_product(M, N))};
+                  {0., 0., N[0] * M[0], N[1] * M[1], N[0] * M[1] + N[1] * M[0]}};
     };
     families_.push_back({N, {term(T, length * length), term(N, along)}});
   }
 }
 
-double GradientViscosity::resistance_across(const Tensor<1, 2> &N) const
-{
-  double sum = 0.;
-  for (const Family &family : families_)
-    for (const Term &term : family.terms)
-      sum += term.factor * std::pow(N * (term.selector * N), 2);
-  return sum;
-}
-
-void GradientViscosity::cell_density(const FieldDerivatives &u, const FieldDerivatives &v, const Order order,
-                                     const double rate_by_displacement, PointIntegrand &d) const
+void GradientViscosity::add_density(const FieldDerivatives &u, const FieldDerivatives &v, const Order order,
+                                    const double rate_by_displacement, PointIntegrand &d) const
 {
   for (const Family &family : families_)
   {
@@ -150,89 +140,14 @@ void GradientViscosity::cell_density(const FieldDerivatives &u, const FieldDeriv
       for (unsigned int i = 0; i < 2; ++i)
         for (unsigned int c = 0; c < n_derivatives; ++c)
         {
-          d.first[i][0][c] += term.factor * e.value * e.by_rate[i][c];
+          d.first[i][c] += term.factor * e.value * e.by_rate[i][c];
           for (unsigned int k = 0; k < 2 && order == Order::second; ++k)
             for (unsigned int b = 0; b < n_derivatives; ++b)
-              d.second[i][k][0][c][0][b] +=
+              d.second[i][k][c][b] +=
                 term.factor * (e.by_rate[i][c] * (rate_by_displacement * e.by_rate[k][b] + e.by_state[k][b]) +
                                e.value * e.by_rate_by_state(i, c, k, b));
         }
     }
   }
-}
-
-void GradientViscosity::face_density(const std::array<FieldDerivatives, 2> &u, const std::array<FieldDerivatives, 2> &v,
-                                     const unsigned int n_sides, const Tensor<1, 2> &N, const Tensor<1, 2> &prescribed,
-                                     const std::array<bool, 2> &held, const double penalty, const Order order,
-                                     const double rate_by_displacement, PointIntegrand &d) const
-{
-  const double sign[2] = {1., -1.};
-  // z = jump of the normal gradient of v; its derivative by v_i,J on side s is sign[s] held[i] N[J].
-  Tensor<1, 2> z;
-  for (unsigned int i = 0; i < 2; ++i)
-    if (held[i])
-    {
-      z[i] = -prescribed[i];
-      for (unsigned int s = 0; s < n_sides; ++s)
-        z[i] += sign[s] * (v[s][i][0] * N[0] + v[s][i][1] * N[1]);
-    }
-  const auto jump = [&](const unsigned int s, const unsigned int i, const unsigned int J)
-  { return held[i] ? sign[s] * N[J] : 0.; };
-
-  d.value = penalty * z.norm_square();
-  for (unsigned int s = 0; s < n_sides && order != Order::value; ++s)
-    for (unsigned int i = 0; i < 2; ++i)
-      for (unsigned int J = 0; J < 2; ++J)
-      {
-        d.first[i][s][J] += penalty * z[i] * jump(s, i, J);
-        for (unsigned int t = 0; t < n_sides && order == Order::second; ++t)
-          for (unsigned int L = 0; L < 2; ++L)
-            d.second[i][i][s][J][t][L] += rate_by_displacement * penalty * jump(s, i, J) * jump(t, i, L);
-      }
-
-  // The mean over the sides of -factor e' (n . z) S:NN.
-  for (unsigned int s = 0; s < n_sides; ++s)
-    for (const Family &family : families_)
-    {
-      const DashpotMotion motion = dashpot_motion(family.direction, u[s], v[s]);
-      const double along = motion.n * z;
-      const Tensor<1, 2> turned = motion.turning * z; // derivative of n . z by f
-      for (const Term &term : family.terms)
-      {
-        const double factor = -term.factor * (N * (term.selector * N)) / n_sides;
-        const StretchGradientRate e(motion, family.direction, term.row, u[s], v[s], order == Order::second);
-        d.value += 2. * factor * e.value * along;
-        if (order == Order::value)
-          continue;
-        for (unsigned int i = 0; i < 2; ++i)
-        {
-          for (unsigned int c = 0; c < n_derivatives; ++c)
-            d.first[i][s][c] += factor * along * e.by_rate[i][c];
-          for (unsigned int t = 0; t < n_sides; ++t)
-            for (unsigned int J = 0; J < 2; ++J)
-              d.first[i][t][J] += factor * e.value * motion.n[i] * jump(t, i, J);
-        }
-        if (order == Order::first)
-          continue;
-        for (unsigned int i = 0; i < 2; ++i)
-          for (unsigned int k = 0; k < 2; ++k)
-            for (unsigned int b = 0; b < n_derivatives; ++b)
-            {
-              const double stretch = b < n_first ? family.direction[b] : 0.; // derivative of f by that of u
-              for (unsigned int c = 0; c < n_derivatives; ++c)
-                d.second[i][k][s][c][s][b] +=
-                  factor * (along * e.by_rate_by_state(i, c, k, b) + e.by_rate[i][c] * turned[k] * stretch);
-              const double by_rate = rate_by_displacement * e.by_rate[k][b];
-              for (unsigned int t = 0; t < n_sides; ++t)
-                for (unsigned int J = 0; J < 2; ++J)
-                {
-                  d.second[i][k][t][J][s][b] +=
-                    factor * jump(t, i, J) *
-                    (motion.n[i] * (by_rate + e.by_state[k][b]) + e.value * motion.turning[i][k] * stretch);
-                  d.second[k][i][s][b][t][J] += factor * by_rate * motion.n[i] * jump(t, i, J);
-                }
-            }
-      }
-    }
 }
 } // namespace latcon::continuum

@@ -22,21 +22,10 @@ public:
   /// dashpot is not valid or has no length, or if l_d^2 < l_k^2/12 for one of them, which would make R_g indefinite.
   GradientViscosity(const std::vector<FibreDashpot> &dashpots, double length);
 
-  /// Computes the density in a cell, as a density of side 0, from the derivatives of u [m] and v [m/s]. `density` must
-  /// have been cleared.
-  void cell_density(const FieldDerivatives &u, const FieldDerivatives &v, Order order, double rate_by_displacement,
-                    PointIntegrand &density) const;
-
-  /// Computes the density of the interior penalty on a face with normal N, eq. (C.63), as face_density() does that of a
-  /// gradient law: `prescribed` is the rate of the normal gradient [1/s], `penalty` that of the viscosity [Pa s m].
-  void face_density(const std::array<FieldDerivatives, 2> &u, const std::array<FieldDerivatives, 2> &v,
-                    unsigned int n_sides, const dealii::Tensor<1, 2> &N, const dealii::Tensor<1, 2> &prescribed,
-                    const std::array<bool, 2> &held, double penalty, Order order, double rate_by_displacement,
-                    PointIntegrand &density) const;
-
-  /// Returns the resistance [Pa s m^2] to the rate of a second derivative along the unit vector N in both directions,
-  /// summed over both components. Independent of F, because n is a unit vector.
-  double resistance_across(const dealii::Tensor<1, 2> &N) const;
+  /// Adds the density at a point, from the derivatives of u [m] and v [m/s], whose second ones are those of the lifted
+  /// gradients, eq. (C.63).
+  void add_density(const FieldDerivatives &u, const FieldDerivatives &v, Order order, double rate_by_displacement,
+                   PointIntegrand &density) const;
 
 private:
   // A dashpot contributes two terms (1/2) factor (d/dt n_i G_iJK S_JK)^2.
@@ -44,7 +33,6 @@ private:
   {
     double factor;            // [Pa s m^2]
     ComponentDerivatives row; // G_iJK S_JK as a sum over the derivatives of component i
-    dealii::Tensor<2, 2> selector;
   };
   struct Family
   {

@@ -15,23 +15,21 @@ IsotropicGradient::IsotropicGradient(const double shear_modulus, const double le
     throw InvalidMaterial("an isotropic gradient energy needs a shear modulus > 0 and a length >= 0, both finite");
 }
 
-GradientForm IsotropicGradient::evaluate(const Tensor<2, 2> &, const Gradient &G, const Gradient &Z,
-                                         const Order order) const
+GradientResponse IsotropicGradient::evaluate(const Tensor<2, 2> &, const Gradient &G, const Order order) const
 {
-  GradientForm B;
-  B.value = modulus_ * scalar_product(G, Z);
+  GradientResponse W;
+  W.energy = 0.5 * modulus_ * scalar_product(G, G);
   if (order == Order::value)
-    return B;
-  B.by_G = modulus_ * Z;
-  B.by_Z = modulus_ * G;
+    return W;
+  W.double_stress = modulus_ * G;
   for (unsigned int i = 0; i < 2 && order == Order::second; ++i)
     for (unsigned int J = 0; J < 2; ++J)
       for (unsigned int K = 0; K < 2; ++K)
       {
         // Identity on gradients that are symmetric in their last two indices.
-        B.by_GZ[i][J][K][i][J][K] += 0.5 * modulus_;
-        B.by_GZ[i][J][K][i][K][J] += 0.5 * modulus_;
+        W.double_stress_by_G[i][J][K][i][J][K] += 0.5 * modulus_;
+        W.double_stress_by_G[i][J][K][i][K][J] += 0.5 * modulus_;
       }
-  return B;
+  return W;
 }
 } // namespace latcon::continuum

@@ -14,8 +14,7 @@ public:
   IsotropicGradient(double shear_modulus, double length);
 
   bool is_zero() const override { return modulus_ == 0.; }
-  GradientForm evaluate(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z,
-                        Order order) const override;
+  GradientResponse evaluate(const dealii::Tensor<2, 2> &F, const Gradient &G, Order order) const override;
 
   double modulus() const { return modulus_; } ///< c_g [Pa m^2]
 

@@ -61,7 +61,7 @@ std::array<double, n_pairs> pairs(const Tensor<2, 2> &A)
   return {A[0][0], A[1][1], A[0][1]};
 }
 
-// Adds the derivative by F of the double stress factor dh(a, b)/db (x) S of a bond along N.
+// Adds the derivative by F of the double stress factor (1/2) dh(a, a)/da (x) S of a bond along N.
 void add_stress_by_F(const BondStiffness &h, const Tensor<1, 2> &f, const Tensor<1, 2> &a, const double factor,
                      const std::array<double, n_pairs> &S, const Tensor<1, 2> &N, double sum[2][n_pairs][2][2])
 {
@@ -127,60 +127,56 @@ LatticeGradient::LatticeGradient(const std::vector<BondFamily> &families, const 
   }
 }
 
-GradientForm LatticeGradient::evaluate(const Tensor<2, 2> &F, const Gradient &G, const Gradient &Z,
-                                       const Order order) const
+GradientResponse LatticeGradient::evaluate(const Tensor<2, 2> &F, const Gradient &G, const Order order) const
 {
   checked_determinant(F);
-  GradientForm B;
-  double by_GF[2][n_pairs][2][2] = {}, by_ZF[2][n_pairs][2][2] = {}; // [i][JK][l][M]
-  double by_GZ[n_pairs][n_pairs][n_pairs] = {};                      // [il][JK][MN]
+  GradientResponse W;
+  double by_GF[2][n_pairs][2][2] = {};          // [i][JK][l][M]
+  double by_GG[n_pairs][n_pairs][n_pairs] = {}; // [il][JK][MN]
   for (const Family &family : families_)
   {
     const Tensor<1, 2> &N = family.fibre.direction;
     const Tensor<1, 2> f = F * N;
     const BondStiffness h = stiffness(family.fibre.potential, f.norm());
-    Tensor<2, 2> by_ab = h.coupling[0] * outer_product(f, f); // second derivative of h by a and b
+    Tensor<2, 2> by_aa = h.coupling[0] * outer_product(f, f); // half the second derivative of h(a, a) by a
     for (unsigned int i = 0; i < 2; ++i)
-      by_ab[i][i] += h.across[0];
+      by_aa[i][i] += h.across[0];
     Tensor<1, 2> by_f;
     Tensor<2, 2> by_ff;
     for (unsigned int term = 0; term < 2; ++term)
     {
       const double factor = family.factor[term];
       const Tensor<2, 2> &selector = family.selector[term];
-      const Tensor<1, 2> a = selected(G, selector), b = selected(Z, selector);
-      const double ab = a * b, fa = f * a, fb = f * b;
-      B.value += factor * (h.across[0] * ab + h.coupling[0] * fa * fb);
+      const Tensor<1, 2> a = selected(G, selector);
+      const double aa = a * a, fa = f * a;
+      W.energy += 0.5 * factor * (h.across[0] * aa + h.coupling[0] * fa * fa);
       if (order == Order::value)
         continue;
-      const Tensor<1, 2> mixed = fb * a + fa * b;
-      const double by_s = h.across[1] * ab + h.coupling[1] * fa * fb; // derivative of h by s = |f|^2/2
-      by_f += factor * (by_s * f + h.coupling[0] * mixed);
-      B.by_G += factor * outer_product(h.across[0] * b + h.coupling[0] * fb * f, selector);
-      B.by_Z += factor * outer_product(h.across[0] * a + h.coupling[0] * fa * f, selector);
+      const double by_s = 0.5 * (h.across[1] * aa + h.coupling[1] * fa * fa); // derivative of h/2 by s = |f|^2/2
+      by_f += factor * (by_s * f + h.coupling[0] * fa * a);
+      W.double_stress += factor * outer_product(h.across[0] * a + h.coupling[0] * fa * f, selector);
       if (order == Order::first)
         continue;
-      Tensor<2, 2> h_by_ff = (h.across[2] * ab + h.coupling[2] * (fa * fb)) * outer_product(f, f) +
-                             h.coupling[1] * (outer_product(f, mixed) + outer_product(mixed, f)) +
-                             h.coupling[0] * (outer_product(a, b) + outer_product(b, a));
+      Tensor<2, 2> h_by_ff = 0.5 * (h.across[2] * aa + h.coupling[2] * fa * fa) * outer_product(f, f) +
+                             h.coupling[1] * fa * (outer_product(f, a) + outer_product(a, f)) +
+                             h.coupling[0] * outer_product(a, a);
       for (unsigned int i = 0; i < 2; ++i)
         h_by_ff[i][i] += by_s;
       by_ff += factor * h_by_ff;
       const auto S = pairs(selector);
-      add_stress_by_F(h, f, b, factor, S, N, by_GF);
-      add_stress_by_F(h, f, a, factor, S, N, by_ZF);
-      const auto H = pairs(by_ab);
+      add_stress_by_F(h, f, a, factor, S, N, by_GF);
+      const auto H = pairs(by_aa);
       for (unsigned int il = 0; il < n_pairs; ++il)
         for (unsigned int JK = 0; JK < n_pairs; ++JK)
           for (unsigned int MN = 0; MN < n_pairs; ++MN)
-            by_GZ[il][JK][MN] += factor * H[il] * S[JK] * S[MN];
+            by_GG[il][JK][MN] += factor * H[il] * S[JK] * S[MN];
     }
-    B.by_F += outer_product(by_f, N);
+    W.first_piola += outer_product(by_f, N);
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int J = 0; J < 2; ++J)
         for (unsigned int k = 0; k < 2; ++k)
           for (unsigned int L = 0; L < 2; ++L)
-            B.by_FF[i][J][k][L] += by_ff[i][k] * N[J] * N[L];
+            W.tangent[i][J][k][L] += by_ff[i][k] * N[J] * N[L];
   }
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int J = 0; J < 2; ++J)
@@ -188,11 +184,10 @@ GradientForm LatticeGradient::evaluate(const Tensor<2, 2> &F, const Gradient &G,
         for (unsigned int l = 0; l < 2; ++l)
           for (unsigned int M = 0; M < 2; ++M)
           {
-            B.by_GF[i][J][K][l][M] = by_GF[i][pair_of[J][K]][l][M];
-            B.by_ZF[i][J][K][l][M] = by_ZF[i][pair_of[J][K]][l][M];
+            W.double_stress_by_F[i][J][K][l][M] = by_GF[i][pair_of[J][K]][l][M];
             for (unsigned int N = 0; N < 2; ++N)
-              B.by_GZ[i][J][K][l][M][N] = by_GZ[pair_of[i][l]][pair_of[J][K]][pair_of[M][N]];
+              W.double_stress_by_G[i][J][K][l][M][N] = by_GG[pair_of[i][l]][pair_of[J][K]][pair_of[M][N]];
           }
-  return B;
+  return W;
 }
 } // namespace latcon::continuum

@@ -36,8 +36,7 @@ public:
   /// Returns the smallest l_d [m] for which the energy is positive: the longest bond over sqrt(12).
   static double smallest_length(const std::vector<BondFamily> &families);
 
-  GradientForm evaluate(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z,
-                        Order order) const override;
+  GradientResponse evaluate(const dealii::Tensor<2, 2> &F, const Gradient &G, Order order) const override;
 
 private:
   // A family contributes two terms (1/2) c h(a, a) with a_i = G_iJK S_JK, which differ in S and its factor.

@@ -26,7 +26,7 @@ PointForces remembered(const FibreMemory &law, const FibreMemory::Step &step, co
     if (order == Order::first)
       add_stress(density, law.stress(F, q));
     else
-      add_F_F(density, 0, law.tangent(step, F, q), 1.);
+      add_tangent(density, law.tangent(step, F, q));
   };
   return forces;
 }

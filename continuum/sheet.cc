@@ -63,10 +63,8 @@ void Sheet::check_input() const
   };
   require(mesh_.n_levels() > 0, "the mesh of a sheet has no cells");
   require(!has_gradient() || degree_ >= 2, "a gradient law needs elements of degree 2 or more");
-  require(!has_gradient() || normal_stiffness_ > 0.,
-          "a gradient law needs a positive normal stiffness at F = I, which scales the interior penalty");
-  require(constitution_.penalty > 0. && std::isfinite(constitution_.penalty),
-          "the interior penalty must be positive and finite");
+  require(constitution_.penalty >= 0. && std::isfinite(constitution_.penalty),
+          "the interior penalty must be finite and not negative");
   const auto ids = mesh_.get_boundary_ids();
   const auto require_edge = [&](const types::boundary_id id)
   {
@@ -128,17 +126,9 @@ void Sheet::distribute()
   conformity_constraints_.copy_from(shared_constraints(known, owned_, relevant_, communicator()));
 }
 
-double Sheet::penalty(const double extent, const double stiffness) const
+double Sheet::penalty(const double extent) const
 {
-  return constitution_.penalty * degree_ * (degree_ + 1) / extent * stiffness;
-}
-
-double Sheet::supported_stiffness() const
-{
-  // The face terms are coercive for gamma c_N of at least 0.3 times the stiffness; this is a margin for
-  // penalty_factor(), and for states that vary within a cell.
-  constexpr double smallest_penalty = 0.4;
-  return constitution_.penalty * normal_stiffness_ / smallest_penalty;
+  return constitution_.penalty * degree_ * (degree_ + 1) / extent * normal_stiffness_;
 }
 
 Sheet::Vector Sheet::lift() const

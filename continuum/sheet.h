@@ -121,13 +121,9 @@ public:
   const dealii::AffineConstraints<double> &conformity_constraints() const { return conformity_constraints_; }
   /// Returns true if there is a gradient energy, and hence face terms.
   bool has_gradient() const { return constitution_.has_gradient(); }
-  /// Returns the penalty [Pa m] gamma p (p + 1) / h times the normal stiffness, on a face of a cell that extends h =
-  /// `extent` [m] normal to it, for states that are not stiffer than supported_stiffness().
-  double penalty(double extent) const { return penalty(extent, normal_stiffness_); }
-  /// Returns the penalty of another law with that `stiffness` across the face [Pa m^2 or Pa s m^2].
-  double penalty(double extent, double stiffness) const;
-  /// Returns the stiffness [Pa m^2] of the gradient law above which penalties grow with it, eq. (C.59).
-  double supported_stiffness() const;
+  /// Returns the penalty [Pa m] gamma p (p + 1) / h times the normal stiffness of the gradient law on a face of a cell
+  /// that extends h = `extent` [m] normal to it, eq. (C.28).
+  double penalty(double extent) const;
   const dealii::IndexSet &owned() const { return owned_; }
   const dealii::IndexSet &relevant() const { return relevant_; }
   unsigned int degree() const { return degree_; }

@@ -122,32 +122,6 @@ double StaticSolver::round_off(const Evaluation &state, const Vector &u) const
          std::sqrt(dealii::Utilities::MPI::sum(sum, sheet_.communicator()));
 }
 
-// Throws if the tangent at u, with ghost entries, is positive along the Newton step with a larger penalty: then the
-// discretisation has lost its coercivity, and not the sheet its stability.
-void StaticSolver::check_penalty(const Vector &u, const Vector &step, const double load_factor) const
-{
-  if (!sheet_.has_gradient())
-    return;
-  Constitution laws = sheet_.constitution();
-  const double penalty = laws.penalty;
-  laws.penalty = 10. * std::max(penalty, Constitution(*laws.local).penalty);
-  const Sheet stabilised(sheet_.mesh(), laws, sheet_.degree(), sheet_.conditions()); // with the same unknowns
-  Sheet::Matrix K;
-  stabilised.make_matrix(homogeneous_, K);
-  stabilised.tangent(u, homogeneous_, K, load_factor);
-  Vector product = sheet_.make_owned();
-  K.vmult(product, step);
-  if (!(product * step > 0.))
-    return;
-  std::ostringstream message;
-  message
-    << "the face terms of the gradient energy have lost coercivity: the tangent is not positive definite along the "
-       "Newton step with an interior penalty gamma of "
-    << penalty << ", but it is with " << laws.penalty
-    << "; raise the penalty (Continuum/penalty of a case) or use cells that are less skewed";
-  throw LinearSolverFailed(message.str());
-}
-
 std::string StaticSolver::attempt(const double target, SolverReport &report)
 {
   const unsigned int number = report.load_steps.size() + 1;
@@ -179,8 +153,6 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     const Clock clock(report.times.linear_solve);
     const unsigned int iterations = linear_solver_->solve(matrix_, step, rhs, forcing);
     const double slope = -(rhs * step); // rhs is minus the residual, zero at constrained unknowns
-    if (rise == nullptr && !(slope < 0.))
-      check_penalty(at, step, target);
     homogeneous_.distribute(step);
     return NewtonStep{iterations, slope};
   };

@@ -94,7 +94,6 @@ private:
   void set_up();
   Evaluation evaluate(const Vector &u, double load_factor) const;
   double round_off(const Evaluation &state, const Vector &u) const;
-  void check_penalty(const Vector &u, const Vector &step, double load_factor) const;
   std::string attempt(double target, SolverReport &report);
 
   Sheet sheet_;

@@ -17,7 +17,7 @@ PointForces viscous(const Viscosity &law, const Sheet::Vector &v, const Order or
 {
   PointForces forces;
   forces.velocity = &v;
-  forces.faces = law.gradient();
+  forces.gradient = law.gradient();
   forces.load_rate = load_rate;
   forces.rate_by_displacement = rate_by_displacement;
   forces.density = [=, &law](const CellPoint &point, PointIntegrand &density)
@@ -32,9 +32,7 @@ PointForces viscous(const Viscosity &law, const Sheet::Vector &v, const Order or
     if (order == Order::first)
       add_stress(density, law.stress(F, Fdot));
     if (order == Order::second)
-      add_F_F(density, 0, law.stress_by_F(F, Fdot) + rate_by_displacement * law.stress_by_rate(F, Fdot), 1.);
-    if (law.gradient() != nullptr)
-      law.gradient()->cell_density(point.u, point.v, order, rate_by_displacement, density);
+      add_tangent(density, law.stress_by_F(F, Fdot) + rate_by_displacement * law.stress_by_rate(F, Fdot));
   };
   return forces;
 }

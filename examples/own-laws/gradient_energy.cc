@@ -25,7 +25,7 @@ namespace
 using dealii::Tensor;
 
 /// Fibres along the unit vector a of the reference configuration, with the curvature k_i = G_iJK a_J a_K:
-///   W_g = (c / 2) |k|^2,   so   B(G, Z) = c k(G) . k(Z)   and   Q_iJK = c k_i a_J a_K
+///   W_g = (c / 2) |k|^2,   so   Q_iJK = dW_g/dG_iJK = c k_i a_J a_K
 /// Gradient energy that does not depend on F.
 class BendingFibres : public continuum::GradientLaw
 {
@@ -36,20 +36,18 @@ public:
   {
   }
 
-  continuum::GradientForm evaluate(const Tensor<2, 2> &, const Gradient &G, const Gradient &Z,
-                                   continuum::Order order) const override
+  continuum::GradientResponse evaluate(const Tensor<2, 2> &, const Gradient &G, continuum::Order order) const override
   {
-    continuum::GradientForm B;
-    B.value = c_ * (curvature(G) * curvature(Z));
+    continuum::GradientResponse W;
+    W.energy = 0.5 * c_ * curvature(G).norm_square();
     if (order == continuum::Order::value)
-      return B;
-    B.by_G = c_ * outer_product(curvature(Z), aa_);
-    B.by_Z = c_ * outer_product(curvature(G), aa_);
+      return W;
+    W.double_stress = c_ * outer_product(curvature(G), aa_);
     for (unsigned int i = 0; i < 2 && order == continuum::Order::second; ++i)
       for (unsigned int J = 0; J < 2; ++J)
         for (unsigned int K = 0; K < 2; ++K)
-          B.by_GZ[i][J][K][i] = c_ * aa_[J][K] * aa_; // c delta_il a_J a_K a_M a_N
-    return B;
+          W.double_stress_by_G[i][J][K][i] = c_ * aa_[J][K] * aa_; // c delta_il a_J a_K a_M a_N
+    return W;
   }
 
 private:
@@ -63,28 +61,25 @@ private:
   Tensor<2, 2> aa_;
 };
 
-/// Checks that the form of a law that does not depend on F is consistent: Q(G) : Z = B(G, Z), and C : Z = Q(Z),
-/// for gradients that are symmetric in their last two indices. Newton's method forgives a wrong C, and only takes
-/// longer.
+/// Checks that the functions of a law that does not depend on F belong together: Q : G = 2 W_g and C : G = Q, for a
+/// gradient that is symmetric in its last two indices. Newton's method forgives a wrong C, and only takes longer.
 bool is_consistent(const continuum::GradientLaw &law)
 {
   const Tensor<2, 2> F(dealii::unit_symmetric_tensor<2>());
-  continuum::GradientLaw::Gradient G, Z;
+  continuum::GradientLaw::Gradient G;
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int J = 0; J < 2; ++J)
       for (unsigned int K = 0; K < 2; ++K)
-      {
         G[i][J][K] = 1. + 2. * i + 5. * (J + K);
-        Z[i][J][K] = 3. - 4. * i + J * K;
-      }
-  const continuum::GradientForm B = law.evaluate(F, G, Z, continuum::Order::second);
-  const double of_form = std::abs(scalar_product(B.by_Z, Z) - B.value) + std::abs(scalar_product(B.by_G, G) - B.value);
+  const continuum::GradientResponse W = law.evaluate(F, G, continuum::Order::second);
+  const double of_energy = std::abs(scalar_product(W.double_stress, G) - 2. * W.energy);
   double of_stress = 0.;
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int J = 0; J < 2; ++J)
       for (unsigned int K = 0; K < 2; ++K)
-        of_stress = std::max(of_stress, std::abs(scalar_product(B.by_GZ[i][J][K], Z) - B.by_G[i][J][K]));
-  return of_form <= 1e-13 * std::abs(B.value) && of_stress <= 1e-13 * B.by_G.norm();
+        of_stress =
+          std::max(of_stress, std::abs(scalar_product(W.double_stress_by_G[i][J][K], G) - W.double_stress[i][J][K]));
+  return of_energy <= 1e-13 * W.energy && of_stress <= 1e-13 * W.double_stress.norm();
 }
 
 /// A layer of height H [m] between plates that move by shear * H against each other.

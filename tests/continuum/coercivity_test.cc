@@ -1,12 +1,15 @@
-// Penalty of the gradient terms: coercivity where laws stiffen and cells are skewed.
+// The lifted gradient energy: never negative, and stable where laws stiffen, cells are skewed and normal gradients
+// jump.
 #include "continuum/errors.h"
 #include "continuum/meshes.h"
-#include "continuum/point_integrand.h"
 #include "sheets.h"
 
 #include <deal.II/grid/grid_tools.h>
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
 
 namespace coercivity_test
 {
@@ -30,9 +33,50 @@ public:
   }
 };
 
-// A penalty that is fixed at F = I makes the tangent indefinite where a law stiffens by more than eight times, at 80 %
-// of this load at the default, earlier at smaller ones. The equilibrium is that of a penalty that is large throughout;
-// energies differ by the error of the mesh.
+// The gradient energy is not negative at rough states, whose F and normal gradients jump by the order of one. With the
+// double traction of both sides in place of the lifting, some of them have less than -1e6 J/m at a penalty of 2.
+TEST(GradientEquilibrium, HasNoNegativeGradientEnergy)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  const continuum::LatticeGradient gradient = rubber_gradient(0.02);
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(6, 4));
+  for (const auto &[degree, roughness] : {std::pair(2u, 5e-3), std::pair(3u, 2e-3)}) // [m], on cells of 2.5 cm
+  {
+    Constitution laws(law, gradient);
+    laws.penalty = 0.;
+    const continuum::Sheet with(mesh, laws, degree), without(mesh, law, degree);
+    std::mt19937 generator(23);
+    std::uniform_real_distribution<double> rough(-roughness, roughness);
+    unsigned int n_states = 0;
+    for (int sample = 0; sample < 400; ++sample)
+    {
+      auto u = with.make_ghosted();
+      {
+        auto owned = with.make_owned();
+        with.for_each_owned_dof(
+          [&](const auto dof, const unsigned int i, const auto &X)
+          {
+            if (owned(dof) == 0.) // nodes are visited once a cell
+              owned(dof) = 0.5 * X[i] + rough(generator);
+          });
+        u = owned;
+      }
+      try
+      {
+        EXPECT_GE(with.energy(u) - without.energy(u), 0.) << degree << ' ' << sample;
+        ++n_states;
+      }
+      catch (const continuum::NonPhysicalState &)
+      {
+        // A cell is folded.
+      }
+    }
+    EXPECT_GT(n_states, 300u);
+  }
+}
+
+// psi'' is 20 times that at rest at the load. The equilibrium is independent of the penalty, and there is one without.
 TEST(GradientEquilibrium, StaysCoerciveWhereTheLawStiffens)
 {
   continuum::CauchyBorn network = rubber_network();
@@ -43,10 +87,10 @@ TEST(GradientEquilibrium, StaysCoerciveWhereTheLawStiffens)
     bonds[k].fibre.potential = fibres[k].potential = continuum::CustomPotential{law};
   network = continuum::CauchyBorn(fibres);
   const continuum::LatticeGradient gradient(bonds, continuum::LatticeGradient::smallest_length(bonds));
-  const auto energy = [&](const double penalty)
+  const auto energy = [&](const double penalty, const unsigned int cells)
   {
     Mesh mesh(MPI_COMM_SELF);
-    continuum::make_rectangle(mesh, rectangle(12, 12));
+    continuum::make_rectangle(mesh, rectangle(cells, cells));
     Constitution laws(network, gradient);
     laws.penalty = penalty;
     StaticSettings settings;
@@ -55,14 +99,14 @@ TEST(GradientEquilibrium, StaysCoerciveWhereTheLawStiffens)
     solver.solve();
     return solver.total_energy();
   };
-  const double expected = energy(20.);
-  for (const double penalty : {0.5, Constitution(network).penalty, 5.})
-    EXPECT_NEAR(energy(penalty), expected, 1e-4 * expected) << penalty;
+  const double expected = energy(0.5, 12);
+  const double error_of_mesh = std::abs(expected - energy(0.5, 24));
+  for (const double penalty : {0., 2., 20.})
+    EXPECT_NEAR(energy(penalty, 12), expected, error_of_mesh) << penalty;
 }
 
-// Cells skewed by a shear of 3 violate the inverse estimate at a quarter of the default penalty: the message says so,
-// and the default solves the sheet.
-TEST(GradientEquilibrium, NamesThePenaltyIfFaceTermsLoseCoercivity)
+// Cells skewed by a shear of 3, for which a penalty that suffices for squares would be too small.
+TEST(GradientEquilibrium, StaysCoerciveOnSkewedCells)
 {
   const continuum::CauchyBorn law = rubber_network();
   const continuum::LatticeGradient gradient = rubber_gradient(0.05);
@@ -73,55 +117,14 @@ TEST(GradientEquilibrium, NamesThePenaltyIfFaceTermsLoseCoercivity)
     [](const Point<2> &X) {
       return Tensor<1, 2>({0.1 * X[0], 0.2 * X[1] + 0.01 * std::sin(30. * X[0]) * std::sin(40. * X[1])});
     });
-  const auto solve = [&](const double penalty)
+  for (const double penalty : {0., 0.5, 20.})
   {
     Constitution laws(law, gradient);
     laws.penalty = penalty;
     StaticSettings settings;
     settings.degree = 2;
-    settings.smallest_load_step = 1. / 16.;
-    StaticSolver(mesh, laws, on_all_edges(field), settings).solve();
-  };
-  EXPECT_NO_THROW(solve(Constitution(law).penalty));
-  try
-  {
-    solve(0.5);
-    FAIL() << "the penalty is too small";
-  }
-  catch (const continuum::SolverFailed &failure)
-  {
-    EXPECT_NE(std::string(failure.what()).find("raise the penalty"), std::string::npos) << failure.what();
-  }
-}
-
-// Below the limit the penalty is that of the theory, bit for bit; the stiffness bounds the largest one in any
-// direction.
-TEST(GradientEquilibrium, HasThePenaltyOfSmallStrainUpToALimit)
-{
-  const continuum::LatticeGradient law = rubber_gradient(0.01);
-  const Tensor<2, 2> rest = matrix(1., 0., 0., 1.);
-  for (const double angle : {0., 0.3, 0.5 * pi})
-  {
-    const Tensor<1, 2> N({std::cos(angle), std::sin(angle)});
-    EXPECT_GE(law.stiffness_across(rest, N), law.normal_stiffness() * (1. - 1e-12));
-    EXPECT_LE(law.stiffness_across(rest, N), 2. * law.normal_stiffness());
-  }
-  const Tensor<1, 2> N({1., 0.});
-  continuum::FieldDerivatives one{}, other{};
-  one[0][0] = 0.01; // jump of du_x/dX
-  const auto sigma = [&](const double supported)
-  {
-    continuum::PointIntegrand d;
-    clear(d, continuum::Order::value);
-    face_density(law, {one, other}, 2, N, Tensor<1, 2>(), {true, true}, {1e3, supported}, continuum::Order::value, d);
-    return d.value / (0.5 * 0.01 * 0.01);
-  };
-  const double stiffness = 0.5 * (law.stiffness_across(matrix(1.01, 0., 0., 1.), N) + law.stiffness_across(rest, N));
-  EXPECT_DOUBLE_EQ(sigma(stiffness * 1.01), 1e3);
-  for (const double ratio : {1.1, 1.4, 2., 10., 1e3})
-  {
-    EXPECT_GE(sigma(stiffness / ratio), 0.82 * ratio * 1e3);
-    EXPECT_LE(sigma(stiffness / ratio), ratio * 1e3);
+    StaticSolver solver(mesh, laws, on_all_edges(field), settings);
+    EXPECT_EQ(solver.solve().load_steps.size(), 1u) << penalty;
   }
 }
 

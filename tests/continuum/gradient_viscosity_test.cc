@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <random>
 
@@ -14,8 +13,6 @@ namespace gradient_viscosity_test
 {
 using namespace sheets;
 using namespace latcon::continuum;
-
-using Sides = std::array<FieldDerivatives, 2>;
 
 constexpr double spacing = 0.2; // [m]
 constexpr double micro_length = 0.6 * spacing;
@@ -91,7 +88,7 @@ TEST(GradientViscosity, DissipatesTheRatesOfTheGradientsOfStretches)
     }
     PointIntegrand density;
     clear(density, Order::value);
-    law.cell_density(u, v, Order::value, 0., density);
+    law.add_density(u, v, Order::value, 0., density);
     // Differences over 1e-4 have errors of 1e-8, and round-off of 1e-16/1e-8.
     EXPECT_NEAR(density.value, expected, 1e-5 * expected);
   }
@@ -129,7 +126,7 @@ TEST(GradientViscosity, HasTheBondsDampingOfLongWavesToFourthOrder)
         v[i] = {0., 0., p[i] * K[0] * K[0], p[i] * K[1] * K[1], p[i] * K[0] * K[1]};
       PointIntegrand density;
       clear(density, Order::value);
-      viscosity.gradient()->cell_density(state, v, Order::value, 0., density);
+      viscosity.gradient()->add_density(state, v, Order::value, 0., density);
       const double sum = viscosity.dissipation(F, outer_product(p, K)) + density.value;
       return std::abs(sum / (bonds * (1. + micro_length * micro_length * K.norm_square())) - 1.);
     };
@@ -138,88 +135,60 @@ TEST(GradientViscosity, HasTheBondsDampingOfLongWavesToFourthOrder)
   }
 }
 
-// Compares first and second derivatives of a density with differences of value and first; compute(u, v, order,
-// density).
-template <class Compute>
-void expect_derivatives(const Compute &compute, const unsigned int n_sides, const double rate_by_displacement,
-                        std::mt19937 &generator)
+// First and second derivatives of the density, compared with differences of value and first. theory-continuum.md, eq.
+// (C.61).
+TEST(GradientViscosity, HasTheDerivativesOfItsDensity)
 {
-  const Sides u{random_derivatives(generator, 0.2), random_derivatives(generator, 0.2)};
-  const Sides v{random_derivatives(generator, 3.), random_derivatives(generator, 3.)};
-  const auto density = [&](const Sides &at_u, const Sides &at_v, const Order order)
+  const GradientViscosity law(dashpots(), micro_length);
+  constexpr double rate_by_displacement = 20.;
+  const auto density = [&](const FieldDerivatives &at_u, const FieldDerivatives &at_v, const Order order)
   {
     PointIntegrand d;
     clear(d, order);
-    compute(at_u, at_v, order, d);
+    law.add_density(at_u, at_v, order, rate_by_displacement, d);
     return d;
   };
-  const PointIntegrand d = density(u, v, Order::second);
-  const PointIntegrand first = density(u, v, Order::first);
-  EXPECT_EQ(density(u, v, Order::value).value, first.value);
-  support::LargestError largest_first, largest_second;
-  for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int s = 0; s < n_sides; ++s)
+  std::mt19937 generator(33);
+  for (int sample = 0; sample < 5; ++sample)
+  {
+    const FieldDerivatives u = random_derivatives(generator, 0.2), v = random_derivatives(generator, 3.);
+    const PointIntegrand d = density(u, v, Order::second);
+    const PointIntegrand first = density(u, v, Order::first);
+    EXPECT_EQ(density(u, v, Order::value).value, first.value);
+    support::LargestError largest_first, largest_second;
+    for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int c = 0; c < n_derivatives; ++c)
       {
         const double scale = c < n_first ? 1. : spacing;
-        largest_first.add(std::abs(d.first[i][s][c]) / scale);
-        largest_second.add(std::abs(d.second[i][i][s][c][s][c]) / (scale * scale));
+        largest_first.add(std::abs(d.first[i][c]) / scale);
+        largest_second.add(std::abs(d.second[i][i][c][c]) / (scale * scale));
       }
-  for (unsigned int k = 0; k < 2; ++k)
-    for (unsigned int t = 0; t < n_sides; ++t)
+    for (unsigned int k = 0; k < 2; ++k)
       for (unsigned int b = 0; b < n_derivatives; ++b)
       {
         const double scale = b < n_first ? 1. : spacing;
         const double h = 1e-5 / scale;
-        Sides up = v;
-        Sides down = v;
-        up[t][k][b] += h;
-        down[t][k][b] -= h;
-        // The value is twice R, which is quadratic in v without prescribed gradients: no error but round-off.
+        FieldDerivatives up = v, down = v;
+        up[k][b] += h;
+        down[k][b] -= h;
+        // The value is twice R, which is quadratic in v: no error but round-off.
         EXPECT_NEAR((density(u, up, Order::value).value - density(u, down, Order::value).value) / (4. * h),
-                    d.first[k][t][b], 1e-8 * largest_first.error() * scale)
-          << k << t << b;
-        Sides u_up = u;
-        Sides u_down = u;
-        u_up[t][k][b] += h;
-        u_down[t][k][b] -= h;
-        up[t][k][b] = v[t][k][b] + rate_by_displacement * h;
-        down[t][k][b] = v[t][k][b] - rate_by_displacement * h;
+                    d.first[k][b], 1e-8 * largest_first.error() * scale)
+          << k << b;
+        FieldDerivatives u_up = u, u_down = u;
+        u_up[k][b] += h;
+        u_down[k][b] -= h;
+        up[k][b] = v[k][b] + rate_by_displacement * h;
+        down[k][b] = v[k][b] - rate_by_displacement * h;
         const PointIntegrand after = density(u_up, up, Order::first);
         const PointIntegrand before = density(u_down, down, Order::first);
         for (unsigned int i = 0; i < 2; ++i)
-          for (unsigned int s = 0; s < n_sides; ++s)
-            for (unsigned int c = 0; c < n_derivatives; ++c)
-              EXPECT_NEAR((after.first[i][s][c] - before.first[i][s][c]) / (2. * h), d.second[i][k][s][c][t][b],
-                          1e-7 * largest_second.error() * scale * (c < n_first ? 1. : spacing))
-                << i << s << c << k << t << b;
+          for (unsigned int c = 0; c < n_derivatives; ++c)
+            EXPECT_NEAR((after.first[i][c] - before.first[i][c]) / (2. * h), d.second[i][k][c][b],
+                        1e-7 * largest_second.error() * scale * (c < n_first ? 1. : spacing))
+              << i << c << k << b;
       }
-}
-
-// theory-continuum.md, eq. (C.61).
-TEST(GradientViscosity, HasTheDerivativesOfItsDensityInACell)
-{
-  const GradientViscosity law(dashpots(), micro_length);
-  std::mt19937 generator(33);
-  for (int sample = 0; sample < 5; ++sample)
-    expect_derivatives([&](const Sides &u, const Sides &v, const Order order, PointIntegrand &d)
-                       { law.cell_density(u[0], v[0], order, 20., d); },
-                       1, 20., generator);
-}
-
-// theory-continuum.md, eq. (C.63).
-TEST(GradientViscosity, HasTheDerivativesOfItsDensityOnAFace)
-{
-  const GradientViscosity law(dashpots(), micro_length);
-  std::mt19937 generator(34);
-  for (const unsigned int n_sides : {1u, 2u})
-    for (const std::array<bool, 2> &held : {std::array<bool, 2>{true, true}, std::array<bool, 2>{true, false}})
-    {
-      const Tensor<1, 2> N = random_normal(generator);
-      expect_derivatives([&](const Sides &u, const Sides &v, const Order order, PointIntegrand &d)
-                         { law.face_density(u, v, n_sides, N, {}, held, 500., order, 20., d); },
-                         n_sides, 20., generator);
-    }
+  }
 }
 
 TEST(GradientViscosity, RefusesLengthsThatWouldNotDissipate)

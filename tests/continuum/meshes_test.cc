@@ -363,32 +363,27 @@ $EndElements
   EXPECT_THROW((void)continuum::n_coarse_cells(write_file("square.msh", square("1 7"))), continuum::InvalidInput);
 }
 
-// The error of the energy is smaller with a third of the unknowns of a uniform mesh.
+// The error of the energy falls faster than with the square root of the number of unknowns, its rate on uniform meshes
+// because of the singularity at the tip.
 TEST(ErrorIndicator, RefinesAtTheTipOfANotch)
 {
   const continuum::CauchyBorn law = rubber_network();
   const continuum::IsotropicGradient gradient(5e5, 0.005);
   const auto field = affine(matrix(1., 0., 0., 1.3));
   const continuum::BoundaryConditions conditions{{continuum::edge::bottom, field}, {continuum::edge::top, field}};
-  const auto start = [&](Mesh &mesh, const unsigned int refinements)
-  {
-    continuum::make_notched_rectangle(mesh, {length, height, 0.06, refinements});
-    auto solver = std::make_unique<StaticSolver>(mesh, continuum::Constitution(law, gradient), conditions);
-    solver->solve();
-    return solver;
-  };
-  Mesh everywhere(MPI_COMM_SELF), here(MPI_COMM_SELF);
-  const auto uniform = start(everywhere, 3);
-  const auto adaptive = start(here, 1);
+  Mesh here(MPI_COMM_SELF);
+  continuum::make_notched_rectangle(here, {length, height, 0.06, 1});
+  StaticSolver adaptive(here, continuum::Constitution(law, gradient), conditions);
+  adaptive.solve();
   std::vector<double> energies;
-  std::vector<dealii::types::global_dof_index> unknowns;
+  std::vector<double> unknowns;
   for (unsigned int cycle = 0; cycle < 7; ++cycle)
   {
-    adaptive->refine(here, 0.12);
-    const continuum::SolverReport report = adaptive->equilibrate();
+    adaptive.refine(here, 0.12);
+    const continuum::SolverReport report = adaptive.equilibrate();
     EXPECT_EQ(report.load_steps.size(), 1u) << report.text(); // from the interpolated state, not from zero
-    energies.push_back(adaptive->total_energy());
-    unknowns.push_back(adaptive->sheet().dof_handler().n_dofs());
+    energies.push_back(adaptive.total_energy());
+    unknowns.push_back(adaptive.sheet().dof_handler().n_dofs());
   }
   double smallest = 1.;
   double distance = 1.;
@@ -399,8 +394,9 @@ TEST(ErrorIndicator, RefinesAtTheTipOfANotch)
       distance = cell->center().distance(Point<2>(0.06, 0.));
     }
   EXPECT_LT(distance, 0.005);
-  EXPECT_LT(3 * unknowns[3], uniform->sheet().dof_handler().n_dofs());
-  EXPECT_LT(std::abs(energies[3] - energies.back()), 0.5 * std::abs(uniform->total_energy() - energies.back()));
+  // The error of the last mesh is about the last change.
+  const auto error = [&](const unsigned int cycle) { return energies[cycle] - 2. * energies[6] + energies[5]; };
+  EXPECT_GT(std::log(error(1) / error(4)) / std::log(unknowns[4] / unknowns[1]), 1.);
 }
 
 // theory-continuum.md, eq. (C.33).

@@ -21,15 +21,14 @@ Eigen::Matrix2d gradient_damping(const continuum::GradientViscosity &law, const 
       u[i][J] = F(i, J) - (i == J ? 1. : 0.);
   continuum::PointIntegrand density;
   continuum::clear(density, continuum::Order::second);
-  law.cell_density(u, {}, continuum::Order::second, 1., density);
+  law.add_density(u, {}, continuum::Order::second, 1., density);
   const double second[] = {K[0] * K[0], K[1] * K[1], K[0] * K[1]};
   Eigen::Matrix2d damping = Eigen::Matrix2d::Zero();
   for (int i = 0; i < 2; ++i)
     for (int k = 0; k < 2; ++k)
       for (unsigned int c = 0; c < 3; ++c)
         for (unsigned int e = 0; e < 3; ++e)
-          damping(i, k) +=
-            second[c] * second[e] * density.second[i][k][0][continuum::n_first + c][0][continuum::n_first + e];
+          damping(i, k) += second[c] * second[e] * density.second[i][k][continuum::n_first + c][continuum::n_first + e];
   return damping;
 }
 

@@ -173,8 +173,8 @@ void ContinuumCase::declare(Parameters &p)
   p.add("Continuum", "inertia length", inertia_length, MagnitudeOrZero{}, "m",
         "l_d of the micro-inertia and of the gradient energies lattice and network; auto: 0 without a gradient energy, "
         "fitted together with l_s for isotropic, the longest bond over sqrt(12) for the others");
-  p.add("Continuum", "penalty", penalty, Between{0.5, 1000.}, "1",
-        "gamma: interior penalty gamma p (p + 1) / h on jumps of the normal derivative");
+  p.add("Continuum", "penalty", penalty, Between{0.1, 1000.}, "1",
+        "gamma: penalty gamma p (p + 1) / h on jumps of the normal derivative");
   p.add("Continuum", "cells x", cells_x, Between{1., 65536.},
         "number of cells along x of a sheet without hole or notch");
   p.add("Continuum", "cells y", cells_y, Between{1., 65536.},

@@ -93,7 +93,7 @@ struct ContinuumCase
   ContinuumGradient gradient = ContinuumGradient::none;
   std::optional<double> static_length;  ///< l_s [m]; none: that of the lattice, averaged over directions
   std::optional<double> inertia_length; ///< l_d [m]; none: fitted with l_s, or the longest bond over sqrt(12)
-  double penalty = 2.;                  ///< gamma [-]
+  double penalty = 0.5;                 ///< gamma [-]
   unsigned int cells_x = 12;
   unsigned int cells_y = 8;
   unsigned int refinements = 2; ///< of the coarse mesh, where cells_x and cells_y do not apply

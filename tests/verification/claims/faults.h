@@ -23,13 +23,17 @@ public:
     : a_(a), b_(b), first_(std::move(first)), second_(std::move(second))
   {
   }
-  latcon::continuum::GradientForm evaluate(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z,
-                                           latcon::continuum::Order order) const override
+  latcon::continuum::GradientResponse evaluate(const dealii::Tensor<2, 2> &F, const Gradient &G,
+                                               latcon::continuum::Order order) const override
   {
-    const auto a = first_->evaluate(F, G, Z, order), b = second_->evaluate(F, G, Z, order);
+    const auto a = first_->evaluate(F, G, order), b = second_->evaluate(F, G, order);
     const auto of = [&, f = factor(F)](const auto &x, const auto &y) { return f * (a_ * x + b_ * y); };
-    return {of(a.value, b.value), of(a.by_F, b.by_F),   of(a.by_G, b.by_G),   of(a.by_Z, b.by_Z),
-            of(a.by_FF, b.by_FF), of(a.by_GF, b.by_GF), of(a.by_ZF, b.by_ZF), of(a.by_GZ, b.by_GZ)};
+    return {of(a.energy, b.energy),
+            of(a.first_piola, b.first_piola),
+            of(a.double_stress, b.double_stress),
+            of(a.tangent, b.tangent),
+            of(a.double_stress_by_F, b.double_stress_by_F),
+            of(a.double_stress_by_G, b.double_stress_by_G)};
   }
 
 protected:

@@ -150,8 +150,8 @@ double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &she
       {
         continuum::PointIntegrand density;
         clear(density, continuum::Order::value);
-        gradient->cell_density(derivatives(states[n], 1.), derivatives(rates[n], scale), continuum::Order::value, 0.,
-                               density);
+        gradient->add_density(derivatives(states[n], 1.), derivatives(rates[n], scale), continuum::Order::value, 0.,
+                              density);
         values.dissipation += density.value;
       }
     }

@@ -1,0 +1,139 @@
+#include "continuum/lifted_shapes.h"
+
+#include <deal.II/base/qprojector.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_dgq.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace dealii;
+
+namespace latcon::continuum
+{
+namespace
+{
+constexpr unsigned int whole = numbers::invalid_unsigned_int;
+}
+
+std::vector<LiftedFace> lifted_faces(const Sheet &sheet, const LiftedFace::Cell &cell)
+{
+  std::vector<LiftedFace> faces;
+  for (const unsigned int face : cell->face_indices())
+  {
+    const bool periodic = cell->has_periodic_neighbor(face);
+    if (cell->at_boundary(face) && !periodic)
+    {
+      const auto &conditions = sheet.conditions().normal_gradients;
+      const auto condition = std::find_if(conditions.begin(), conditions.end(), [&](const auto &candidate)
+                                          { return candidate.boundary == cell->face(face)->boundary_id(); });
+      if (condition != conditions.end())
+        faces.push_back({face, whole, {}, 0, whole, &*condition});
+      continue;
+    }
+    const auto neighbor = cell->neighbor_or_periodic_neighbor(face);
+    if (periodic ? cell->periodic_neighbor_is_coarser(face) : cell->neighbor_is_coarser(face))
+    {
+      const auto [neighbor_face, neighbor_subface] = periodic
+                                                       ? cell->periodic_neighbor_of_coarser_periodic_neighbor(face)
+                                                       : cell->neighbor_of_coarser_neighbor(face);
+      faces.push_back({face, whole, neighbor, neighbor_face, neighbor_subface});
+      continue;
+    }
+    const unsigned int neighbor_face = periodic ? cell->periodic_neighbor_face_no(face) : cell->neighbor_face_no(face);
+    if (!neighbor->has_children())
+    {
+      faces.push_back({face, whole, neighbor, neighbor_face});
+      continue;
+    }
+    for (unsigned int half = 0; half < 2; ++half)
+      faces.push_back({face, half,
+                       periodic ? cell->periodic_neighbor_child_on_subface(face, half)
+                                : cell->neighbor_child_on_subface(face, half),
+                       neighbor_face});
+  }
+  return faces;
+}
+
+LiftedShapes::LiftedShapes(const unsigned int degree)
+{
+  const QGauss<1> quadrature(degree + 1);
+  const QGauss<2> cell(degree + 1);
+  const FE_DGQLegendre<2> modes(degree - 1); // orthonormal polynomials on the unit cell
+  for (unsigned int face = 0; face < 4; ++face)
+    for (unsigned int part = 0; part < 3; ++part)
+    {
+      const Quadrature<2> points =
+        part == 0 ? QProjector<2>::project_to_face(ReferenceCells::Quadrilateral, quadrature, face)
+                  : QProjector<2>::project_to_subface(ReferenceCells::Quadrilateral, quadrature, face, part - 1);
+      FullMatrix<double> &values = polynomials_[face][part];
+      values.reinit(cell.size(), points.size());
+      for (unsigned int q = 0; q < values.m(); ++q)
+        for (unsigned int f = 0; f < values.n(); ++f)
+          for (unsigned int m = 0; m < modes.n_dofs_per_cell(); ++m)
+            values(q, f) += cell.weight(q) * modes.shape_value(m, cell.point(q)) * modes.shape_value(m, points.point(f));
+    }
+}
+
+ComponentDerivatives LiftedShapes::weights(const unsigned int q, const unsigned int f) const
+{
+  const double weight = -factor_ * face_->JxW[f] / cell_->JxW[q] * (*polynomial_)(q, f);
+  const Tensor<1, 2> &N = face_->normals[f];
+  return {0., 0., weight * N[0] * N[0], weight * N[1] * N[1], weight * N[0] * N[1]};
+}
+
+void LiftedShapes::reinit(const ShapeTable &cell, const ShapeTable &cell_face, const ShapeTable *neighbor_face,
+                          const LiftedFace &at, const std::size_t n_faces,
+                          const std::vector<unsigned int> &neighbor_nodes, const unsigned int stride)
+{
+  cell_ = &cell;
+  face_ = &cell_face;
+  polynomial_ = &polynomials_[at.face][at.subface == whole ? 0 : at.subface + 1];
+  factor_ = (neighbor_face != nullptr ? 0.5 : 1.) * static_cast<double>(n_faces);
+  stride_ = stride;
+
+  jump_.assign(cell_face.n_points * stride, 0.);
+  for (unsigned int f = 0; f < cell_face.n_points; ++f)
+    for (unsigned int J = 0; J < 2; ++J)
+    {
+      const double N = cell_face.normals[f][J];
+      double *jump = &jump_[f * stride];
+      for (unsigned int a = 0; a < cell_face.stride; ++a)
+        jump[a] += N * cell_face.row(f, J)[a];
+      for (std::size_t a = 0; a < neighbor_nodes.size(); ++a)
+        jump[neighbor_nodes[a]] -= N * neighbor_face->row(f, J)[a];
+    }
+
+  basis_.assign(cell.n_points * n_derivatives * stride, 0.);
+  for (unsigned int q = 0; q < cell.n_points; ++q)
+  {
+    double *rows = &basis_[q * n_derivatives * stride];
+    for (unsigned int c = 0; c < n_derivatives; ++c)
+      std::copy(cell.row(q, c), cell.row(q, c) + cell.stride, rows + c * stride);
+    for (unsigned int f = 0; f < cell_face.n_points; ++f)
+    {
+      // On straight faces most polynomials vanish at most points.
+      constexpr double rounding = 1e-13;
+      if (std::abs((*polynomial_)(q, f)) < rounding)
+        continue;
+      const ComponentDerivatives weight = weights(q, f);
+      for (unsigned int c = n_first; c < n_derivatives; ++c)
+        if (weight[c] != 0.)
+          for (unsigned int a = 0; a < stride; ++a)
+            rows[c * stride + a] += weight[c] * jump(f)[a];
+    }
+  }
+}
+
+ComponentDerivatives LiftedShapes::lift(const unsigned int q, const std::vector<double> &values) const
+{
+  ComponentDerivatives sum{};
+  for (std::size_t f = 0; f < values.size(); ++f)
+  {
+    const ComponentDerivatives weight = weights(q, f);
+    for (unsigned int c = n_first; c < n_derivatives; ++c)
+      sum[c] += weight[c] * values[f];
+  }
+  return sum;
+}
+} // namespace latcon::continuum
