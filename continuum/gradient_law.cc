@@ -1,8 +1,9 @@
 #include "continuum/gradient_law.h"
 
+#include "support/largest_error.h"
+
 #include <deal.II/base/symmetric_tensor.h>
 
-#include <algorithm>
 #include <cmath>
 
 using dealii::Tensor;
@@ -29,7 +30,8 @@ double GradientLaw::normal_stiffness() const
             for (unsigned int M = 0; M < 2; ++M)
               for (unsigned int N = 0; N < 2; ++N)
                 A[i][l] += C[i][J][K][l][M][N] * n[J] * n[K] * n[M] * n[N];
-    largest = std::max(largest, 0.5 * (A[0][0] + A[1][1]) + std::hypot(0.5 * (A[0][0] - A[1][1]), A[0][1]));
+    largest = support::largest_of(
+      {largest, 0.5 * (A[0][0] + A[1][1]) + std::hypot(0.5 * (A[0][0] - A[1][1]), A[0][1])}); // keeps what is no number
   }
   return largest;
 }

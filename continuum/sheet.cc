@@ -63,6 +63,7 @@ void Sheet::check_input() const
   };
   require(mesh_.n_levels() > 0, "the mesh of a sheet has no cells");
   require(!has_gradient() || degree_ >= 2, "a gradient law needs elements of degree 2 or more");
+  require(std::isfinite(normal_stiffness_), "a gradient law needs a finite normal stiffness at F = I");
   require(constitution_.penalty >= 0. && std::isfinite(constitution_.penalty),
           "the interior penalty must be finite and not negative");
   const auto ids = mesh_.get_boundary_ids();
