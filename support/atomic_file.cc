@@ -142,6 +142,14 @@ void write_atomically(const fs::path &place, std::string_view text, Sync sync)
   file.commit(sync);
 }
 
+void create_folders(const fs::path &folder)
+{
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw OutputError(folder, error.message());
+}
+
 std::size_t remove_stale_parts(const fs::path &folder, fs::file_time_type moment)
 {
   std::size_t n_removed = 0;

@@ -59,6 +59,9 @@ private:
 /// Replaces the file `place` atomically by `text`. @throws OutputError
 void write_atomically(const std::filesystem::path &place, std::string_view text, Sync sync);
 
+/// Creates a folder and those above it, unless they exist. @throws OutputError
+void create_folders(const std::filesystem::path &folder);
+
 /// Removes the parts in `folder` that were last written before `moment`, which must be earlier than all writes of
 /// processes that still run. In a folder that only this process writes (FolderLock) any moment will do.
 /// @return number of removed parts; parts that cannot be removed are skipped

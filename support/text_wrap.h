@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdio>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,15 @@ template <class... Numbers>
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), format, numbers...);
   return text.data();
+}
+
+/// Returns texts and numbers one after the other, as a stream writes them.
+template <class... Parts>
+[[nodiscard]] std::string text_of(const Parts &...parts)
+{
+  std::ostringstream text;
+  (text << ... << parts);
+  return text.str();
 }
 
 /// Breaks a text into lines of at most `width` columns, between words where possible. Replaces control characters,

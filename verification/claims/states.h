@@ -3,13 +3,13 @@
 
 #include <cmath>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "support/largest_error.h"
+#include "support/text_wrap.h"
 #include "verification/bridge/subject.h"
 #include "verification/claims/claim_inputs.h"
 #include "verification/output/results.h"
@@ -26,12 +26,8 @@ inline std::string state_name(const Eigen::Matrix2d &F)
 {
   if (F.isIdentity(1e-12))
     return "F = I";
-  std::ostringstream text;
-  text << "F = (" << F(0, 0) << ", " << F(1, 1);
-  if (F(0, 1) != 0.)
-    text << ", shear " << F(0, 1);
-  text << ")";
-  return text.str();
+  return support::text_of("F = (", F(0, 0), ", ", F(1, 1), F(0, 1) != 0. ? support::text_of(", shear ", F(0, 1)) : "",
+                          ")");
 }
 
 /// Deformation gradients about which waves are evaluated: undeformed; in the full version stretched equally along both
@@ -51,18 +47,16 @@ inline std::vector<Eigen::Matrix2d> wave_states(const bridge::Subject &subject, 
 /// loaded sheet assumes. The error is the distance of the smallest w^2 / k^2 below zero.
 inline output::Result stability_row(const bridge::Subject &subject, const std::string &claim)
 {
-  std::ostringstream quantity;
-  quantity << subject.name << ": stability of the loaded lattice, smallest w^2/k^2 of all waves over c_S^2 at F = I";
+  std::string quantity =
+    subject.name + ": stability of the loaded lattice, smallest w^2/k^2 of all waves over c_S^2 at F = I";
+  const Eigen::Vector2d &K = subject.slowest_wave.wave_vector;
   if (!subject.is_stable())
-  {
-    const Eigen::Vector2d &K = subject.slowest_wave.wave_vector;
-    quantity << "; it buckles in waves of kd = " << std::round(100. * K.norm() * subject.spacing) / 100. << " at "
-             << std::lround(std::atan2(K.y(), K.x()) * 180. / M_PI) << " degrees";
-  }
+    quantity += support::text_of("; it buckles in waves of kd = ", std::round(100. * K.norm() * subject.spacing) / 100.,
+                                 " at ", std::lround(std::atan2(K.y(), K.x()) * 180. / M_PI), " degrees");
   const double smallest = subject.slowest_wave.squared_speed / std::pow(subject.theory.shear_speed, 2);
   // At zero the lattice is about to buckle, and counts as unstable.
   const double error = subject.is_stable() ? 0. : support::largest_of({-smallest, 1e-15});
-  return {claim, quantity.str(), "1", smallest, {}, {}, error, {0., "a sign"}};
+  return {claim, quantity, "1", smallest, {}, {}, error, {0., "a sign"}};
 }
 
 /// Returns by how much the first order that the gradient continuum leaves out, (k l)^4 / 480 of the speed for a bond of

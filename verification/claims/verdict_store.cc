@@ -165,10 +165,7 @@ std::string verdicts_file(const std::string &folder, const VerdictKey &key)
 
 void store_verdicts(const std::string &folder, const VerdictKey &key, const Verdicts &verdicts)
 {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw support::OutputError(folder, error.message());
+  support::create_folders(folder);
   // Other runs may be writing here, for milliseconds; older parts were left by killed runs.
   support::remove_stale_parts(folder, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
   output::write_file(verdicts_file(folder, key), verdicts_text(key, verdicts));

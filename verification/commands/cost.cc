@@ -7,6 +7,7 @@
 
 #include "support/errors.h"
 #include "support/ranks.h"
+#include "support/text_wrap.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/commands/command.h"
 
@@ -24,9 +25,7 @@ constexpr double bytes_of_site_on_disk = 380.;
 
 std::string seconds_text(double seconds)
 {
-  std::ostringstream text;
-  text << std::ceil(seconds) << " s";
-  return text.str();
+  return support::text_of(std::ceil(seconds), " s");
 }
 
 // Output of `--dry-run` without memory; the sheet must fit into the memory. Collective.

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -167,10 +166,7 @@ support::ExitCode init(const input::Options &options, const std::string &directo
     throw support::InputError("cannot read the starting case " + source + ": " + start.problem);
   if (support::is_root_rank() && !options.dry_run)
   {
-    std::error_code error;
-    fs::create_directories(directory, error);
-    if (error)
-      throw support::OutputError(directory, error.message());
+    support::create_folders(directory);
     support::write_atomically(file, start.text, support::Sync::yes);
     const std::string path = file.string();
     if (!options.quiet)

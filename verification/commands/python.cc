@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "support/atomic_file.h"
 #include "support/child_process.h"
 #include "support/errors.h"
 #include "support/ranks.h"
@@ -174,10 +175,7 @@ support::ExitCode report(const input::Options &options, const std::string &direc
     words.emplace_back("--animation");
   if (!options.output_dir.empty())
   {
-    std::error_code error;
-    std::filesystem::create_directories(options.output_dir, error);
-    if (error)
-      throw support::OutputError(options.output_dir, error.message());
+    support::create_folders(options.output_dir);
     words.insert(words.end(), {"--output-dir", options.output_dir});
   }
   const auto lock = lock_directory(options.output_dir.empty() ? directory : options.output_dir);

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "continuum/meshes.h"
 #include "continuum/rectangle.h"
 #include "support/errors.h"
 #include "support/ranks.h"
+#include "support/text_wrap.h"
 
 namespace latcon::resources
 {
@@ -96,12 +96,9 @@ ContinuumSize continuum_size(const input::Case &input)
     size.coarse_unknowns = unknowns(coarse);
   }
   if (size.final_unknowns > max_unknowns)
-  {
-    std::ostringstream text;
-    text << "the finite element mesh would have about " << size.final_unknowns
-         << " unknowns, more than the limit of 2147483647; give fewer cells, refinements or adaptive cycles";
-    throw support::InputError(text.str());
-  }
+    throw support::InputError(support::text_of(
+      "the finite element mesh would have about ", size.final_unknowns,
+      " unknowns, more than the limit of 2147483647; give fewer cells, refinements or adaptive cycles"));
   return size;
 }
 

@@ -12,6 +12,7 @@
 #include "support/machine_memory.h"
 #include "support/ranks.h"
 #include "support/task_thread.h"
+#include "support/text_wrap.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/bridge/small_strain.h"
 #include "verification/output/near_tip_record.h"
@@ -252,10 +253,8 @@ void check_steps(const input::Case &input, const double step, input::Parameters 
 {
   if (input.end_time / step <= max_steps)
     return;
-  std::ostringstream text;
-  text << "the run would take " << input.end_time / step << " time steps of " << step << " s, more than the limit of "
-       << max_steps;
-  parameters.error("Time/end", text.str());
+  parameters.error("Time/end", support::text_of("the run would take ", input.end_time / step, " time steps of ", step,
+                                                " s, more than the limit of ", max_steps));
 }
 
 } // namespace latcon::resources

@@ -1,7 +1,6 @@
 #include "verification/claims/energy/energy_claim.h"
 
 #include <cmath>
-#include <sstream>
 
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
@@ -181,10 +180,9 @@ void travelling(const bridge::Subject &subject, const Eigen::Matrix2d &F, double
                elements.kinetic - elements.micro_inertia, elements.micro_inertia, 0.5 * theory});
     if (wanted_kd != judged_kd)
       continue; // for the plot
-    std::ostringstream where;
-    where << subject.name << ", travelling " << wave_names[w] << " wave about " << state_name(F)
-          << ", kd = " << std::round(1e3 * kd) / 1e3 << ": ";
-    const Rows rows(outcome.results, "energy", where.str());
+    const Rows rows(outcome.results, "energy",
+                    support::text_of(subject.name, ", travelling ", wave_names[w], " wave about ", state_name(F),
+                                     ", kd = ", std::round(1e3 * kd) / 1e3, ": "));
     // Harmonic waves share their energy equally.
     const double of_step = 0.25 * std::pow(0.25 * M_PI / least_steps, 2);
     const output::Tolerance tolerance{
@@ -227,11 +225,8 @@ ClaimOutcome wave_energy_claim(const bridge::Subject &subject, const WaveEnergyO
     rows.attempt("sinusoidal field about " + state_name(F), [&] { sinusoidal(subject, F, options, outcome); });
   for (const Eigen::Matrix2d &F : options.states)
     for (const double kd : options.kd)
-    {
-      std::ostringstream part;
-      part << "travelling waves about " << state_name(F) << ", kd = " << kd;
-      rows.attempt(part.str(), [&] { travelling(subject, F, kd, options.travelling_mesh, outcome); });
-    }
+      rows.attempt(support::text_of("travelling waves about ", state_name(F), ", kd = ", kd),
+                   [&] { travelling(subject, F, kd, options.travelling_mesh, outcome); });
   return outcome;
 }
 

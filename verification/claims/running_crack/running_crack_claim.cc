@@ -2,7 +2,6 @@
 
 #include <cctype>
 #include <functional>
-#include <sstream>
 
 #include "support/fits.h"
 #include "support/largest_error.h"
@@ -146,8 +145,7 @@ private:
     const bool is_local = name == judged, is_judged = subject_.judges(bridge::Law::mooney_rivlin_network);
     const double d = subject_.spacing, leaves_out = anisotropy(fine);
     const double ahead = effective_tip(lattice_.field, fine, far_, d);
-    std::ostringstream annulus;
-    annulus << far_from << " d <= r <= " << options_.far << " d";
+    const std::string annulus = support::text_of(far_from, " d <= r <= ", options_.far, " d");
     for (const Quantity &quantity : quantities())
     {
       const double discretisation = far_.distance(fine, coarse, quantity);
@@ -158,9 +156,9 @@ private:
         output::limited(discretisation + tip + leaves_out, 0.01, largest_far_tolerance,
                         "change of the mesh, which bounds an error of first order; change by a tip that is d/2 ahead; "
                         "anisotropy of the bonds at the strains of the far field");
-      rows.add(quantity.name + ", " + annulus.str() + ", " + name + " continuum against lattice", "1", {}, error,
+      rows.add(quantity.name + ", " + annulus + ", " + name + " continuum against lattice", "1", {}, error,
                is_local && !quantity.on_flank ? allowed : output::Tolerance(), is_judged);
-      rows.add(quantity.name + ", " + annulus.str() + ", " + name + at_effective_tip, "1", {}, at_tip);
+      rows.add(quantity.name + ", " + annulus + ", " + name + at_effective_tip, "1", {}, at_tip);
       outcome
         .table("running_crack_far",
                {"shells", "law", "quantity", "error", "at_effective_tip", "discretisation", "tip", "anisotropy"})
@@ -179,13 +177,12 @@ private:
   void report(const std::string &name, const TipRun &coarse, const TipRun &fine, double ahead)
   {
     const double d = subject_.spacing;
-    std::ostringstream annulus;
-    annulus << near_from << " d <= r <= " << near_to << " d";
+    const std::string annulus = support::text_of(near_from, " d <= r <= ", near_to, " d");
     for (const Quantity &quantity : quantities())
     {
-      const std::string where = quantity.name + ", " + annulus.str() + ", " + name + " continuum: ";
+      const std::string where = quantity.name + ", " + annulus + ", " + name + " continuum: ";
       rows.add(where + "against lattice", "1", {}, near_.distance(lattice_.field, fine.field, quantity));
-      rows.add(quantity.name + ", " + annulus.str() + ", " + name + at_effective_tip, "1", {},
+      rows.add(quantity.name + ", " + annulus + ", " + name + at_effective_tip, "1", {},
                near_.distance(lattice_.field, fine.field, quantity, ahead * d));
       rows.add(where + "mesh against one of twice the size", "1", {},
                near_.distance(fine.field, coarse.field, quantity));
@@ -205,11 +202,10 @@ private:
     {
       const StressLobes lattice = stress_lobes(lattice_.field, radius * d),
                         continuum = stress_lobes(fine.field, radius * d);
-      std::ostringstream at;
-      at << " at r = " << radius << " d";
-      pair("opening stress straight ahead" + at.str(), "Pa", lattice.ahead, continuum.ahead);
-      pair("lobes of the opening stress, largest over straight ahead" + at.str(), "1", lattice.ratio, continuum.ratio);
-      rows.add("lobes of the opening stress, angle of the largest" + at.str() + ", " + name + " continuum", "deg",
+      const std::string at = support::text_of(" at r = ", radius, " d");
+      pair("opening stress straight ahead" + at, "Pa", lattice.ahead, continuum.ahead);
+      pair("lobes of the opening stress, largest over straight ahead" + at, "1", lattice.ratio, continuum.ratio);
+      rows.add("lobes of the opening stress, angle of the largest" + at + ", " + name + " continuum", "deg",
                of_both(lattice.angle, continuum.angle), std::abs(lattice.angle - continuum.angle));
     }
     pair("energy lost by the sheet per length of crack", "J/m^2", lattice_.energy.lost, fine.energy.lost);

@@ -3,12 +3,12 @@
 #include <array>
 #include <future>
 #include <limits>
-#include <sstream>
 #include <utility>
 
 #include <omp.h>
 
 #include "support/largest_error.h"
+#include "support/text_wrap.h"
 #include "verification/claims/claim_list.h"
 
 namespace latcon::claims
@@ -86,9 +86,7 @@ double sensitivity(const CrackStrip &strip, double speed)
 
 std::string place(double viscosity, double driving)
 {
-  std::ostringstream text;
-  text << ", beta " << viscosity << ", Delta/Delta_G " << driving;
-  return text.str();
+  return support::text_of(", beta ", viscosity, ", Delta/Delta_G ", driving);
 }
 
 void add_run(ClaimOutcome &outcome, const CrackRunOptions &options, const TheoryComparison &comparison,

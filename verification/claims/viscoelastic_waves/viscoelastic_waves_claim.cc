@@ -1,7 +1,6 @@
 #include "verification/claims/viscoelastic_waves/viscoelastic_waves_claim.h"
 
 #include <cmath>
-#include <sstream>
 
 #include "support/largest_error.h"
 #include "verification/bridge/homogenisation.h"
@@ -73,10 +72,8 @@ public:
     const bridge::MemoryWave wave = theory(cell, material, w);
     const double lowest = rubbery(cell, material, w), highest = glassy(cell, material, w);
     ElementWave run{{unknown, unknown, 0.}, unknown, unknown};
-    std::ostringstream where;
-    where << part << (has_elements_ ? ", finite elements" : "") << ", wave " << wave_names[w]
-          << ", w tau = " << scaled_time;
-    rows.attempt(where.str(),
+    rows.attempt(support::text_of(part, has_elements_ ? ", finite elements" : "", ", wave ", wave_names[w],
+                                  ", w tau = ", scaled_time),
                  [&]
                  {
                    const lattice::Material planted = options_.planted(material);

@@ -1,7 +1,6 @@
 #include "verification/claims/wave_speeds/wave_speeds_claim.h"
 
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "support/largest_error.h"
@@ -62,10 +61,9 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
       std::array<double, 2> run{unknown, unknown}, elements = run;
       const auto attempt = [&](const std::string &side, const std::function<void()> &compute)
       {
-        std::ostringstream where;
-        where << side << ", waves at " << std::lround(angle(direction, subject.orientation))
-              << " degrees, kd = " << options.kd[i];
-        rows.attempt(where.str(), compute);
+        rows.attempt(support::text_of(side, ", waves at ", std::lround(angle(direction, subject.orientation)),
+                                      " degrees, kd = ", options.kd[i]),
+                     compute);
       };
       attempt("lattice run", [&] { run = frequencies(lattice_waves(cell, of_runs, F)); });
       attempt("finite elements",
@@ -223,9 +221,9 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
   WaveContinuum medium = SubjectContinua(subject).gradient;
   medium.viscosity = bridge::homogenised_viscosity(any, material, subject.lengths.lattice);
   const std::array<bridge::PlaneWave, 2> theory = damped(cell.K), kelvin = continuum_waves(medium, F, cell.K);
-  std::ostringstream where;
-  where << subject.name << ", " << state_name(F) << ", kd = " << std::round(1e4 * k * subject.spacing) / 1e4 << ": ";
-  const Rows rows(outcome.results, "wave-speeds", where.str());
+  const Rows rows(
+    outcome.results, "wave-speeds",
+    support::text_of(subject.name, ", ", state_name(F), ", kd = ", std::round(1e4 * k * subject.spacing) / 1e4, ": "));
   // If a wave does not oscillate, its rows fail.
   std::array<Oscillation, 2> run{{{unknown, unknown, 0.}, {unknown, unknown, 0.}}}, elements = run;
   rows.attempt("lattice run, damped waves",
