@@ -104,8 +104,6 @@ void record_exit_code(support::ExitCode exit_code, const std::string &message)
     record->write_log();
 }
 
-Run::Run(const input::Options &options, const input::Parameters &parameters) : Run(options, &parameters) {}
-
 Run::Run(const input::Options &options, const input::Parameters *parameters)
   : record_(std::make_shared<Record>(options)), directory_(options.output_dir), is_root_(support::is_root_rank()),
     is_verbose_(is_root_ && !options.quiet), prints_all_(options.verbose), resumes_(options.resume),
@@ -121,10 +119,7 @@ Run::Run(const input::Options &options, const input::Parameters *parameters)
   }
   if (is_root_)
   {
-    std::error_code error;
-    std::filesystem::create_directories(directory_, error);
-    if (error)
-      throw support::OutputError(directory_, error.message());
+    support::create_folders(directory_);
     record_->lock = lock_directory(directory_);
     clear(options, parameters != nullptr);
     if (parameters != nullptr)

@@ -95,12 +95,10 @@ class Run
 public:
   /// Creates and locks the directory, moves files of an earlier run aside (see output_file.h) unless this one resumes,
   /// and writes case.prm and run.json. To be constructed once the input is known to be valid.
+  /// @param parameters of its case; null: none, and no case.prm
   /// @throws InputError if another process writes to the directory, or case.prm would replace the user's own case:
   /// nothing is written then @throws OutputError
-  Run(const input::Options &options, const input::Parameters &parameters);
-
-  /// Creates the directory of a run without a case: run.json alone.
-  explicit Run(const input::Options &options) : Run(options, nullptr) {}
+  Run(const input::Options &options, const input::Parameters *parameters);
 
   /// Reports the checkpoint from which the run continues, in words and in run.json.
   void record_checkpoint(const output::Checkpoints &checkpoints);
@@ -120,7 +118,6 @@ public:
   support::ExitCode end(const output::Results &results, support::ExitCode exit_code);
 
 private:
-  Run(const input::Options &options, const input::Parameters *parameters);
   // Moves the files of an earlier run aside, unless this run resumes.
   void clear(const input::Options &options, bool has_case) const;
   void print(const output::Results &results) const;

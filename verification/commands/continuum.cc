@@ -77,7 +77,7 @@ support::ExitCode run_continuum(const input::Options &options)
   }
   require_time(options, seconds);
   output::Checkpoints checkpoints(options, parameters, input, "continuum");
-  Run run(options, parameters);
+  Run run(options, &parameters);
   run.record_checkpoint(checkpoints);
   try
   {

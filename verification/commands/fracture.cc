@@ -225,7 +225,7 @@ support::ExitCode run_fracture(const input::Options &options)
 
   output::Checkpoints checkpoints(options, parameters, input,
                                   options.on_continuum ? "fracture --side continuum" : "fracture");
-  Run run(options, parameters);
+  Run run(options, &parameters);
   run.record_checkpoint(checkpoints);
   if (options.on_continuum)
   {

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "support/ranks.h"
-#include "verification/bridge/small_strain.h"
 #include "verification/claims/verdict_store.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
@@ -84,40 +83,26 @@ Stored look_up(const input::Case &input, const std::vector<claims::Claim> &requi
   return stored;
 }
 
-void append(std::string &note, const std::string &more)
+// Keeps verdicts if there is a folder. @return why they could not be kept; empty: no problem
+std::string keep(const claims::VerdictKey &key, const claims::Verdicts &verdicts,
+                 const std::optional<std::string> &folder)
 {
-  note += (note.empty() ? "" : "; ") + more;
-}
-
-// Returns whether the verdicts were kept; if not, says why.
-bool keep(const claims::VerdictKey &key, const claims::Verdicts &verdicts, const std::optional<std::string> &folder,
-          std::string &note)
-{
-  if (!folder)
-    return false;
   try
   {
-    claims::store_verdicts(*folder, key, verdicts);
-    return true;
+    if (folder)
+      claims::store_verdicts(*folder, key, verdicts);
+    return "";
   }
   catch (const support::OutputError &error)
   {
-    append(note, std::string("the verdicts are not kept: ") + error.what());
-    return false;
+    return std::string("the verdicts are not kept: ") + error.what();
   }
 }
 
-// Verdicts of some claims, checked now or reused.
-struct Group
-{
-  claims::Verdicts verdicts;
-  nlohmann::ordered_json record;  // of run.json
-  std::string note, origin;       // messages; the first may be empty
-  std::string refusal;            // addition to the message that the claims do not hold; empty: none
-};
-
-Group verified(const input::Case &input, const std::vector<claims::Claim> &required, const bridge::Laws &laws,
-               const Run &run)
+// Checks claims, or reuses their verdicts; reports which of the two, and writes the tables.
+// @return the rows, and an addition to the message that they do not hold
+std::pair<output::Results, std::string> verified(const input::Case &input, const std::vector<claims::Claim> &required,
+                                                 const bridge::Laws &laws, Run &run)
 {
   const std::optional<std::string> folder = claims::verdicts_folder_of_user();
   Stored stored = run.is_root() ? look_up(input, required, laws, folder) : Stored();
@@ -135,38 +120,47 @@ Group verified(const input::Case &input, const std::vector<claims::Claim> &requi
       if (const std::string problem = verdicts.acceptance_problem(required); !problem.empty())
         verdicts.results.add(output::not_computed(required.front().name, "rows that a crack waits for", problem));
     if (run.is_root() && !key.text.empty())
-      kept = keep(key, verdicts, folder, stored.note);
+    {
+      const std::string problem = keep(key, verdicts, folder);
+      kept = folder && problem.empty();
+      stored.note += (stored.note.empty() || problem.empty() ? "" : "; ") + problem;
+    }
   }
 
-  Group group{std::move(verdicts), {}, stored.note, {}, {}};
-  group.record = {
-    {"hash", key.text.empty() ? "" : key.hash}, {"reused", reused}, {"checked_at", group.verdicts.checked_at}};
+  const bool about_program = required.front().is_about_program;
+  nlohmann::ordered_json record = {
+    {"hash", key.text.empty() ? "" : key.hash}, {"reused", reused}, {"checked_at", verdicts.checked_at}};
   if (!stored.note.empty())
-    group.record["note"] = stored.note;
-  group.origin = reused ? "verdicts of " + group.verdicts.checked_at + ", hash " + key.hash + ", reused"
-                        : "checked now" + (kept ? ", hash " + key.hash + ", kept" : std::string());
-  if (reused)
-    group.refusal = " (" + group.origin + "; to have them checked again, delete " +
-                    claims::verdicts_file(folder.value_or(""), key) + ")";
-  return group;
+    record["note"] = stored.note;
+  run.info().add(about_program ? "verification_of_program" : "verification", record);
+  const std::string origin = reused ? "verdicts of " + verdicts.checked_at + ", hash " + key.hash + ", reused"
+                                    : "checked now" + (kept ? ", hash " + key.hash + ", kept" : std::string());
+  if (run.is_verbose())
+    for (const std::string &message : {stored.note, origin})
+      if (!message.empty())
+        std::cout << (about_program ? "program: " : "claims: ") << message << std::endl;
+  if (run.is_root())
+    verdicts.write_tables(run.directory());
+  return {verdicts.results, !reused ? ""
+                                    : " (" + origin + "; to have them checked again, delete " +
+                                        claims::verdicts_file(folder.value_or(""), key) + ")"};
 }
 
 } // namespace
 
 std::string keep_for_cracks(const input::Case &input, const claims::Claim &claim, const claims::ClaimOutcome &outcome)
 {
-  std::string note;
-  if (claim.is_about_program)
-    try
-    {
-      keep(claims::verdict_key(input, {claim}, {}, quick, support::n_ranks()), claims::Verdicts(outcome),
-           claims::verdicts_folder_of_user(), note);
-    }
-    catch (const std::exception &error)
-    {
-      append(note, std::string("no verdicts are kept: ") + error.what());
-    }
-  return note;
+  if (!claim.is_about_program)
+    return "";
+  try
+  {
+    return keep(claims::verdict_key(input, {claim}, {}, quick, support::n_ranks()), claims::Verdicts(outcome),
+                claims::verdicts_folder_of_user());
+  }
+  catch (const std::exception &error)
+  {
+    return std::string("no verdicts are kept: ") + error.what();
+  }
 }
 
 output::Results require_verified(const input::Case &input, const std::vector<claims::Claim> &required,
@@ -183,19 +177,9 @@ output::Results require_verified(const input::Case &input, const std::vector<cla
                  [&](const claims::Claim &claim) { return claim.is_about_program == about_program; });
     if (part.empty())
       continue;
-    const Group group = verified(input, part, laws, run);
-    run.info().add(about_program ? "verification_of_program" : "verification", group.record);
-    if (run.is_verbose())
-    {
-      const std::string whose = about_program ? "program: " : "claims: ";
-      if (!group.note.empty())
-        std::cout << whose << group.note << "\n";
-      std::cout << whose << group.origin << std::endl;
-    }
-    if (run.is_root())
-      group.verdicts.write_tables(run.directory());
-    results.add(group.verdicts.results);
-    if (group.verdicts.results.all_hold())
+    const auto [of_part, refusal] = verified(input, part, laws, run);
+    results.add(of_part);
+    if (of_part.all_hold())
       continue;
     run.end(results, support::ExitCode::claim_failed);
     constexpr std::size_t most_failing_rows = 8;
@@ -204,7 +188,7 @@ output::Results require_verified(const input::Case &input, const std::vector<cla
     throw support::ClaimFailed(std::string("no crack was run: ") +
                                (about_program ? "this program fails its verification"
                                               : "the material and pre-stretch of this case fail their verification") +
-                               group.refusal + "\n" + rows);
+                               refusal + "\n" + rows);
   }
   return results;
 }

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <iostream>
 
 #include <nlohmann/json.hpp>
 
@@ -104,7 +103,7 @@ support::ExitCode run_lattice(const input::Options &options)
                     moves ? resources::RunKind::dynamics : resources::RunKind::equilibrium))
     return support::ExitCode::done;
   output::Checkpoints checkpoints(options, parameters, input, "lattice");
-  Run run(options, parameters);
+  Run run(options, &parameters);
   run.record_checkpoint(checkpoints);
   output::Results results;
   const auto state_of = [&](const lattice::RowPartition &band)

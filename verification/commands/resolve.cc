@@ -170,7 +170,7 @@ support::ExitCode verify_before_cracks(const input::Options &options)
   input::Parameters parameters;
   read_case(options, input, parameters);
   parameters.finish();
-  Run run(options);
+  Run run(options, nullptr);
   const output::Results results =
     require_verified(input, claims_before_fracture(input.material(), input.nonlocal.is_used),
                      bridge::laws_of_lattice(), run);

@@ -21,7 +21,7 @@ support::ExitCode verify(const input::Options &options)
     print_dry_run(options, parameters.resolved_text());
     return support::ExitCode::done;
   }
-  Run run(options, parameters);
+  Run run(options, &parameters);
   run.info().add("laws", options.laws_of_case ? "case" : "all");
   if (run.is_verbose() && options.laws_of_case)
     std::cout << "Judged are the laws on which the case relies; --laws all judges every law of the continuum"

@@ -64,16 +64,7 @@ std::string table_number(const Value &value, const int digits)
 
 std::string to_string(const Verdict verdict)
 {
-  switch (verdict)
-  {
-  case Verdict::holds:
-    return "holds";
-  case Verdict::reported:
-    return "reported";
-  case Verdict::fails:
-    break;
-  }
-  return "fails";
+  return verdict == Verdict::holds ? "holds" : verdict == Verdict::reported ? "reported" : "fails";
 }
 
 std::string to_string(const RowKind kind)
