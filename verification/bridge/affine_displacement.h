@@ -36,9 +36,9 @@ private:
 class FieldFunction : public dealii::AutoDerivativeFunction<2>
 {
 public:
-  /// @param extent length of the sheet [m], the scale on which the field varies
-  FieldFunction(const input::FieldCase &field, double extent)
-    : dealii::AutoDerivativeFunction<2>(1e-3 * extent, 2), field_(field.field())
+  /// @param extent length of the sheet [m], the scale on which the field varies @param F of components "loading"
+  FieldFunction(const input::FieldCase &field, double extent, const Eigen::Matrix2d &F = Eigen::Matrix2d::Identity())
+    : dealii::AutoDerivativeFunction<2>(1e-3 * extent, 2), field_(field.field(F))
   {
     set_formula(dealii::AutoDerivativeFunction<2>::FourthOrder);
   }

@@ -1,7 +1,6 @@
 #include "verification/bridge/continuum_model.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include <deal.II/base/bounding_box.h>
 
@@ -10,41 +9,11 @@
 #include "continuum/meshes.h"
 #include "continuum/network_gradient.h"
 #include "support/errors.h"
+#include "support/text_wrap.h"
 #include "verification/bridge/affine_displacement.h"
 
 namespace latcon::bridge
 {
-namespace
-{
-
-// Displacement whose components are expressions or that of the homogeneous loading.
-class EdgeDisplacement : public dealii::Function<2>
-{
-public:
-  EdgeDisplacement(const input::EdgeCase &edge, const Eigen::Matrix2d &F, double extent)
-    : dealii::Function<2>(2),
-      loading_(F), is_loading_{edge.displacement.x == "loading", edge.displacement.y == "loading"}
-  {
-    const auto expression = [](const std::string &text) { return text == "loading" || text == "free" ? "0" : text; };
-    input::FieldCase given;
-    given.x = expression(edge.displacement.x);
-    given.y = expression(edge.displacement.y);
-    given_ = std::make_unique<FieldFunction>(given, extent);
-  }
-
-  double value(const dealii::Point<2> &X, unsigned int i) const override
-  {
-    return is_loading_[i] ? loading_.value(X, i) : given_->value(X, i);
-  }
-
-private:
-  AffineDisplacement loading_;
-  bool is_loading_[2];
-  std::unique_ptr<const FieldFunction> given_;
-};
-
-} // namespace
-
 ContinuumModel::ContinuumModel(const input::Case &input)
   : subject_(bridge::subject(input)), law_(input.continuum.law), penalty_(input.continuum.penalty),
     mesh_(MPI_COMM_WORLD)
@@ -96,13 +65,10 @@ void ContinuumModel::make_mesh(const input::Case &input)
     const auto [length, height] = mesh_extent();
     for (const double ratio : {length / sheet.length(), height / sheet.height()})
       if (!(ratio > 0.01 && ratio < 100.))
-      {
-        std::ostringstream text;
-        text << "the mesh file " << c.mesh_file << " spans " << length << " m x " << height
-             << " m, the sheet of the case " << sheet.length() << " m x " << sheet.height()
-             << " m; a mesh must be in metres, and Sheet/length and height of its order (0.01 to 100)";
-        throw support::InputError(text.str());
-      }
+        throw support::InputError(
+          support::text_of("the mesh file ", c.mesh_file, " spans ", length, " m x ", height,
+                           " m, the sheet of the case ", sheet.length(), " m x ", sheet.height(),
+                           " m; a mesh must be in metres, and Sheet/length and height of its order (0.01 to 100)"));
   }
   else if (input.hole_radius > 0.)
     continuum::make_rectangle_with_hole(mesh_, {sheet.length(), sheet.height(), input.hole_radius, c.refinements});
@@ -132,7 +98,7 @@ void ContinuumModel::make_conditions(const input::Case &input)
       continue;
     if (edge.condition == input::EdgeCase::Condition::held)
       conditions_.displacements.push_back(
-        {id, std::make_shared<EdgeDisplacement>(edge, F, extent_),
+        {id, std::make_shared<FieldFunction>(edge.displacement, extent_, F),
          dealii::ComponentMask(std::vector<bool>{edge.displacement.x != "free", edge.displacement.y != "free"})});
     if (edge.condition == input::EdgeCase::Condition::periodic)
     {

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/numerics/vector_tools_interpolate.h>
 
 #include <nlohmann/json.hpp>
 
@@ -13,6 +11,7 @@
 #include "continuum/field_writer.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogenisation.h"
+#include "verification/claims/continuum_waves.h"
 #include "verification/commands/equilibrium.h"
 #include "verification/commands/motion.h"
 #include "verification/output/continuum_record.h"
@@ -35,17 +34,10 @@ continuum::DynamicSettings dynamic_settings(const input::Case &input, bridge::Co
   return settings;
 }
 
-continuum::Sheet::Vector interpolated(const continuum::Sheet &sheet, const dealii::Function<2> &field)
-{
-  continuum::Sheet::Vector values = sheet.make_owned();
-  dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), field, values);
-  return values;
-}
-
 void add_loading(const input::Case &input, const continuum::Sheet &sheet, continuum::Sheet::Vector &u)
 {
   if (input.continuum.initial_base == input::ContinuumCase::Base::loading)
-    u += interpolated(sheet, bridge::AffineDisplacement(input.deformation()));
+    u += claims::interpolated(sheet, bridge::AffineDisplacement(input.deformation()));
 }
 
 // Results of a motion at its end, or where it was interrupted.
@@ -184,8 +176,10 @@ MovingSheet::MovingSheet(const input::Case &input, bridge::ContinuumModel &model
     memory(bridge::homogenised_memory(input.lattice(), model.subject().material)),
     solver(model.mesh(), model.constitution(), model.conditions(), {input.density, model.inertia_length()}, settings,
            viscosity.get(), {}, memory.get()),
-    added(interpolated(solver.sheet(), bridge::FieldFunction(input.continuum.initial_displacement, model.extent()))),
-    velocity(interpolated(solver.sheet(), bridge::FieldFunction(input.continuum.initial_velocity, model.extent())))
+    added(claims::interpolated(solver.sheet(),
+                               bridge::FieldFunction(input.continuum.initial_displacement, model.extent()))),
+    velocity(
+      claims::interpolated(solver.sheet(), bridge::FieldFunction(input.continuum.initial_velocity, model.extent())))
 {
   continuum::Sheet::Vector u = solver.sheet().make_owned();
   if (input.continuum.initial_base == input::ContinuumCase::Base::equilibrium)

@@ -6,7 +6,6 @@
 
 #include "lattice/chebyshev_stages.h"
 #include "lattice/contact.h"
-#include "lattice/seed.h"
 #include "support/full_precision.h"
 
 namespace latcon::input
@@ -252,9 +251,7 @@ void Case::check(Parameters &p)
   if (has_inner_edge() && !continuum.mesh_file.empty())
     p.error("Continuum/mesh file", "a mesh from a file has its own holes; give hole radius = 0 and notch length = 0",
             {"Sheet/hole radius", "Sheet/notch length"});
-  continuum.check(p, has_inner_edge());
-  if (has_sheet())
-    continuum.check_values(p, *this);
+  continuum.check(p, *this);
 
   for (const auto &[name, extent] : {std::pair{"ahead", near_tip_ahead}, std::pair{"behind", near_tip_behind},
                                      std::pair{"half height", near_tip_half_height}})

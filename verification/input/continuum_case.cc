@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 
-#include "support/errors.h"
 #include "verification/input/case.h"
 #include "verification/input/field_expression.h"
 
@@ -12,17 +10,22 @@ namespace latcon::input
 namespace
 {
 
-struct Position
+using Points = FieldCase::Points;
+
+// Returns whether the extent of the sheet is known; that of a mesh from a file only after reading it.
+bool has_extent(const Case &input)
 {
-  double x, y; // [m]
-};
-using Points = std::vector<Position>;
+  return input.has_sheet() && input.continuum.mesh_file.empty();
+}
 
 // Points on an edge of the sheet, its ends among them, and those where cells of most numbers meet.
-Points points_on(const std::size_t edge, const Case &input, const lattice::TriangularLattice &sheet)
+Points points_on(const std::size_t edge, const Case &input)
 {
-  constexpr unsigned int n = 720;
   Points points;
+  if (!has_extent(input))
+    return points;
+  constexpr unsigned int n = 720;
+  const lattice::TriangularLattice sheet = input.lattice();
   for (unsigned int i = 0; i <= n; ++i)
   {
     const double part = static_cast<double>(i) / n;
@@ -41,40 +44,21 @@ Points points_on(const std::size_t edge, const Case &input, const lattice::Trian
 }
 
 // Points all over the sheet, its edges among them.
-Points points_in(const lattice::TriangularLattice &sheet, const double hole_radius)
+Points points_in(const Case &input)
 {
-  constexpr unsigned int n = 48;
   Points points;
+  if (!has_extent(input))
+    return points;
+  constexpr unsigned int n = 48;
+  const lattice::TriangularLattice sheet = input.lattice();
   for (unsigned int i = 0; i <= n; ++i)
     for (unsigned int j = 0; j <= n; ++j)
     {
-      const Position X{sheet.length() * i / n, sheet.height() * (static_cast<double>(j) / n - 0.5)};
-      if (std::hypot(X.x - 0.5 * sheet.length(), X.y) >= hole_radius)
-        points.push_back(X);
+      const double X = sheet.length() * i / n, Y = sheet.height() * (static_cast<double>(j) / n - 0.5);
+      if (std::hypot(X - 0.5 * sheet.length(), Y) >= input.hole_radius)
+        points.push_back({X, Y});
     }
   return points;
-}
-
-void check_values_at(Parameters &parameters, const std::string &key, const std::string &text, const Points &points)
-{
-  std::optional<FieldExpression> field;
-  try
-  {
-    field.emplace(text);
-  }
-  catch (const support::InputError &)
-  {
-    return; // parse errors are reported elsewhere
-  }
-  try
-  {
-    for (const Position &X : points)
-      (void)(*field)(X.x, X.y);
-  }
-  catch (const support::InputError &problem)
-  {
-    parameters.error(key, problem.what());
-  }
 }
 
 } // namespace
@@ -87,7 +71,7 @@ void FieldCase::declare(Parameters &p, const std::string &section, const std::st
           documentation + ", component " + (component == &x ? "x" : "y") + " [" + unit + "]: " + values);
 }
 
-void FieldCase::check(Parameters &p, const std::string &section, const std::string &name,
+void FieldCase::check(Parameters &p, const std::string &section, const std::string &name, const Points &points,
                       const std::vector<std::string> &words) const
 {
   for (const std::string *text : {&x, &y})
@@ -95,16 +79,22 @@ void FieldCase::check(Parameters &p, const std::string &section, const std::stri
     // The most frequent value is excluded because constructing a parser is slow.
     if (*text == "0" || std::find(words.begin(), words.end(), *text) != words.end())
       continue;
-    const std::string problem = problem_with_field(*text);
-    if (!problem.empty())
-      p.error(section + "/" + name + (text == &x ? " x" : " y"), "not an expression in x, y and pi: " + problem);
+    if (const std::string problem = problem_with_field(*text, points); !problem.empty())
+      p.error(section + "/" + name + (text == &x ? " x" : " y"), problem);
   }
 }
 
-std::function<double(unsigned int, double, double)> FieldCase::field() const
+std::function<double(unsigned int, double, double)> FieldCase::field(const Eigen::Matrix2d &F) const
 {
-  const std::array components{std::make_shared<FieldExpression>(x), std::make_shared<FieldExpression>(y)};
-  return [components](unsigned int component, double X, double Y) { return (*components[component])(X, Y); };
+  const auto component = [&F](const std::string &text, int i) -> std::function<double(double, double)>
+  {
+    if (text == "loading")
+      return [a = F(i, 0), b = F(i, 1), i](double X, double Y) { return a * X + b * Y - (i == 0 ? X : Y); };
+    return [expression = std::make_shared<FieldExpression>(text == "free" ? "0" : text)](double X, double Y)
+    { return (*expression)(X, Y); };
+  };
+  return [components = std::array{component(x, 0), component(y, 1)}](unsigned int i, double X, double Y)
+  { return components[i](X, Y); };
 }
 
 void EdgeCase::declare(Parameters &p, const bool can_be_periodic)
@@ -127,11 +117,11 @@ void EdgeCase::declare(Parameters &p, const bool can_be_periodic)
                           "dead load conjugate to the normal derivative of the displacement");
 }
 
-void EdgeCase::check(Parameters &p) const
+void EdgeCase::check(Parameters &p, const FieldCase::Points &points) const
 {
-  displacement.check(p, name, "displacement", {"loading", "free"});
-  traction.check(p, name, "traction");
-  double_traction.check(p, name, "double traction");
+  displacement.check(p, name, "displacement", points, {"loading", "free"});
+  traction.check(p, name, "traction", points);
+  double_traction.check(p, name, "double traction", points);
   if (condition == Condition::held && displacement.x == "free" && displacement.y == "free")
     p.error(name + "/condition", "a held edge needs a displacement that is not `free`, or condition = free");
   // A given load must have an effect: on a held edge for a free component only, on a periodic edge never.
@@ -226,15 +216,17 @@ void ContinuumCase::declare(Parameters &p)
   initial_velocity.declare(p, "Initial state", "velocity", "m/s", "initial velocity of the finite elements");
 }
 
-void ContinuumCase::check(Parameters &p, const bool has_inner_edge) const
+void ContinuumCase::check(Parameters &p, const Case &input) const
 {
+  const bool has_inner_edge = input.has_inner_edge();
   if (gradient != ContinuumGradient::none && degree < 2)
     p.error("Continuum/degree", "a gradient energy needs elements of degree 2 or more", {"Continuum/gradient"});
   const bool has_gradient =
     gradient != ContinuumGradient::none && !(gradient == ContinuumGradient::isotropic && static_length == 0.);
-  for (const EdgeCase &edge : edges)
+  for (std::size_t id = 0; id < edges.size(); ++id)
   {
-    edge.check(p);
+    const EdgeCase &edge = edges[id];
+    edge.check(p, points_on(id, input));
     if (!has_gradient && edge.normal_gradient != EdgeCase::NormalGradient::free)
       p.error(edge.name + "/normal gradient", "without a gradient energy it cannot be held", {"Continuum/gradient"});
     if (!has_gradient && !edge.double_traction.is_zero())
@@ -261,39 +253,10 @@ void ContinuumCase::check(Parameters &p, const bool has_inner_edge) const
     p.error("Continuum/adaptive cycles", "the mesh of a motion is not refined; give 0", {"Continuum/solution"});
   if (edges[4].normal_gradient == EdgeCase::NormalGradient::loading)
     p.error("Inner edge/normal gradient", "an inner edge has no single normal; give free or clamped");
-  body_force.check(p, "Body force", "force");
-  initial_displacement.check(p, "Initial state", "displacement");
-  initial_velocity.check(p, "Initial state", "velocity");
-}
-
-void ContinuumCase::check_values(Parameters &p, const Case &input) const
-{
-  // The extent of a mesh from a file is known only after reading it.
-  if (!mesh_file.empty())
-    return;
-  const lattice::TriangularLattice sheet = input.lattice();
-  const auto check = [&](const std::string &key, const std::string &text, const Points &points)
-  {
-    if (text != "loading" && text != "free" && text != "0")
-      check_values_at(p, key, text, points);
-  };
-  const auto check_field = [&](const std::string &key, const FieldCase &field, const Points &points)
-  {
-    check(key + " x", field.x, points);
-    check(key + " y", field.y, points);
-  };
-  for (std::size_t id = 0; id < edges.size(); ++id)
-  {
-    const EdgeCase &edge = edges[id];
-    const Points points = points_on(id, input, sheet);
-    check_field(edge.name + "/displacement", edge.displacement, points);
-    check_field(edge.name + "/traction", edge.traction, points);
-    check_field(edge.name + "/double traction", edge.double_traction, points);
-  }
-  const Points inside = points_in(sheet, input.hole_radius);
-  check_field("Body force/force", body_force, inside);
-  check_field("Initial state/displacement", initial_displacement, inside);
-  check_field("Initial state/velocity", initial_velocity, inside);
+  const Points inside = points_in(input);
+  body_force.check(p, "Body force", "force", inside);
+  initial_displacement.check(p, "Initial state", "displacement", inside);
+  initial_velocity.check(p, "Initial state", "velocity", inside);
 }
 
 } // namespace latcon::input

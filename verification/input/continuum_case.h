@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "verification/input/parameters.h"
 
 namespace latcon::input
@@ -36,19 +38,24 @@ struct FieldCase
   std::string x = "0";
   std::string y = "0";
 
+  /// Positions X, Y [m].
+  using Points = std::vector<std::array<double, 2>>;
+
   /// @param values what a component may be
   void declare(Parameters &parameters, const std::string &section, const std::string &name, const std::string &unit,
                const std::string &documentation,
                const std::string &values = "expression in the undeformed x, y [m] and pi");
-  /// Reports a component that is neither an expression nor one of some words.
-  void check(Parameters &parameters, const std::string &section, const std::string &name,
+  /// Reports a component that is neither one of some words nor an expression that is finite at some points.
+  void check(Parameters &parameters, const std::string &section, const std::string &name, const Points &points,
              const std::vector<std::string> &words = {}) const;
   bool is_zero() const { return x == "0" && y == "0"; }
   /// "x" or "y": the first component that is not zero.
   const char *given() const { return x != "0" ? "x" : "y"; }
   /// Returns the field as a function of the component (0 or 1) and of the reference position x, y [m]. It throws
-  /// InputError with the position where a value is not finite. @throws InputError if it cannot be parsed
-  std::function<double(unsigned int component, double x, double y)> field() const;
+  /// InputError with the position where a value is not finite. @param F of the loading: a component "loading" is that
+  /// of (F - I) X, and "free" 0 @throws InputError if it cannot be parsed
+  std::function<double(unsigned int component, double x, double y)>
+  field(const Eigen::Matrix2d &F = Eigen::Matrix2d::Identity()) const;
 };
 
 /// Boundary conditions on one edge of the sheet. The lattice supports some of them, see require_lattice_sheet.
@@ -76,7 +83,8 @@ struct EdgeCase
   FieldCase double_traction{}; ///< [Pa m]
 
   void declare(Parameters &parameters, bool can_be_periodic);
-  void check(Parameters &parameters) const;
+  /// @param points on the edge, at which its values must be finite
+  void check(Parameters &parameters, const FieldCase::Points &points) const;
   /// Returns whether the edge is held at the loading in one component and free in the other one.
   bool is_roller() const
   {
@@ -137,10 +145,9 @@ struct ContinuumCase
   FieldCase initial_velocity;     ///< [m/s]
 
   void declare(Parameters &parameters);
-  void check(Parameters &parameters, bool has_inner_edge) const;
-  /// Reports expressions that are not finite at one of many points of the sheet and its edges. @param input a case that
-  /// has a sheet
-  void check_values(Parameters &parameters, const Case &input) const;
+  /// Reports problems of these entries, also expressions that are not finite at one of many points of the sheet and its
+  /// edges. @param input whose entries they are
+  void check(Parameters &parameters, const Case &input) const;
 };
 
 } // namespace latcon::input

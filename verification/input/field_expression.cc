@@ -83,28 +83,32 @@ double FieldExpression::operator()(const double x, const double y)
   return value;
 }
 
-std::string problem_with_field(const std::string &expression)
+std::string problem_with_field(const std::string &expression, const std::vector<std::array<double, 2>> &points)
 {
+  std::string context = "not an expression in x, y and pi: ";
   // muparser takes the last entry of a list, but the user may have meant a decimal comma or both components.
   int open = 0;
   for (const char c : expression)
   {
     open += c == '(' ? 1 : c == ')' ? -1 : 0;
     if (c == ',' && open == 0)
-      return "a list where one number is wanted";
+      return context + "a list where one number is wanted";
   }
   if (assigns(expression))
-    return "an assignment; to compare, write ==";
+    return context + "an assignment; to compare, write ==";
   if (draws_numbers(expression))
-    return "random numbers, which differ from run to run";
+    return context + "random numbers, which differ from run to run";
   try
   {
-    (void)FieldExpression(expression);
+    FieldExpression field(expression);
+    context.clear(); // the other messages name the expression
+    for (const auto &[x, y] : points)
+      (void)field(x, y);
     return "";
   }
   catch (const support::InputError &error)
   {
-    return error.what();
+    return context + error.what();
   }
 }
 

@@ -1,7 +1,9 @@
 /// Expressions in x, y and pi: loads and displacements of the continuum.
 #pragma once
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include <muParser.h>
 
@@ -27,7 +29,9 @@ private:
   mu::Parser parser_;
 };
 
-/// Returns why a text cannot be such an expression; an empty text if it can.
-[[nodiscard]] std::string problem_with_field(const std::string &expression);
+/// Returns why a text cannot be such an expression, or at which of some points X, Y [m] its value is not finite; an
+/// empty text if neither.
+[[nodiscard]] std::string problem_with_field(const std::string &expression,
+                                             const std::vector<std::array<double, 2>> &points);
 
 } // namespace latcon::input

@@ -1,7 +1,7 @@
 // Entries of the finite element sheet: defaults that are accepted, and combinations that are refused with the
 // entry to change.
 #include "support/errors.h"
-#include "verification/input/continuum_case.h"
+#include "verification/input/case.h"
 
 #include <gtest/gtest.h>
 
@@ -18,12 +18,13 @@ using Lines = std::vector<std::string>;
 // A case with the overrides, checked.
 Lines problems(const Lines &overrides, const bool has_inner_edge = false)
 {
-  ContinuumCase input;
+  Case input;
+  input.hole_radius = has_inner_edge ? 1e-3 : 0.;
   Parameters parameters;
-  input.declare(parameters);
+  input.continuum.declare(parameters);
   parameters.read_text("", "a.prm");
   parameters.read_overrides(overrides);
-  input.check(parameters, has_inner_edge);
+  input.continuum.check(parameters, input);
   try
   {
     parameters.finish();
