@@ -177,11 +177,4 @@ EquivalentSheet equivalent_sheet(const lattice::TriangularLattice &lattice, cons
   return sheet;
 }
 
-EquivalentSheet nominal_sheet(const lattice::TriangularLattice &lattice, const lattice::Cutout &cutout)
-{
-  const auto *hole = std::get_if<lattice::RoundHole>(&cutout);
-  return {0., lattice.length(), -0.5 * lattice.height(), 0.5 * lattice.height(),
-          hole != nullptr ? hole->radius : std::get<lattice::Notch>(cutout).length};
-}
-
 } // namespace latcon::bridge

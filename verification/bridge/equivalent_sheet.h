@@ -47,7 +47,4 @@ EquivalentSheet equivalent_sheet(const lattice::TriangularLattice &lattice, cons
                                  const lattice::State &state, const lattice::Edges &edges,
                                  const lattice::Cutout &cutout);
 
-/// Returns the nominal sheet of a case: edges through the outermost sites, hole and notch with their nominal sizes.
-EquivalentSheet nominal_sheet(const lattice::TriangularLattice &lattice, const lattice::Cutout &cutout);
-
 } // namespace latcon::bridge

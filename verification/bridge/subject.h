@@ -79,11 +79,9 @@ public:
   double energy_from_mean() const { return std::abs(network_energy / energy.mean(0) - 1.); }
   double stress_from_mean() const { return (network_stress.reshaped() - stress.mean).norm() / stress.mean.norm(); }
 
-  /// Relative errors [-] of the law for the lattice in its own orientation, and their bounds.
+  /// Relative errors [-] of the law for the lattice in its own orientation.
   double energy_error() const { return std::abs(network_energy / lattice_energy - 1.); }
-  double energy_bound() const { return energy.bound / std::abs(lattice_energy) + equal_formulas; }
   double stress_error() const { return (network_stress - lattice_stress).norm() / lattice_stress.norm(); }
-  double stress_bound() const { return stress.bound / lattice_stress.norm() + equal_formulas; }
 };
 
 /// Creates the subject of a case with another `material`.

@@ -1,6 +1,5 @@
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include <Eigen/LU>
 #include <boost/math/distributions/students_t.hpp>
@@ -87,7 +86,7 @@ public:
   {
     // Without an equilibrium of the local law the rows fail.
     for (const CutResult &result : results_)
-      if (!result.errors && result.law.rfind("local", 0) == 0 && result.law != "local-nominal")
+      if (!result.errors && result.law.rfind("local", 0) == 0)
         rows_.add_not_computed("local law at " + size_text(result.size), result.failure);
     const std::vector<double> displacement = series(&CutErrors::displacement);
     add_orders(displacement);
@@ -102,22 +101,16 @@ public:
     add_network();
 
     for (const auto &[law, kind] : {std::pair(std::string("lattice"), bridge::Law::lattice_gradient),
-                                    std::pair(std::string("isotropic"), bridge::Law::isotropic_gradient),
-                                    std::pair(std::string("mooney-rivlin"), bridge::Law::mooney_rivlin)})
+                                    std::pair(std::string("isotropic"), bridge::Law::isotropic_gradient)})
       if (const CutResult *other = find(law, study_.sizes.back()))
       {
-        const bool is_calibrated = kind == bridge::Law::mooney_rivlin;
-        add_displacement(is_calibrated ? "plane-stress Mooney-Rivlin" : "with the " + law + " gradient energy", *other,
-                         is_calibrated || !is_hole_ ? output::Tolerance() : allowed, subject_.judges(kind));
+        const std::string name = "with the " + law + " gradient energy";
+        if (other->errors)
+          add(name + ": displacement", other->errors->displacement, is_hole_ ? allowed : output::Tolerance(),
+              subject_.judges(kind));
+        else
+          add_missing(name, other->failure, is_hole_ && subject_.judges(kind));
       }
-  }
-
-  // Reports which laws have an equilibrium, and their errors.
-  void report() const
-  {
-    for (const CutResult &result : results_)
-      if (result.size == study_.sizes.back() && result.law != "local-nominal")
-        add_displacement(result.law, result);
   }
 
 private:
@@ -232,16 +225,7 @@ private:
       add_missing(name, failure(gradient), is_judged);
   }
 
-  // The displacement under a law, or why the law has no equilibrium.
-  void add_displacement(const std::string &law, const CutResult &result, const output::Tolerance &tolerance = {},
-                        bool is_judged = true) const
-  {
-    if (result.errors)
-      add(law + ": displacement", result.errors->displacement, tolerance, is_judged);
-    else
-      add_missing(law, result.failure, tolerance && is_judged);
-  }
-
+  // Why a law has no equilibrium.
   void add_missing(const std::string &name, const std::string &failure, bool is_judged) const
   {
     const std::string reason = failure.substr(0, failure.find('\n')); // the steps of the solver follow
@@ -251,12 +235,7 @@ private:
       rows_.add(name + ": no equilibrium: " + reason, "1", {});
   }
 
-  std::string size_text(double size) const
-  {
-    std::ostringstream text;
-    text << (is_hole_ ? "R/d" : "length/d") << " = " << size;
-    return text.str();
-  }
+  std::string size_text(double size) const { return support::text_of(is_hole_ ? "R/d" : "length/d", " = ", size); }
 
   void add(const std::string &quantity, double error, const output::Tolerance &tolerance = {},
            bool is_judged = true) const
@@ -268,9 +247,8 @@ private:
   {
     if (study_.n_judged == 1)
       return size_text(study_.sizes.back());
-    std::ostringstream text;
-    text << size_text(study_.sizes[study_.sizes.size() - study_.n_judged]) << " to " << study_.sizes.back();
-    return text.str();
+    return support::text_of(size_text(study_.sizes[study_.sizes.size() - study_.n_judged]), " to ",
+                            study_.sizes.back());
   }
 
   // The errors at the largest sizes against the extrapolation of the others, within its scatter and below a ceiling.
@@ -353,7 +331,7 @@ ClaimOutcome cut_claim(const bridge::Subject &subject, const CutStudy &study)
     const std::vector<CutResult> results = compare_sizes(subject, study, F);
     for (const CutResult &r : results)
     {
-      if (r.law == "local-moved" || r.law == "local-turned" || r.law == no_lattice)
+      if (r.law == "local-moved" || r.law == "local-turned")
         continue;
       const CutErrors e = r.errors.value_or(CutErrors());
       table.add({subject.name, F(0, 0), F(1, 1), r.law, r.size, e.displacement, e.stress, std::abs(e.energy),
@@ -362,7 +340,7 @@ ClaimOutcome cut_claim(const bridge::Subject &subject, const CutStudy &study)
     }
     output::Results rows; // none if one of them throws
     const Judge judge(subject, study, F, results, rows);
-    study.is_reported ? judge.report() : judge.judge();
+    judge.judge();
     outcome.results.add(rows);
   };
   for (const Eigen::Matrix2d &F : study.states)

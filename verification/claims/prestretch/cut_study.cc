@@ -5,9 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <stdexcept>
 
-#include "continuum/mooney_rivlin.h"
 #include "lattice/energy.h"
 #include "lattice/forces.h"
 #include "support/largest_error.h"
@@ -230,40 +228,15 @@ CutStudy notch_study(bool quick)
   return study;
 }
 
-CutStudy loaded_hole_study(const Eigen::Matrix2d &F)
-{
-  // Coarse, since a law without an equilibrium takes many attempts.
-  CutStudy study = hole_study(true);
-  study.states = {F};
-  study.sizes = study.other_sizes = {8.};
-  study.is_reported = true;
-  return study;
-}
-
 std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F)
 {
   const double d = subject.spacing;
-  std::optional<continuum::MooneyRivlin> mooney_rivlin;
-  if (subject.mooney_rivlin)
-    mooney_rivlin.emplace(subject.mooney_rivlin->law);
   std::vector<CutResult> results;
   for (std::size_t i = 0; i < study.sizes.size(); ++i)
   {
     const double size = study.sizes[i];
     const CutSheet sheet = study.sheet(subject, size * d, F);
-    std::optional<CutLattice> relaxed;
-    try
-    {
-      relaxed.emplace(relaxed_lattice(subject, sheet));
-    }
-    catch (const std::runtime_error &error)
-    {
-      if (!study.is_reported)
-        throw;
-      results.push_back({size, no_lattice, {}, error.what(), std::numeric_limits<double>::quiet_NaN(), {}, {}});
-      continue;
-    }
-    CutLattice &lattice = *relaxed;
+    CutLattice lattice = relaxed_lattice(subject, sheet);
     study.spoil(lattice);
     const bridge::EquivalentSheet domain =
       bridge::equivalent_sheet(lattice.lattice, subject.material, lattice.state, sheet.held, sheet.cutout);
@@ -287,7 +260,7 @@ std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutSt
     const bool is_largest = i + 1 == study.sizes.size();
     const bool has_others =
       std::find(study.other_sizes.begin(), study.other_sizes.end(), size) != study.other_sizes.end();
-    if (is_largest && !study.is_reported)
+    if (is_largest)
     {
       bridge::EquivalentSheet moved = domain;
       moved.cut -= sheet.is_hole()                  ? bridge::rim_recession(lattice.lattice, subject.material)
@@ -305,11 +278,8 @@ std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutSt
     }
     if (!has_others)
       continue;
-    add("local-nominal", local, bridge::nominal_sheet(lattice.lattice, sheet.cutout));
     add("lattice", {subject.cauchy_born, *subject.lattice_gradient}, domain);
     add("isotropic", {subject.cauchy_born, *subject.isotropic_gradient}, domain);
-    if (mooney_rivlin)
-      add("mooney-rivlin", {*mooney_rivlin}, domain);
   }
   return results;
 }

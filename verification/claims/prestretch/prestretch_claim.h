@@ -148,8 +148,6 @@ struct CutStudy
   CutMesh mesh = {};
   /// Largest sizes whose errors are judged together, in the geometric mean, by what the smaller ones let one expect.
   std::size_t n_judged = 1;
-  /// Report without judging, since not every law need have an equilibrium.
-  bool is_reported = false;
   /// Fault that a test introduces into a lattice before the comparison; none otherwise.
   std::function<void(CutLattice &)> spoil = [](CutLattice &) {};
 };
@@ -161,11 +159,6 @@ CutStudy hole_study(bool quick);
 CutStudy nearest_hole_study(bool quick);
 /// Sheets with a notch from a free edge, for both sets of shells.
 CutStudy notch_study(bool quick);
-/// A hole in the loaded sheet of the subject, to report which laws have an equilibrium there.
-CutStudy loaded_hole_study(const Eigen::Matrix2d &F);
-
-/// Name in place of a law if the lattice itself did not relax.
-inline constexpr const char *no_lattice = "lattice that does not come to rest";
 
 /// Comparison of a law with a lattice.
 struct CutResult
@@ -179,12 +172,11 @@ struct CutResult
   std::optional<CutErrors> from_middle; ///< of "network": from the mean of "local" and "local-turned"
 };
 
-/// All comparisons in one state, laws in the order in which tables have them: "local", "local-nominal" (the
-/// same in the sheet as a case describes it), "local-moved" (the same at the largest size, the rim or tip moved by what
-/// its place is known to, twice), "local-turned" (likewise, the lattice turned by 30 degrees, theory-comparison.md, eq.
-/// (H.17)), "network" and "network-gradient" (at the largest size and those of `other_sizes`), "lattice", "isotropic",
-/// "mooney-rivlin". Collective.
-/// @throws std::runtime_error if a lattice does not relax, unless the study is only reported
+/// All comparisons in one state, laws in the order in which tables have them: "local", "local-moved" (the same at the
+/// largest size, the rim or tip moved by what its place is known to, twice), "local-turned" (likewise, the lattice
+/// turned by 30 degrees, theory-comparison.md, eq. (H.17)), "network" and "network-gradient" (at the largest size and
+/// those of `other_sizes`), "lattice", "isotropic". Collective.
+/// @throws std::runtime_error if a lattice does not relax
 std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F);
 
 /// The part of the claim `prestretch` on inhomogeneous fields: rows for each state, and a table named after
