@@ -6,7 +6,6 @@
 #include <deal.II/numerics/vector_tools_interpolate.h>
 
 #include "continuum/rectangle.h"
-#include "support/dense.h"
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogenisation.h"

@@ -6,7 +6,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "verification/claims/claim.h"
 #include "verification/input/case_text.h"
 #include "verification/input/spelling.h"
 #include "verification/output/output_file.h"

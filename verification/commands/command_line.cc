@@ -1,25 +1,20 @@
 #include "verification/commands/command_line.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 
 #include <omp.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "lattice/row_kernels.h"
-#include "support/atomic_file.h"
 #include "support/available_cores.h"
 #include "support/ranks.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/commands/recorded_output.h"
-#include "verification/commands/signals.h"
 #include "verification/commands/usage_error.h"
 #include "verification/elements/elements.h"
 #include "verification/input/case_text.h"

@@ -1,7 +1,6 @@
 #include "verification/commands/usage_error.h"
 
 #include <algorithm>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "support/errors.h"
 #include "verification/claims/run_claims.h"

@@ -1,7 +1,6 @@
 #include "verification/input/case.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <stdexcept>
 

@@ -1,9 +1,6 @@
 #include "verification/input/case_text.h"
 
-#include <cstddef>
 #include <map>
-#include <optional>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 

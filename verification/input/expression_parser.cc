@@ -5,7 +5,6 @@
 #include <cctype>
 #include <charconv>
 #include <cstring>
-#include <set>
 #include <system_error>
 #include <vector>
 

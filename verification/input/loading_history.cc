@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <functional>
-#include <string>
-#include <utility>
 
 #include "verification/input/case.h"
 

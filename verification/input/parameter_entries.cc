@@ -6,12 +6,10 @@
 #include "verification/input/spelling.h"
 #include "verification/input/units.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <system_error>
-#include <type_traits>
 
 namespace latcon::input
 {

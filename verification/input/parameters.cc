@@ -6,12 +6,9 @@
 #include "verification/input/files.h"
 #include "verification/input/spelling.h"
 
-#include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <sstream>
 #include <stdexcept>
-#include <utility>
 
 namespace latcon::input
 {

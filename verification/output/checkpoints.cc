@@ -8,7 +8,6 @@
 #include <sstream>
 #include <system_error>
 
-#include "support/errors.h"
 #include "support/folder_lock.h"
 #include "support/ranks.h"
 #include "support/text_wrap.h"

@@ -1,7 +1,6 @@
 #include "verification/output/field_writer.h"
 
 #include <limits>
-#include <optional>
 #include <system_error>
 #include <type_traits>
 #include <utility>

@@ -5,7 +5,6 @@
 #include <fstream>
 #include <set>
 #include <system_error>
-#include <vector>
 
 #include "support/atomic_file.h"
 #include "support/errors.h"

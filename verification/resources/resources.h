@@ -2,7 +2,6 @@
 /// check.
 #pragma once
 
-#include <cstddef>
 #include <string>
 
 #include "verification/input/case.h"

@@ -9,7 +9,6 @@
 #include "lattice/site_fields.h"
 #include "support/largest_error.h"
 #include "verification/bridge/nonlocal_continuum.h"
-#include "verification/bridge/plane_waves.h"
 #include "verification/claims/order_fit.h"
 #include "verification/claims/sites_and_bonds.h"
 
