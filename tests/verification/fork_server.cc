@@ -1,9 +1,10 @@
-// The program for tests. With arguments it is latcon. Without, it runs latcon once for each line on standard input, in a
-// child made by fork: what takes half a second to start, MPI and the libraries, starts once.
+// The program for tests. With arguments it is latcon. Without, it runs latcon once for each line on standard input, in
+// a child made by fork: what takes half a second to start, MPI and the module with the finite elements, starts once.
 //
-// A line is `LIMIT OUTPUT FOLDER ARGUMENT...`: seconds, the folder of the files stdout and stderr of the child, the folder
-// to work in, and the arguments of latcon without its name, each word in hexadecimal. The answer is a line: `exit CODE`,
-// `signal NUMBER`, or `limit` if the child was killed after LIMIT seconds.
+// A line is `LIMIT OUTPUT FOLDER ARGUMENT...`: seconds, the folder of the files stdout and stderr of the child, the
+// folder to work in, and the arguments of latcon without its name, each word in hexadecimal. The answer is a line:
+// `exit CODE`, `signal NUMBER`, or `limit` if the child was killed after LIMIT seconds.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -19,9 +20,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "continuum/parallel_session.h"
+#include "support/mpi_session.h"
 #include "verification/commands/command_line.h"
-#include "verification/commands/signals.h"
+#include "verification/elements/elements.h"
+#define main latcon_main
+#include "verification/main.cc"
+#undef main
 
 using namespace latcon;
 
@@ -69,6 +73,13 @@ void redirect(int descriptor, const std::string &path)
   _exit(static_cast<int>(code));
 }
 
+bool needs_finite_elements(const std::vector<std::string> &arguments)
+{
+  const auto has = [&](const char *word)
+  { return std::find(arguments.begin(), arguments.end(), word) != arguments.end(); };
+  return has("continuum") || has("verify") || (has("fracture") && !has("--skip-verification"));
+}
+
 std::string outcome(const pid_t child, const double limit)
 {
   using Clock = std::chrono::steady_clock;
@@ -101,6 +112,8 @@ void serve()
     std::vector<std::string> arguments;
     while (words >> word)
       arguments.push_back(decoded(word));
+    if (needs_finite_elements(arguments))
+      static_cast<void>(elements::elements()); // loaded before the fork, the module serves all later children
     std::cout.flush();
     const pid_t child = fork();
     if (child < 0)
@@ -115,21 +128,13 @@ void serve()
 
 int main(int argc, char **argv)
 {
-  const bool serves = argc == 1;
-  if (serves)
-  {
-    // Threads do not survive a fork.
-    setenv("OMP_NUM_THREADS", "1", 1);
-    setenv("OPENBLAS_NUM_THREADS", "1", 1);
-  }
-  else
-  {
-    commands::occupy_closed_streams();
-    commands::install_signal_handlers();
-  }
-  const continuum::ParallelSession session;
-  if (!serves)
-    return static_cast<int>(commands::run_program(argc, argv));
+  if (argc > 1)
+    return latcon_main(argc, argv);
+  // Threads do not survive a fork.
+  setenv("OMP_NUM_THREADS", "1", 1);
+  setenv("OPENBLAS_NUM_THREADS", "1", 1);
+  const support::MpiSession mpi;
+  const elements::Session elements;
   serve();
   return 0;
 }
