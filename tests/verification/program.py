@@ -20,7 +20,8 @@ FULL = "LATCON_FULL" in os.environ
 # Verdicts are cached for the duration of a test only, never in the user's cache. A fixture may have left verdicts to begin with.
 CACHE = tempfile.TemporaryDirectory()
 if "LATCON_VERDICTS" in os.environ:
-    shutil.copytree(os.environ["LATCON_VERDICTS"], CACHE.name, dirs_exist_ok=True)
+    for part in ("latcon", "matplotlib"):
+        shutil.copytree(pathlib.Path(os.environ["LATCON_VERDICTS"]) / part, pathlib.Path(CACHE.name) / part)
 os.environ["XDG_CACHE_HOME"] = CACHE.name
 os.environ["MPLCONFIGDIR"] = f"{CACHE.name}/matplotlib"  # its list of fonts takes seconds to make, once is enough
 CASES = pathlib.Path(__file__).resolve().parents[2] / "verification" / "cases"

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""Checks the claims before a crack, once for all tests of other things, and leaves a folder for them (LATCON_VERDICTS):
+"""Checks the claims, once for all tests, and leaves a folder for them (LATCON_VERDICTS):
 
 latcon/verdicts    verdicts for quick.prm, on the program, and for nearest neighbours alone in a compressed sheet, which are refused
 matplotlib         the list of fonts, which takes half a second to make
-runs/NAME          results of the runs `accepted` and `refused` that left the verdicts
+runs/verify        results of `latcon verify --quick`, which leaves the verdicts on the program, with its output in verify.json
+runs/NAME          results of the runs `accepted` and `refused` that left the verdicts on a case
 
 Usage: verdicts_fixture.py PATH_OF_LATCON FOLDER
 """
@@ -24,6 +25,12 @@ RUNS = {"accepted": ([], 0, 2), "refused": (REFUSED, 3, 3)}  # more settings, ex
 def main(program, folder):
     shutil.rmtree(folder, ignore_errors=True)
     environment = dict(os.environ, XDG_CACHE_HOME=str(folder), MPLCONFIGDIR=str(folder / "matplotlib"))
+    # Whether these claims hold is for verify_test.py to say: a crack waits for some of them alone.
+    verify = subprocess.run([program, "verify", "--quick", "--output-dir", folder / "runs" / "verify"], text=True,
+                            capture_output=True, env=environment, check=False)
+    kept = [path.name for path in (folder / "latcon" / "verdicts").glob("*.json")]
+    (folder / "runs" / "verify.json").write_text(json.dumps(
+        {"exit_code": verify.returncode, "output": verify.stdout + verify.stderr, "verdicts": kept}), encoding="utf-8")
     for name, (settings, code, number) in RUNS.items():
         run = subprocess.run([program, "fracture", "quick", "--no-report", "--output-dir", folder / "runs" / name, *TINY, *settings],
                              text=True, stdout=subprocess.PIPE, env=environment, check=False)
