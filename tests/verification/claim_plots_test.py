@@ -4,6 +4,7 @@ import io
 import json
 import math
 import re
+import shutil
 
 import numpy as np
 import pytest
@@ -130,11 +131,16 @@ def test_values_that_were_not_computed_leave_gaps(tmp_path):
     assert html.count("<img ") == len(all_plots())
 
 
-def test_damaged_table_is_named(tmp_path):
-    write_run(tmp_path, [])
-    write_claims(tmp_path)
-    for name in TABLES:
-        path = tmp_path / f"{name}.csv"
+@pytest.mark.parametrize("plot", all_plots(), ids=lambda plot: plot.name)
+def test_damaged_table_is_named(tmp_path, plot):
+    made, folder = tmp_path / "made", tmp_path / "run"
+    made.mkdir()
+    write_claims(made)
+    write_run(folder, [])
+    for name in (plot.name, *plot.others):  # no other plot is drawn
+        shutil.copy(made / f"{name}.csv", folder)
+    for name in (plot.name, *plot.others):
+        path = folder / f"{name}.csv"
         whole = path.read_text()
         header, first = whole.splitlines()[:2]
         damaged = [whole.replace(header.split(",")[-1] + "\n", "other\n", 1), whole[:whole.rindex(",")],
@@ -146,7 +152,7 @@ def test_damaged_table_is_named(tmp_path):
             damaged[2] = whole.replace(",L,", ",P,", 1)
         for text in damaged:
             path.write_text(text)
-            assert re.search(rf"\Aerror: .*{name}\.csv: .+\n\Z", drawn_report(tmp_path, expect=2)[1])
+            assert re.search(rf"\Aerror: .*{name}\.csv: .+\n\Z", drawn_report(folder, expect=2)[1])
         path.write_text(whole)
 
 
