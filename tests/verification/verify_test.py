@@ -106,7 +106,7 @@ def test_waves_that_never_ran_fail(out):
 
 
 def judged(out, *options, expect=0):
-    run = latcon("verify", "energy", "--quick", "--output-dir", out, *options)
+    run = latcon("verify", "intrinsic-length", "--quick", "--output-dir", out, *options)
     assert run.returncode == expect, run.stdout + run.stderr
     document = json.loads((out / "run.json").read_text())
     rows = json.loads((out / "results.json").read_text())["claims"]
