@@ -127,7 +127,7 @@ def test_shards_share_the_runs():
     plan = [planned(name, seconds) for name, seconds in zip("abcde", (1, 5, 3, 5, 2))]
     assert [runs_of_shard(plan, i, 2) for i in (1, 2)] == [[1, 2, 0], [3, 4]]
     assert parse_shard("3/8") == (3, 8)
-    for text in ("0/8", "9/8", "1/100001", "3", "a/b", "1/2/3", "-1/2"):
+    for text in ("0/8", "9/8", "1/0", "1/100001", "3", "/", "a/b", "1/2/3", "-1/2", "1.5/2"):
         with pytest.raises(InputError):
             parse_shard(text)
 
