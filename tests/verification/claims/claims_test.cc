@@ -37,7 +37,7 @@ TEST(Energy, HoldsForBothShellSetsOrientationsAndLaws)
     }
 }
 
-TEST(Prestretch, HoldsForBothShellSetsAndOrientations)
+TEST(Prestretch, HoldsForBothShellSetsAcrossTheCrack)
 {
   faults::expect_holds([](const Case &, const Subject &subject) { return prestretch_claim(subject, small_sheet()); });
 }

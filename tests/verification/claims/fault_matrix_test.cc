@@ -1,5 +1,5 @@
 // Faults planted on one side of a claim: the rows that must fail, and those that compare a side with its own theory and
-// must hold. A claim that cannot fail claims nothing. Without a fault none fails: HoldsForBothShellSetsAndOrientations
+// must hold. A claim that cannot fail claims nothing. Without a fault none fails: HoldsForBothShellSetsAcrossTheCrack
 // of each claim.
 #include <gtest/gtest.h>
 
@@ -41,11 +41,13 @@ Results check(const std::string &claim, const Subject &subject, const Change &of
     options.travelling_mesh.cells = 6;
     return wave_energy_claim(subject, options).results;
   }
-  if (claim == "wave-speeds")
+  if (claim == "wave-speeds" || claim == "damped waves")
   {
     WaveSpeedsOptions options;
-    options.states = {Eigen::Matrix2d::Identity()};
-    options.damped_states = {subject.deformation};
+    if (claim == "wave-speeds")
+      options.states = {Eigen::Matrix2d::Identity()};
+    else
+      options.damped_states = {subject.deformation};
     options.kd = {0.2, 0.4};
     options.mesh.cells = 4;
     if (of_runs)
@@ -168,7 +170,7 @@ std::vector<PlantedFault> all_faults()
      }},
     {"lattice's runs: dashpots",
      [](Subject &) {},
-     {{"wave-speeds", {"decay, lattice and finite elements each against its theory"}}},
+     {{"damped waves", {"decay, lattice and finite elements each against its theory"}}},
      [](lattice::Material material)
      {
        material.nearest.viscosity *= wrong;
@@ -308,6 +310,8 @@ TEST(Surroundings, AreThoseOfTheirClosedForms)
                   damped = contact_rows(subject, input, [](lattice::ContactLaw &law) { law.viscosity *= wrong; });
     EXPECT_EQ(faults::failing(stiffer, "restitution"), 1u) << stiffer.rows()[0].error.value_or(-1.);
     EXPECT_EQ(faults::failing(damped, "restitution"), 1u) << damped.rows()[0].error.value_or(-1.);
+    if (integrator == input::Case::Integrator::velocity_verlet)
+      continue; // WaveSpeeds.HoldsForDampedWaves
     WaveSpeedsOptions options;
     options.damped_states = {subject.deformation};
     options.mesh.cells = 4;

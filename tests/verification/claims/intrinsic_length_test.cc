@@ -124,7 +124,7 @@ TEST(GradientPositivity, HasNoLengthWhereBondsAreCompressed)
   EXPECT_EQ(n_reported, 1u);
 }
 
-TEST(IntrinsicLength, HoldsForBothShellSetsAndOrientations)
+TEST(IntrinsicLength, HoldsForBothShellSetsAcrossTheCrack)
 {
   faults::expect_holds([](const Case &, const Subject &subject)
                        { return intrinsic_length_claim(subject, angle_step).results; });

@@ -29,8 +29,17 @@ NonlocalOptions options_of(const Subject &subject)
   return options;
 }
 
+// One stencil of each kind of points.
+NonlocalOptions few_stencils_of(const Subject &subject)
+{
+  NonlocalOptions options = options_of(subject);
+  const std::vector<NonlocalStencil> all = options.stencils;
+  options.stencils = {all[0], all[5], all[6]};
+  return options;
+}
+
 // Energies (H.25), bounds of harmonics (H.26), lengths (H.27) and cuts (H.28).
-TEST(Nonlocal, HoldsForBothShellSetsAndOrientations)
+TEST(Nonlocal, HoldsForBothShellSetsAcrossTheCrack)
 {
   faults::expect_holds([](const input::Case &, const Subject &subject)
                        { return nonlocal_claim(subject, options_of(subject)); });
@@ -54,7 +63,8 @@ struct Fault
 {
   const char *name;
   std::function<void(NonlocalOptions &)> plant;
-  std::vector<const char *> rows; // that must fail
+  std::vector<const char *> rows;  // that must fail
+  bool needs_all_stencils = false; // one of the rows fails in few of them
 };
 
 std::ostream &operator<<(std::ostream &out, const Fault &fault)
@@ -75,7 +85,8 @@ const Fault planted[] = {
          bond.weight *= bond.shell == 1 ? 1.01 : 1.;
      };
    },
-   {moduli, "(2, 2)", sampled, "energy density of the loaded sheet", "energy of a straight cut", "order in 1/m"}},
+   {moduli, "(2, 2)", sampled, "energy density of the loaded sheet", "energy of a straight cut", "order in 1/m"},
+   true},
   {"radius of a ring 1 % off",
    [](NonlocalOptions &o) { o.planted_rings = [](std::vector<lattice::Ring> &rings) { rings[1].radius *= 1.01; }; },
    {moduli, "intrinsic length l", "energy of a straight cut"}},
@@ -129,7 +140,8 @@ const Fault planted[] = {
      };
    },
    {moduli, "(2, 2)", sampled, "points of a square grid, m = 1.5, energy density of the loaded sheet",
-    "matrix of waves"}},
+    "matrix of waves"},
+   true},
   {"scattered bonds whose weights fall linearly",
    [](NonlocalOptions &o)
    {
@@ -154,7 +166,7 @@ INSTANTIATE_TEST_SUITE_P(FaultMatrix, NonlocalFault, testing::ValuesIn(planted))
 TEST_P(NonlocalFault, EachIsCaughtByARow)
 {
   const Subject subject = bridge::subject(subjects::paper_case());
-  NonlocalOptions options = options_of(subject);
+  NonlocalOptions options = GetParam().needs_all_stencils ? options_of(subject) : few_stencils_of(subject);
   GetParam().plant(options);
   const Results results = nonlocal_claim(subject, options);
   for (const char *row : GetParam().rows)
@@ -197,7 +209,7 @@ TEST_P(NonlocalSubject, FailsTheClaim)
 {
   Subject wrong = bridge::subject(subjects::paper_case());
   GetParam().plant(wrong);
-  const Results results = nonlocal_claim(wrong, options_of(wrong));
+  const Results results = nonlocal_claim(wrong, few_stencils_of(wrong));
   EXPECT_EQ(results.verdict(), Verdict::fails);
 }
 

@@ -34,7 +34,7 @@ void expect_that_the_local_energy_is_between(const Table &table)
 }
 
 // theory-comparison.md, eqs. (W.4) and (W.5).
-TEST(WaveEnergy, HoldsForBothShellSetsAndOrientations)
+TEST(WaveEnergy, HoldsForBothShellSetsAcrossTheCrack)
 {
   faults::expect_holds(
     [](const Case &input, const Subject &subject)
