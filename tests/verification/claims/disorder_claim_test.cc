@@ -22,11 +22,9 @@ using bridge::subject;
 using lattice::Distribution;
 using Kind = Distribution::Kind;
 
-// So few sheets that FailsForWrongFactors still sees each fault.
 DisorderOptions with(const Distribution &stiffness, std::uint64_t seed = 1)
 {
   DisorderOptions options;
-  options.n_sheets = 12;
   options.disorder = {{}, stiffness, seed};
   return options;
 }
@@ -129,6 +127,7 @@ TEST(DisorderClaim, FailsForWrongFactors)
   for (const Fault &fault : faults)
   {
     DisorderOptions options = with(Distribution(Kind::uniform, 0.1));
+    options.n_sheets = 12;
     options.planted = [&](lattice::State &state)
     {
       for (lattice::Field &factors : state.stiffness.kinds)
@@ -147,6 +146,7 @@ TEST(DisorderClaim, FailsForBondsThatAreNotIndependent)
 {
   const input::Case input = subjects::paper_case();
   DisorderOptions options = with(Distribution(Kind::uniform, 0.1));
+  options.n_sheets = 12;
   options.planted = [](lattice::State &state)
   {
     for (lattice::Field &factors : state.stiffness.kinds)
