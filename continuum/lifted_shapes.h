@@ -30,8 +30,8 @@ struct LiftedFace
 std::vector<LiftedFace> lifted_faces(const Sheet &sheet, const LiftedFace::Cell &cell);
 
 /// Derivatives of the shape functions of a cell and of its neighbor across one face, at the Gauss points of the cell,
-/// with the lifted second gradient of eq. (C.28). The nodes of the neighbor follow those of the cell, unless they are
-/// shared.
+/// with the lifted second gradient of eqs. (C.28) and (C.59). The nodes of the neighbor follow those of the cell,
+/// unless they are shared.
 class LiftedShapes
 {
 public:

@@ -76,6 +76,31 @@ TEST(GradientEquilibrium, HasNoNegativeGradientEnergy)
   }
 }
 
+// The lifting of a kink u_y = s max(0, X - a) along a column of faces in a strip of squares of side h that is periodic
+// along Y: in both cells beside a face, whose n is 4, R is a polynomial of degree p - 1 across the face with the
+// squared mean (s p / 2 h)^2, so that W_g = c |G|^2 / 2 has the energy n c s^2 p^2 / 4 h per length of the column.
+// theory-continuum.md, eq. (C.59).
+TEST(GradientEquilibrium, LiftsAKinkAsInClosedForm)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  const continuum::IsotropicGradient gradient(5e5, 0.01);
+  constexpr double h = 0.02, s = 0.3, n = 4.;
+  for (const unsigned int p : {2u, 3u, 4u})
+  {
+    Mesh mesh(MPI_COMM_SELF);
+    continuum::make_rectangle(mesh, {4. * h, 2. * h, 4, 2, false, true});
+    continuum::BoundaryConditions periodic;
+    periodic.periodic = {{continuum::edge::bottom, continuum::edge::top, 1}};
+    Constitution laws(law, gradient);
+    laws.penalty = 0.;
+    const continuum::Sheet with(mesh, laws, p, periodic), without(mesh, law, p, periodic);
+    const auto u = nodal(with, [](const Point<2> &X) { return Tensor<1, 2>({0., s * std::max(0., X[0] - 2. * h)}); });
+    const double expected = n * gradient.modulus() * s * s * p * p / (4. * h) * 2. * h;
+    // Round-off of two energies of the order of 1e3 J/m.
+    EXPECT_NEAR(with.energy(u) - without.energy(u), expected, 1e-11 * without.energy(u)) << p;
+  }
+}
+
 // psi'' is 20 times that at rest at the load. The equilibrium is independent of the penalty, and there is one without.
 TEST(GradientEquilibrium, StaysCoerciveWhereTheLawStiffens)
 {

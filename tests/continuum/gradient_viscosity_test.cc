@@ -1,6 +1,7 @@
 // Gradient part of the viscosity of dashpots at a point, compared with differences and with sums over bonds.
 #include "continuum/errors.h"
 #include "continuum/gradient_viscosity.h"
+#include "continuum/viscous_forces.h"
 #include "sheets.h"
 #include "support/largest_error.h"
 
@@ -189,6 +190,68 @@ TEST(GradientViscosity, HasTheDerivativesOfItsDensity)
               << i << c << k << b;
       }
   }
+}
+
+// Nodal forces at a rough state, whose normal gradients jump, on a mesh with hanging nodes: their power is what is
+// dissipated, not negative, and their derivative is the tangent. theory-continuum.md, eq. (C.63).
+TEST(GradientViscosity, HasTheForcesOfTheLiftedGradients)
+{
+  const CauchyBorn law = rubber_network();
+  const LatticeGradient gradient = rubber_gradient(spacing);
+  const FibreViscosity viscosity(dashpots(), micro_length);
+  Mesh mesh(MPI_COMM_SELF);
+  make_rectangle(mesh, rectangle(2, 2));
+  mesh.begin_active()->set_refine_flag();
+  mesh.execute_coarsening_and_refinement();
+  const Sheet sheet(mesh, Constitution(law, gradient), 2);
+  const ViscousForces viscous(sheet, &viscosity);
+  std::mt19937 generator(35);
+  const auto random = [&](const double size)
+  {
+    Sheet::Vector v = sheet.make_owned();
+    for (const auto i : sheet.owned())
+      v(i) = size * entry(generator);
+    sheet.conformity_constraints().distribute(v);
+    return v;
+  };
+  const auto ghosted = [&](const Sheet::Vector &v)
+  {
+    Sheet::Vector result = sheet.make_ghosted();
+    result = v;
+    return result;
+  };
+  const auto forces = [&](const Sheet::Vector &u, const Sheet::Vector &v)
+  {
+    Sheet::Vector sum = sheet.make_owned();
+    viscous.add_forces(ghosted(u), ghosted(v), 0., sum, nullptr);
+    return sum;
+  };
+  constexpr double rate = 20., step = 1e-4;
+  const Sheet::Vector u = random(2e-3), v = random(0.1), w = random(1e-3);
+  const Sheet::Vector C = forces(u, v);
+  const double dissipation = viscous.dissipation(ghosted(u), ghosted(v), 0.);
+  EXPECT_GT(dissipation, 0.);
+  EXPECT_NEAR(C * v, dissipation, 1e-12 * dissipation);
+
+  Sheet::Matrix K;
+  sheet.make_matrix(sheet.conformity_constraints(), K);
+  K = 0.;
+  viscous.add_tangent(ghosted(u), ghosted(v), 0., rate, sheet.conformity_constraints(), K);
+  Sheet::Vector Kw = sheet.make_owned(), difference = sheet.make_owned();
+  K.vmult(Kw, w);
+  for (const double sign : {1., -1.})
+  {
+    Sheet::Vector there = u, v_there = v;
+    there.add(sign * step, w);
+    v_there.add(sign * step * rate, w);
+    difference.add(sign / (2. * step), forces(there, v_there));
+  }
+  for (const auto i : sheet.owned())
+    if (sheet.conformity_constraints().is_constrained(i))
+      Kw(i) = difference(i) = 0.;
+  difference -= Kw;
+  // Differences have relative errors of the square of the step over the size of a cell, and of round-off over the step.
+  EXPECT_LT(difference.l2_norm(), 1e-6 * Kw.l2_norm());
 }
 
 TEST(GradientViscosity, RefusesLengthsThatWouldNotDissipate)

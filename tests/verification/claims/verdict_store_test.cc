@@ -3,6 +3,7 @@
 
 #include "support/errors.h"
 #include "verification/claims/verdict_store.h"
+#include "verification/input/files.h"
 #include "verification/input/sha256.h"
 
 #include <gtest/gtest.h>
@@ -87,10 +88,10 @@ TEST(VerdictKey, IsThatOfProgramClaimsSizeRanksAndInputs)
   EXPECT_EQ(claims::verdict_key(other, {of_program}, bridge::all_laws(), true, 2).hash,
             claims::verdict_key(input, {of_program}, lattice_laws, true, 1).hash);
   EXPECT_NE(claims::verdict_key(input, {of_program}, lattice_laws, true, 1).hash, hash);
-  // The program is the one that runs.
-  EXPECT_NE(
-    claims::verdict_key(input, {}, lattice_laws, true, 1).text.find("program=" + sha256(content_of("/proc/self/exe"))),
-    std::string::npos);
+  // The program is the one that runs, with the module of the finite elements beside it.
+  const std::string program =
+    sha256(sha256(content_of("/proc/self/exe")) + " " + sha256(content_of(input::module_file())));
+  EXPECT_NE(claims::verdict_key(input, {}, lattice_laws, true, 1).text.find("program=" + program), std::string::npos);
 }
 
 TEST(Verdicts, ComeBackAsTheyWere)
