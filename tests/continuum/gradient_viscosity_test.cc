@@ -192,6 +192,51 @@ TEST(GradientViscosity, HasTheDerivativesOfItsDensity)
   }
 }
 
+// The rate of a kink, as in GradientEquilibrium.LiftsAKinkAsInClosedForm, on a stretched sheet: the gradient part
+// dissipates n p^2 / 2 h times the power of the rate s e_y (x) NN per length of the column of faces.
+// theory-continuum.md, eqs. (C.59) and (C.63).
+TEST(GradientViscosity, DissipatesAKinkAsInClosedForm)
+{
+  const CauchyBorn law = rubber_network();
+  const LatticeGradient gradient = rubber_gradient(spacing);
+  const FibreViscosity with(dashpots(), micro_length), without(dashpots());
+  constexpr double h = 0.02, s = 0.3, n = 4.;
+  const Tensor<2, 2> F = matrix(1.4, 0.1, 0., 1.2);
+  FieldDerivatives state{}, rate{};
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      state[i][J] = F[i][J] - (i == J ? 1. : 0.);
+  rate[1][n_first] = s;
+  PointIntegrand density;
+  clear(density, Order::value);
+  with.gradient()->add_density(state, rate, Order::value, 0., density);
+  for (const unsigned int p : {2u, 3u})
+  {
+    Mesh mesh(MPI_COMM_SELF);
+    make_rectangle(mesh, {4. * h, 2. * h, 4, 2, false, true});
+    BoundaryConditions periodic;
+    periodic.periodic = {{edge::bottom, edge::top, 1}};
+    const Sheet sheet(mesh, Constitution(law, gradient), p, periodic);
+    // Without constraints, which would make the stretch along Y vanish.
+    const auto values = [&](const auto &field)
+    {
+      Sheet::Vector owned = sheet.make_owned(), ghosted = sheet.make_ghosted();
+      sheet.for_each_owned_dof([&](const auto dof, const unsigned int i, const Point<2> &X)
+                               { owned(dof) = field(X)[i]; });
+      ghosted = owned;
+      return ghosted;
+    };
+    const Sheet::Vector u = values([&](const Point<2> &X) { return F * X - X; });
+    const Sheet::Vector v = values(
+      [&](const Point<2> &X) {
+        return Tensor<1, 2>({0., s * std::max(0., X[0] - 2. * h)});
+      });
+    const double local = ViscousForces(sheet, &without).dissipation(u, v, 0.);
+    const double expected = density.value * n * p * p / (2. * h) * 2. * h;
+    EXPECT_NEAR(ViscousForces(sheet, &with).dissipation(u, v, 0.) - local, expected, 1e-10 * (local + expected)) << p;
+  }
+}
+
 // Nodal forces at a rough state, whose normal gradients jump, on a mesh with hanging nodes: their power is what is
 // dissipated, not negative, and their derivative is the tangent. theory-continuum.md, eq. (C.63).
 TEST(GradientViscosity, HasTheForcesOfTheLiftedGradients)
