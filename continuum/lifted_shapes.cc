@@ -1,5 +1,7 @@
 #include "continuum/lifted_shapes.h"
 
+#include "continuum/mesh_loop.h"
+
 #include <deal.II/base/qprojector.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_dgq.h>
@@ -31,26 +33,17 @@ std::vector<LiftedFace> lifted_faces(const Sheet &sheet, const LiftedFace::Cell 
         faces.push_back({face, whole, {}, 0, whole, &*condition});
       continue;
     }
-    const auto neighbor = cell->neighbor_or_periodic_neighbor(face);
-    if (periodic ? cell->periodic_neighbor_is_coarser(face) : cell->neighbor_is_coarser(face))
+    const CellBeyond beyond = cell_beyond(cell, face);
+    if (!beyond.cell->has_children())
     {
-      const auto [neighbor_face, neighbor_subface] = periodic
-                                                       ? cell->periodic_neighbor_of_coarser_periodic_neighbor(face)
-                                                       : cell->neighbor_of_coarser_neighbor(face);
-      faces.push_back({face, whole, neighbor, neighbor_face, neighbor_subface});
-      continue;
-    }
-    const unsigned int neighbor_face = periodic ? cell->periodic_neighbor_face_no(face) : cell->neighbor_face_no(face);
-    if (!neighbor->has_children())
-    {
-      faces.push_back({face, whole, neighbor, neighbor_face});
+      faces.push_back({face, whole, beyond.cell, beyond.face, beyond.subface});
       continue;
     }
     for (unsigned int half = 0; half < 2; ++half)
-      faces.push_back({face, half,
-                       periodic ? cell->periodic_neighbor_child_on_subface(face, half)
-                                : cell->neighbor_child_on_subface(face, half),
-                       neighbor_face});
+      faces.push_back(
+        {face, half,
+         periodic ? cell->periodic_neighbor_child_on_subface(face, half) : cell->neighbor_child_on_subface(face, half),
+         beyond.face});
   }
   return faces;
 }

@@ -2,12 +2,9 @@
 
 #include "continuum/shape_tables.h"
 
-#include <deal.II/base/function.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/lac/full_matrix.h>
 
-#include <map>
-#include <utility>
 #include <vector>
 
 namespace latcon::continuum
