@@ -217,11 +217,22 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
       return rise;
     };
     Residual state = best_residual(step, predicted(1.), predicted(0.), u);
+    // A tangent is kept while the residual falls a hundredfold: it has then hardly changed.
+    constexpr double kept_reduction = 0.01;
+    // With it, one further solution reaches the usual tolerance of a step.
+    constexpr double largest_forcing = 1e-5;
+    double last_free = 0.;
+    Vector tangent_at; // mean displacement of the tangent
     const auto solve = [&](const Residual &at, const Vector &, const double forcing, Vector &change)
     {
       const unsigned int set_ups = linear_solver_->n_set_ups();
       const double load_factor = step.mean_load_factor();
-      assemble(at.u_mean, at.v_mean, load_factor, step.mean_load_rate());
+      if (!(at.free <= kept_reduction * last_free))
+      {
+        assemble(at.u_mean, at.v_mean, load_factor, step.mean_load_rate());
+        tangent_at = at.u_mean;
+      }
+      last_free = at.free;
       Vector rhs = at.residual;
       rhs *= -1.;
       for (const types::global_dof_index i : sheet_.owned())
@@ -229,12 +240,12 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
           rhs(i) = 0.;
       rhs.compress(VectorOperation::insert);
       const unsigned int iterations = linear_solver_->solve(matrix_, change, rhs, forcing);
-      record_multigrid_state(set_ups, at.u_mean, load_factor);
+      record_multigrid_state(set_ups, tangent_at, load_factor);
       homogeneous_.distribute(change);
       return NewtonStep{iterations, 0.};
     };
     const NewtonSolver<Residual> newton(
-      {settings_.relative_tolerance, settings_.max_newton_iterations, settings_.max_halvings},
+      {settings_.relative_tolerance, settings_.max_newton_iterations, settings_.max_halvings, largest_forcing},
       {[&](const Vector &at) { return evaluate(step, at); },
        [this](const Residual &at, const Vector &there) { return round_off(at, there); }, solve, nullptr,
        [this](const Residual &at) { return ", the largest residual is" + location_of_largest(at.residual); }});

@@ -26,12 +26,12 @@ LinearSolver::LinearSolver(const Sheet &sheet, DirichletBoundaries held, const L
 
 void LinearSolver::update(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble)
 {
+  is_fresh_ = false;
   if (is_direct_)
     return;
   state_.reinit(u);
   state_ = u;
   assemble_ = assemble;
-  is_fresh_ = false;
   if (is_stale_)
     set_up(K);
 }
@@ -82,7 +82,9 @@ unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const
   {
     if (is_direct_)
     {
-      direct_.factorise(K);
+      if (!is_fresh_)
+        direct_.factorise(K);
+      is_fresh_ = true;
       direct_.solve(x, b);
     }
     else

@@ -43,7 +43,8 @@ public:
   LinearSolver(const Sheet &sheet, DirichletBoundaries held, const LinearSettings &settings,
                Symmetry symmetry = Symmetry::symmetric);
 
-  /// Updates the preconditioner for a changed K; to be called before the next solve(). Records the state `u` [m] (with
+  /// Updates the preconditioner for a changed K; to be called before the next solve(), which otherwise uses the factors
+  /// or the multigrid that there are. Records the state `u` [m] (with
   /// ghost entries) and sets up multigrid unless the existing one can be reused. `assemble` assembles the tangents of
   /// coarser meshes and, for unsymmetric K, a symmetric one of the sheet itself; solve() may call it as well.
   /// Collective.
@@ -92,7 +93,7 @@ private:
   unsigned int n_set_ups_ = 0;
   Sheet::Vector state_;
   Multigrid::Assembler assemble_;
-  bool is_fresh_ = false;           // set up in the last update
+  bool is_fresh_ = false;           // set up, or factorised, since the last update
   bool is_stale_ = true;            // to be rebuilt in the next update
   double baseline_iterations_ = 0.; // iterations per digit with an up-to-date multigrid
 };

@@ -150,6 +150,30 @@ TEST(LinearSolver, SolvesUnsymmetricMatrices)
   }
 }
 
+// A matrix that is not announced is solved with the factors of the one before.
+TEST(LinearSolver, FactorisesAfterAnUpdate)
+{
+  Problem problem{LinearSettings()};
+  problem.solve(0.05 * length);
+  LinearSettings settings;
+  settings.direct_limit = 1000000;
+  LinearSolver direct(*problem.sheet, all_held(), settings);
+  const auto solution = [&]
+  {
+    Sheet::Vector x = problem.sheet->make_owned();
+    direct.solve(problem.K, x, problem.b);
+    return x;
+  };
+  const Sheet::Vector before = solution();
+  problem.K *= 2.;
+  EXPECT_EQ(solution(), before);
+  direct.update(problem.sheet->make_ghosted(), problem.K, {});
+  Sheet::Vector after = solution();
+  after *= 2.;
+  after -= before;
+  EXPECT_LT(after.l2_norm(), 1e-10 * before.l2_norm());
+}
+
 TEST(LinearSolver, RefusesSettingsOutOfRange)
 {
   for (const double limit : {-1., std::nan("")})

@@ -70,7 +70,7 @@ public:
     continuum::make_rectangle(mesh_, {length, height, 6, 5, false, true});
     continuum::BoundaryConditions conditions;
     conditions.displacements = {{edge::left, constant(0., 0.)}};
-    conditions.tractions = {{edge::right, constant(1e5, 0.)}};
+    conditions.tractions = {{edge::right, constant(3e5, 1e5)}};
     conditions.periodic = {{edge::bottom, edge::top, 1}};
     continuum::DynamicSettings settings{4e-4};
     settings.degree = 2;
@@ -91,7 +91,7 @@ public:
     multigrid_cases::refine_towards(mesh_, Point<2>(0.4 * length, 0.003), 2, length / 3.);
     continuum::BoundaryConditions conditions;
     conditions.displacements = {{edge::left, constant(0., 0.)}};
-    conditions.tractions = {{edge::right, constant(1e5, 3e4)}};
+    conditions.tractions = {{edge::right, constant(3e5, 1e5)}};
     conditions.normal_gradients = {{edge::top, constant(0.3, 0.2)}};
     continuum::DynamicSettings settings{4e-4};
     settings.degree = 2;
