@@ -77,10 +77,11 @@ public:
     {
       const Basis basis = {table.row(q, 0), table.row(q, 0)};
       evaluate(basis, sheet_.has_gradient() ? n_derivatives : n_first);
+      const Point<2> X = cell->vertex(0) + table.offsets[q];
       if (forces_)
-        forces_->density({n_points_++, table.JxW[q], derivatives_[0], derivatives_.back()}, density_);
+        forces_->density({n_points_++, X, table.JxW[q], derivatives_[0], derivatives_.back()}, density_);
       else
-        add_energy(*sheet_.constitution().local, derivatives_[0], order_, density_);
+        add_energy(sheet_.constitution().local->at(X), derivatives_[0], order_, density_);
       if (has_gradient)
         add_gradient_density();
       add_point(basis, has_gradient ? n_derivatives : n_first, table.JxW[q]);

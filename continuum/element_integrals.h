@@ -33,6 +33,7 @@ void integrate(const Sheet &sheet, const Sheet::Vector &u, double load_factor, O
 struct CellPoint
 {
   std::size_t number; ///< among the points of the cells on this rank, in their order
+  dealii::Point<2> X; ///< reference position [m]
   double JxW;         ///< weight [m^2]
   const FieldDerivatives &u; ///< of the displacement, by reference position
   const FieldDerivatives &v; ///< of the velocity, likewise; undefined without one

@@ -1,12 +1,11 @@
 #include "continuum/error_indicator.h"
 
 #include "continuum/collective.h"
-#include "continuum/mesh_loop.h"
+#include "continuum/lifted_shapes.h"
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/fe/fe_interface_values.h>
-#include <deal.II/lac/la_parallel_vector.h>
 
 #include <cmath>
 
@@ -16,13 +15,6 @@ namespace latcon::continuum
 {
 namespace
 {
-struct FaceShare
-{
-  types::global_cell_index cells[2];
-  double eta_squared;
-};
-using Iterator = DoFHandler<2>::active_cell_iterator;
-
 // Values of the fields on one side of a face.
 struct Side
 {
@@ -42,21 +34,22 @@ class FaceIntegrator
 {
 public:
   FaceIntegrator(const Sheet &sheet, const Sheet::Vector &u)
-    : sheet_(sheet), u_(u), values_(sheet.mapping(), sheet.element(), QGauss<1>(sheet.degree() + 1),
-                                    update_gradients | update_hessians | update_JxW_values | update_normal_vectors)
+    : sheet_(sheet), u_(u),
+      values_(sheet.mapping(), sheet.element(), QGauss<1>(sheet.degree() + 1),
+              update_gradients | update_hessians | update_JxW_values | update_normal_vectors | update_quadrature_points)
   {
     const Tensor<2, 2> I(unit_symmetric_tensor<2>());
     shear_modulus_ = sheet.constitution().local->tangent(I)[0][1][0][1];
     normal_stiffness_ = sheet.has_gradient() ? sheet.constitution().gradient->normal_stiffness() : 0.;
   }
 
-  FaceShare face(const Iterator &cell, const unsigned int f, const unsigned int sub, const Iterator &neighbor,
-                 const unsigned int nf, const unsigned int nsub)
+  // Returns the share of a cell in the squared jumps across one of its faces.
+  double operator()(const LiftedFace::Cell &cell, const LiftedFace &at)
   {
-    values_.reinit(cell, f, sub, neighbor, nf, nsub);
+    values_.reinit(cell, at.face, at.subface, at.neighbor, at.neighbor_face, at.neighbor_subface);
     const Constitution &laws = sheet_.constitution();
-    const double h =
-      std::min(cell->measure() / cell->face(f)->measure(), neighbor->measure() / neighbor->face(nf)->measure());
+    const double h = std::min(cell->measure() / cell->face(at.face)->measure(),
+                              at.neighbor->measure() / at.neighbor->face(at.neighbor_face)->measure());
     for (unsigned int s = 0; s < 2; ++s)
       sides_[s].read(values_.get_fe_face_values(s), u_);
     const double p = sheet_.degree();
@@ -74,7 +67,7 @@ public:
         slope_jump += sign * (F * N);
         for (unsigned int i = 0; i < 2; ++i)
           F[i][i] += 1.;
-        P_jump += sign * laws.first_piola_stress(F, sides_[s].hessians[q]);
+        P_jump += sign * laws.first_piola_stress(values_.get_quadrature_points()[q], F, sides_[s].hessians[q]);
         if (sheet_.has_gradient())
           double_traction_jump += sign * ((laws.double_stress(F, sides_[s].hessians[q]) * N) * N);
       }
@@ -84,7 +77,7 @@ public:
                     h / normal_stiffness_ * double_traction_jump.norm_square();
       sum += at_point * values_.JxW(q);
     }
-    return {{cell->global_active_cell_index(), neighbor->global_active_cell_index()}, 0.5 * sum};
+    return 0.5 * sum;
   }
 
 private:
@@ -95,42 +88,24 @@ private:
   double normal_stiffness_;
   Side sides_[2];
 };
-
-struct IndicatorVisitor
-{
-  FaceIntegrator integrator;
-  LinearAlgebra::distributed::Vector<double> &eta_squared;
-
-  void cell(const Iterator &) {}
-  void boundary(const Iterator &, unsigned int) {}
-  void interior(const Iterator &cell, const unsigned int face, const unsigned int subface, const Iterator &neighbor,
-                const unsigned int neighbor_face, const unsigned int neighbor_subface)
-  {
-    const FaceShare share = integrator.face(cell, face, subface, neighbor, neighbor_face, neighbor_subface);
-    for (const types::global_cell_index each : share.cells)
-      eta_squared(each) += share.eta_squared;
-  }
-  void cell_end() {}
-};
 } // namespace
 
 Vector<float> error_indicators(const Sheet &sheet, const Sheet::Vector &u)
 {
-  // Each face, also between ranks, is evaluated once and adds to both of its cells.
-  LinearAlgebra::distributed::Vector<double> eta_squared(sheet.mesh().global_active_cell_index_partitioner().lock());
-  const DeferredException guarded(
-    [&]
-    {
-      IndicatorVisitor visitor{{sheet, u}, eta_squared};
-      for_each_cell_and_face(sheet.dof_handler(), visitor);
-    });
-  eta_squared.compress(VectorOperation::add);
-  guarded.rethrow_collectively(sheet.communicator());
-
   Vector<float> eta(sheet.mesh().n_active_cells());
-  for (const auto &cell : sheet.mesh().active_cell_iterators())
-    if (cell->is_locally_owned())
-      eta[cell->active_cell_index()] = std::sqrt(eta_squared(cell->global_active_cell_index()));
+  run_collectively(sheet.communicator(),
+                   [&]
+                   {
+                     FaceIntegrator squared_jumps(sheet, u);
+                     for (const auto &cell : sheet.dof_handler().active_cell_iterators())
+                     {
+                       double sum = 0.;
+                       if (cell->is_locally_owned())
+                         for (const LiftedFace &face : lifted_faces(sheet, cell))
+                           sum += face.condition == nullptr ? squared_jumps(cell, face) : 0.;
+                       eta[cell->active_cell_index()] = std::sqrt(sum);
+                     }
+                   });
   return eta;
 }
 } // namespace latcon::continuum

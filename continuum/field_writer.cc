@@ -48,7 +48,7 @@ public:
           F[i][J] = (i == J ? 1. : 0.) + inputs.solution_gradients[p][i][J];
         G[i] = inputs.solution_hessians[p][i];
       }
-      Tensor<2, 2> P = laws_.first_piola_stress(F, G);
+      Tensor<2, 2> P = laws_.first_piola_stress(inputs.evaluation_points[p], F, G);
       if (inputs.solution_values[p].size() > 2)
         for (unsigned int i = 0; i < 2; ++i)
           for (unsigned int J = 0; J < 2; ++J)
@@ -61,7 +61,7 @@ public:
           computed[p][4 + 2 * i + J] = P[i][J];
           computed[p][8 + 2 * i + J] = sigma[i][J];
         }
-      computed[p][12] = laws_.energy(F, G);
+      computed[p][12] = laws_.energy(inputs.evaluation_points[p], F, G);
       const Tensor<3, 2> Q = laws_.double_stress(F, G);
       for (unsigned int i = 0; i < 2; ++i)
         for (unsigned int J = 0; J < 2; ++J)
@@ -94,7 +94,10 @@ public:
     return kinds;
   }
 
-  UpdateFlags get_needed_update_flags() const override { return update_values | update_gradients | update_hessians; }
+  UpdateFlags get_needed_update_flags() const override
+  {
+    return update_values | update_gradients | update_hessians | update_quadrature_points;
+  }
 
 private:
   const Constitution &laws_;

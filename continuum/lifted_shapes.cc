@@ -1,7 +1,5 @@
 #include "continuum/lifted_shapes.h"
 
-#include "continuum/mesh_loop.h"
-
 #include <deal.II/base/qprojector.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_dgq.h>
@@ -16,7 +14,7 @@ namespace latcon::continuum
 namespace
 {
 constexpr unsigned int whole = numbers::invalid_unsigned_int;
-}
+} // namespace
 
 std::vector<LiftedFace> lifted_faces(const Sheet &sheet, const LiftedFace::Cell &cell)
 {
@@ -33,17 +31,22 @@ std::vector<LiftedFace> lifted_faces(const Sheet &sheet, const LiftedFace::Cell 
         faces.push_back({face, whole, {}, 0, whole, &*condition});
       continue;
     }
-    const CellBeyond beyond = cell_beyond(cell, face);
-    if (!beyond.cell->has_children())
+    const auto neighbor = cell->neighbor_or_periodic_neighbor(face);
+    if (periodic ? cell->periodic_neighbor_is_coarser(face) : cell->neighbor_is_coarser(face))
     {
-      faces.push_back({face, whole, beyond.cell, beyond.face, beyond.subface});
+      const auto [neighbor_face, half] = periodic ? cell->periodic_neighbor_of_coarser_periodic_neighbor(face)
+                                                  : cell->neighbor_of_coarser_neighbor(face);
+      faces.push_back({face, whole, neighbor, neighbor_face, half});
       continue;
     }
-    for (unsigned int half = 0; half < 2; ++half)
+    const unsigned int neighbor_face = periodic ? cell->periodic_neighbor_face_no(face) : cell->neighbor_face_no(face);
+    if (!neighbor->has_children())
+      faces.push_back({face, whole, neighbor, neighbor_face});
+    for (unsigned int half = 0; half < 2 && neighbor->has_children(); ++half)
       faces.push_back(
         {face, half,
          periodic ? cell->periodic_neighbor_child_on_subface(face, half) : cell->neighbor_child_on_subface(face, half),
-         beyond.face});
+         neighbor_face});
   }
   return faces;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
 
 namespace latcon::continuum
@@ -32,6 +33,9 @@ class Material
 {
 public:
   virtual ~Material() = default;
+
+  /// Returns the law at a reference position X [m], another one than this in parts of a sheet that is not uniform.
+  virtual const Material &at(const dealii::Point<2> & /*X*/) const { return *this; }
 
   /// Returns the energy and its derivatives up to `order`.
   virtual Response evaluate(const dealii::Tensor<2, 2> &F, Order order) const = 0;

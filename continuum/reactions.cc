@@ -29,7 +29,7 @@ void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector
       const auto &element = sheet.element();
       FEFaceValues<2> values(sheet.mapping(), element, QGauss<1>(sheet.degree() + 1),
                              update_values | update_gradients | update_hessians | update_normal_vectors |
-                               update_JxW_values);
+                               update_JxW_values | update_quadrature_points);
       const FEValuesExtractors::Vector displacement(0);
       std::vector<Tensor<2, 2>> F(values.n_quadrature_points);
       std::vector<Tensor<3, 2>> G(values.n_quadrature_points);
@@ -46,7 +46,8 @@ void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector
           for (unsigned int i = 0; i < 2; ++i)
             F[q][i][i] += 1.;
           const Tensor<1, 2> traction =
-            sheet.constitution().first_piola_stress(F[q], G[q]) * values.normal_vector(q) * values.JxW(q);
+            sheet.constitution().first_piola_stress(values.quadrature_point(q), F[q], G[q]) * values.normal_vector(q) *
+            values.JxW(q);
           for (unsigned int a = 0; a < dofs.size(); ++a)
             forces[a] += traction[element.system_to_component_index(a).first] * values.shape_value(a, q);
         }

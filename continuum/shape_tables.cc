@@ -19,7 +19,8 @@ constexpr std::size_t max_shapes = 32;
 ShapeTables::ShapeTables(const Sheet &sheet)
   : has_gradient_(sheet.has_gradient()), is_straight_(sheet.mapping().get_degree() == 1), element_(sheet.degree()),
     cell_values_(sheet.mapping(), element_, QGauss<2>(sheet.degree() + 1),
-                 update_JxW_values | update_gradients | (has_gradient_ ? update_hessians : update_default))
+                 update_JxW_values | update_quadrature_points | update_gradients |
+                   (has_gradient_ ? update_hessians : update_default))
 {
   if (!has_gradient_)
     return;
@@ -62,6 +63,9 @@ void ShapeTables::fill(const FEValuesBase<2> &values, const bool is_face, ShapeT
   table.JxW = values.get_JxW_values();
   if (is_face)
     table.normals = values.get_normal_vectors();
+  table.offsets.clear();
+  for (unsigned int q = 0; q < table.n_points && !is_face; ++q)
+    table.offsets.push_back(values.quadrature_point(q) - values.get_cell()->vertex(0));
   for (unsigned int q = 0; q < table.n_points; ++q)
     for (unsigned int a = 0; a < n; ++a)
     {

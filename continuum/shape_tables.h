@@ -23,6 +23,7 @@ struct ShapeTable
   std::vector<double> derivatives;           ///< [point][derivative][shape function]
   std::vector<double> JxW;                   ///< weight [m^2] or [m] of each point
   std::vector<dealii::Tensor<1, 2>> normals; ///< of each point of a face, outward
+  std::vector<dealii::Tensor<1, 2>> offsets; ///< of each point of a cell from its first vertex [m]
   const double *row(const unsigned int q, const unsigned int derivative) const
   {
     return &derivatives[(q * n_derivatives + derivative) * stride];

@@ -218,9 +218,9 @@ std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point
           state.G[i][J][K] = sum[6 + 4 * i + 2 * J + K] / count;
       }
     }
-    state.P = constitution_.first_piola_stress(state.F, state.G);
+    state.P = constitution_.first_piola_stress(state.X, state.F, state.G);
     state.Q = constitution_.double_stress(state.F, state.G);
-    state.energy_density = constitution_.energy(state.F, state.G);
+    state.energy_density = constitution_.energy(state.X, state.F, state.G);
   }
   return states;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
 
 #include <memory>
@@ -16,6 +17,9 @@ class Viscosity
 {
 public:
   virtual ~Viscosity() = default;
+
+  /// Returns the law at a reference position X [m], as Material::at(). Its gradient part is that of this law.
+  virtual const Viscosity &at(const dealii::Point<2> & /*X*/) const { return *this; }
 
   /// First Piola stress P_iJ [Pa]. Objective: zero for Fdot = W F with W antisymmetric.
   virtual dealii::Tensor<2, 2> stress(const dealii::Tensor<2, 2> &F, const dealii::Tensor<2, 2> &Fdot) const = 0;

@@ -12,16 +12,17 @@ namespace latcon::continuum
 {
 namespace
 {
-PointForces viscous(const Viscosity &law, const Sheet::Vector &v, const Order order, const double load_rate = 0.,
+PointForces viscous(const Viscosity &viscosity, const Sheet::Vector &v, const Order order, const double load_rate = 0.,
                     const double rate_by_displacement = 0.)
 {
   PointForces forces;
   forces.velocity = &v;
-  forces.gradient = law.gradient();
+  forces.gradient = viscosity.gradient();
   forces.load_rate = load_rate;
   forces.rate_by_displacement = rate_by_displacement;
-  forces.density = [=, &law](const CellPoint &point, PointIntegrand &density)
+  forces.density = [=, &viscosity](const CellPoint &point, PointIntegrand &density)
   {
+    const Viscosity &law = viscosity.at(point.X);
     const Tensor<2, 2> F = deformation_gradient(point.u);
     Tensor<2, 2> Fdot;
     for (unsigned int i = 0; i < 2; ++i)

@@ -79,7 +79,7 @@ def test_each_claim_has_its_text_plots_and_error_metrics(tmp_path):
         "prestretch": ("local: order of displacement 1.00, stress 1.00, energy 1.00, reaction 1.00, shape 1.00",
                        "gradient: order of displacement 2.00, stress 2.00, energy 2.00, reaction 2.00<"),
         "running-crack": ("NN+NNN: most negative velocity ahead of the tip [m/s]: lattice -1.00, local continuum "
-                          "-0.50, gradient continuum -0.50, with gradient viscosity -0.50",
+                          "-0.50, with gradients -0.50, and their viscosity -0.50",
                           "NN: most negative velocity ahead of the tip [m/s]: lattice -1.00, local continuum -0.50<"),
         "steady-crack": ("β = 0.5: speed off the exact solution by up to 1.0e-04",),
     }

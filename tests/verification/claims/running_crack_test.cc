@@ -1,4 +1,5 @@
 // The claim on a running crack fails when either side is wrong.
+#include "verification/claims/running_crack/flank.h"
 #include "verification/claims/running_crack/running_crack_claim.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/fits.h"
 #include "tests/verification/claims/faults.h"
+#include "verification/bridge/homogeneous_response.h"
+#include "verification/claims/sites_and_bonds.h"
 
 namespace running_crack_test
 {
@@ -46,10 +50,13 @@ WaveContinuum &medium(CrackSides &sides, const std::string &name)
   throw std::invalid_argument(name);
 }
 
-// Rows of the claim with something changed.
-Results with(const Plant &plant)
+// Rows of the claim with something changed, for some of the continua.
+Results with(const Plant &plant, const std::vector<std::string> &names = {"local"})
 {
   CrackSides sides = crack_sides(rubber(), small());
+  const auto is_other = [&](const NamedContinuum &side)
+  { return std::find(names.begin(), names.end(), side.name) == names.end(); };
+  sides.continua.erase(std::remove_if(sides.continua.begin(), sides.continua.end(), is_other), sides.continua.end());
   plant(sides);
   return running_crack_claim(rubber(), sides, small()).results;
 }
@@ -73,9 +80,10 @@ TEST(RunningCrack, HasContinuaWithAndWithoutGradients)
   RunningCrackOptions options = small();
   options.anisotropic = true;
   const CrackSides sides = crack_sides(rubber(), options);
-  ASSERT_EQ(sides.continua.size(), 6u);
-  for (const auto &[name, side] : sides.continua)
+  ASSERT_EQ(sides.continua.size(), 10u);
+  for (const auto &[name, side, cut] : sides.continua)
   {
+    EXPECT_EQ(cut.size(), name.find("-flank") != std::string::npos ? 6u : 0u) << name;
     const bool is_bonds = name.find("bonds-") == 0, has_gradient = name.find("gradient") != std::string::npos;
     const continuum::Material &law = is_bonds ? static_cast<const continuum::Material &>(rubber().cauchy_born)
                                               : static_cast<const continuum::Material &>(rubber().network);
@@ -88,20 +96,150 @@ TEST(RunningCrack, HasContinuaWithAndWithoutGradients)
 }
 
 // The gradient viscosity resists the opening of the flanks, where the lattice has lost dashpots: it needs a tip further
-// ahead. The lattice is the same, so that tips differ by the laws alone.
-TEST(RunningCrack, IsHeldBackByGradientViscosity)
+// ahead. Without what the crack has cut, the continuum is nearer to the lattice, and loses as much energy. The lattice
+// is the same, so that tips differ by the laws alone.
+TEST(RunningCrack, IsHeldBackByWhatTheLatticeLacks)
 {
-  const Results results = with([](CrackSides &) {});
-  const auto tip = [&](const std::string &name)
+  const Results results = with([](CrackSides &) {}, {"local", "gradient", "viscous-gradient", "local-flank"});
+  const auto row = [&](const std::string &what, const std::string &name)
   {
-    for (const Result &row : results.rows())
-      if (row.quantity.find("effective tip") != std::string::npos &&
-          row.quantity.find("of the " + name + " continuum") != std::string::npos)
-        return row.lattice.value();
-    return std::nan("");
+    for (const Result &candidate : results.rows())
+      if (candidate.quantity.find(what) != std::string::npos &&
+          candidate.quantity.find(" " + name + " continuum") != std::string::npos)
+        return candidate;
+    throw std::invalid_argument(what + name);
   };
+  const auto tip = [&](const std::string &name) { return row("effective tip", name).lattice.value(); };
   EXPECT_GT(tip("viscous-gradient"), tip("gradient") + 0.2);
-  EXPECT_GT(tip("gradient"), tip("local"));
+  const auto gain = [&](const std::string &what)
+  { return *row(what, "local-flank").error / *row(what, "local").error; };
+  for (const char *quantity : {"velocity, 5 d", "velocity, 1.5 d", "opening profile, 5 d", "energy flux"})
+    EXPECT_LT(gain(quantity), 0.8) << quantity; // 1 with whole flanks
+}
+
+// What a straight cut takes from a homogeneous sheet, exactly: energy of bonds and power of dashpots.
+TEST(Flank, LacksTheBondsThatTheLatticeLacks)
+{
+  const Eigen::Matrix2d F{{2.3, 0.4}, {-0.2, 2.8}}, rate{{20., -90.}, {30., 50.}};
+  for (const lattice::Orientation orientation :
+       {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
+  {
+    const double d = rubber().spacing, from = 8.1 * d;
+    CrackDrive drive{d, orientation, 40. * d, 20. * d, from, 1., 4};
+    const double to = from + 8. * (drive.rows_along() ? d : std::sqrt(3.) * d); // whole periods
+    const lattice::TriangularLattice sheet(d, drive.length, drive.height, orientation);
+    double energy = 0., power = 0.;
+    const lattice::State state = lattice::homogeneous_state(sheet, rubber().material, F, lattice::Edges::free);
+    for (const lattice::Bond &bond : bonds(state, sheet))
+    {
+      const Eigen::Vector2d L = sheet.bond_vector(bond.kind), X = sheet.reference(bond.near);
+      const double share = (drive.axis() - X.y()) / L.y(), crossing = X.x() + share * L.x();
+      if (!(share > 0. && share < 1. && crossing > from && crossing < to))
+        continue;
+      const lattice::Shell &shell = *rubber().material.shell(bond.kind);
+      const double l = sheet.rest_length(bond.kind), section = lattice::cross_section(shell, sheet);
+      const Eigen::Vector2d n = (F * L).normalized();
+      energy += section * l * lattice::energy(shell.law, (F * L).norm() / l);
+      power += section / l * shell.viscosity * std::pow(n.dot(rate * L), 2);
+    }
+
+    const auto viscosity = homogenised_viscosity(sheet, rubber().material);
+    const continuum::CauchyBorn whole = cauchy_born(sheet, rubber().material);
+    Flank flank(drive.axis(), from, drive.pitch(), bond_families(sheet, rubber().material), whole, viscosity.get());
+    const auto E = to_continuum(F), Edot = to_continuum(rate);
+    double missing_energy = 0., missing_power = 0.;
+    const double area = 2. * (to - from) * drive.pitch(); // of a layer, on both flanks
+    for (int layer = 0; layer < 5; ++layer)
+    {
+      const dealii::Point<2> X(0.5 * (from + to), drive.axis() + (layer + 0.5) * drive.pitch());
+      flank.cut_to(from);
+      EXPECT_EQ(flank.law().at(X).energy(E), whole.energy(E));
+      flank.cut_to(to);
+      missing_energy += area * (whole.energy(E) - flank.law().at(X).energy(E));
+      missing_power += area * (viscosity->dissipation(E, Edot) - flank.viscosity()->at(X).dissipation(E, Edot));
+    }
+    EXPECT_NEAR(missing_energy / energy, 1., 1e-12);
+    EXPECT_NEAR(missing_power / power, 1., 1e-12);
+
+    const continuum::Material &law = flank.law().at({0.5 * (from + to), drive.axis() + 0.5 * drive.pitch()});
+    const double e = 1e-5;
+    for (unsigned int k = 0; k < 4; ++k)
+    {
+      auto up = E, down = E;
+      up[k / 2][k % 2] += e;
+      down[k / 2][k % 2] -= e;
+      const double scale = law.first_piola_stress(E).norm();
+      EXPECT_NEAR((law.energy(up) - law.energy(down)) / (2. * e) / scale,
+                  law.first_piola_stress(E)[k / 2][k % 2] / scale, 1e-8);
+      const auto slope = (law.first_piola_stress(up) - law.first_piola_stress(down)) / (2. * e);
+      for (unsigned int i = 0; i < 4; ++i)
+        EXPECT_NEAR(slope[i / 2][i % 2] / scale, law.tangent(E)[i / 2][i % 2][k / 2][k % 2] / scale, 1e-8);
+    }
+  }
+}
+
+// A strip with free edges that is stretched along its rows: its edges hold the energy of the lattice's, up to a part of
+// what the rows next to an edge gain by moving.
+TEST(Flank, HasTheEdgeEnergyOfALattice)
+{
+  const double d = rubber().spacing;
+  const lattice::TriangularLattice sheet = rubber().sheet();
+  const CrackDrive drive{d, rubber().orientation, 10. * d, 10. * d, 0., 1., 4};
+  constexpr std::size_t n_rows = 10;
+  for (const double along : {1.01, 1.5, 2.3})
+  {
+    // Per period d of the rows, which are at heights y [m].
+    const auto energy = [&](const std::vector<double> &y)
+    {
+      double sum = 0.;
+      for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+        if (const lattice::Shell *shell = rubber().material.shell(kind))
+        {
+          const Eigen::Vector2d L = sheet.bond_vector(kind);
+          const auto rows = static_cast<std::size_t>(std::lround(std::abs(L.y()) / drive.pitch()));
+          const double l = sheet.rest_length(kind), section = lattice::cross_section(*shell, sheet);
+          for (std::size_t j = 0; j + rows < y.size(); ++j)
+            sum += section * l * lattice::energy(shell->law, std::hypot(along * L.x(), y[j + rows] - y[j]) / l);
+        }
+      return sum;
+    };
+    // Least energy of a layer per period and row, and the stretch across it.
+    const auto relaxed = [&](const continuum::Material &law)
+    {
+      const auto of = [&](double across) {
+        return law.energy(to_continuum(Eigen::Matrix2d{{along, 0.}, {0., across}}));
+      };
+      const double across = support::golden_section(of, 0.4, 1.2, 1e-9);
+      return std::pair(of(across) * d * drive.pitch(), across);
+    };
+    const auto [bulk, across] = relaxed(rubber().cauchy_born);
+
+    std::vector<double> y(n_rows);
+    for (std::size_t j = 0; j < n_rows; ++j)
+      y[j] = across * drive.pitch() * static_cast<double>(j);
+    const auto of_edge = [&, bulk_energy = bulk] { return 0.5 * (energy(y) - n_rows * bulk_energy); };
+    const double homogeneous = of_edge();
+    for (int sweep = 0; sweep < 200; ++sweep)
+      for (double &height : y)
+        height = support::golden_section(
+          [&](double candidate)
+          {
+            height = candidate;
+            return energy(y);
+          },
+          height - 0.1 * drive.pitch(), height + 0.1 * drive.pitch(), 1e-9 * d);
+    const double of_lattice = of_edge();
+
+    Flank flank(drive.axis(), 0., drive.pitch(), bond_families(sheet, rubber().material), rubber().cauchy_born,
+                nullptr);
+    flank.cut_to(2. * d);
+    double of_layers = 0.;
+    for (int layer = 0; layer < 3; ++layer)
+      of_layers += relaxed(flank.law().at({d, drive.axis() + (layer + 0.5) * drive.pitch()})).first - bulk;
+    EXPECT_LT(of_lattice, of_layers) << along;
+    EXPECT_LT(of_layers, homogeneous) << along;
+    EXPECT_NEAR(of_layers / of_lattice, 1., 0.02) << along << " homogeneous " << homogeneous / of_lattice;
+  }
 }
 
 TEST(RunningCrack, FailsForATipThatIsOffByASpacing)
@@ -145,7 +283,8 @@ TEST(RunningCrack, FailsForWrongViscosity)
 TEST(RunningCrack, ReportsAGradientContinuumThatCannotBeComputed)
 {
   const faults::Combination wrong(-1., rubber().network_gradient, 0., rubber().network_gradient);
-  const Results results = with([&](CrackSides &sides) { medium(sides, "gradient").constitution.gradient = &wrong; });
+  const Results results =
+    with([&](CrackSides &sides) { medium(sides, "gradient").constitution.gradient = &wrong; }, {"local", "gradient"});
   EXPECT_TRUE(results.all_hold()) << results.verdict_text(10);
   EXPECT_TRUE(std::any_of(results.rows().begin(), results.rows().end(),
                           [](const Result &row)

@@ -10,6 +10,7 @@
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/homogenisation.h"
+#include "verification/claims/running_crack/flank.h"
 
 namespace latcon::claims
 {
@@ -140,12 +141,13 @@ double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &she
     values.anisotropy = anisotropy(bonds, states[n].F);
     if (medium.viscosity != nullptr)
     {
+      const continuum::Viscosity &viscosity = medium.viscosity->at(points[n]);
       dealii::Tensor<2, 2> Fdot = rates[n].F;
       for (unsigned int i = 0; i < 2; ++i)
         Fdot[i][i] -= 1.;
       Fdot /= scale;
-      values.opening_stress += medium.viscosity->stress(states[n].F, Fdot)[1][1];
-      values.dissipation = medium.viscosity->dissipation(states[n].F, Fdot);
+      values.opening_stress += viscosity.stress(states[n].F, Fdot)[1][1];
+      values.dissipation = viscosity.dissipation(states[n].F, Fdot);
       if (const continuum::GradientViscosity *gradient = medium.viscosity->gradient())
       {
         continuum::PointIntegrand density;
@@ -164,13 +166,22 @@ double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &she
 
 } // namespace
 
-TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, const WaveContinuum &medium,
-                             const continuum::Material &bonds, const Eigen::Matrix2d &F, const CrackMesh &resolution,
-                             double reach, const std::optional<CrackFrame> &frame)
+TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, const WaveContinuum &whole,
+                             const std::vector<continuum::BondFamily> &cut, const continuum::Material &bonds,
+                             const Eigen::Matrix2d &F, const CrackMesh &resolution, double reach,
+                             const std::optional<CrackFrame> &frame)
 {
   const lattice::TriangularLattice sheet(drive.spacing, drive.length, drive.height, drive.orientation);
   Mesh mesh(MPI_COMM_SELF);
   make_mesh(mesh, drive, half, resolution);
+  const double cell = resolution.finest * drive.stride(), start = drive.start + half.tip;
+  WaveContinuum medium = whole;
+  Flank flank(drive.axis(), start, drive.pitch(), cut, *whole.constitution.local, whole.viscosity.get());
+  if (!cut.empty())
+  {
+    medium.constitution.local = &flank.law();
+    medium.viscosity = flank.viscosity();
+  }
   continuum::DynamicSettings settings;
   settings.time_step = drive.stride_time();
   settings.degree = resolution.degree;
@@ -183,19 +194,27 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
 
   TipRun run{TipField(drive), {}};
   continuum::EnergyLedger middle;
-  double near = 0.;
-  const double cell = resolution.finest * drive.stride(), start = drive.start + half.tip;
+  double near = 0., cut_energy = 0.; // the latter of bonds, after the middle of the run [J/m]
   const unsigned int n_half = drive.n_strides / 2;
   unsigned int n_open = 0; // cells
   for (unsigned int stride = 1; stride <= drive.n_strides; ++stride)
   {
     if (stride == n_half + 1)
+    {
       middle = solver.ledger();
+      cut_energy = 0.;
+    }
     if ((stride - 1) * drive.stride() > (n_open - 1e-6) * cell)
     {
       open(mesh, start + n_open * cell, start + (n_open + 1) * cell);
       solver.release(cell / drive.speed);
       ++n_open;
+    }
+    if (!cut.empty())
+    {
+      cut_energy += solver.sheet().energy(solver.displacement());
+      flank.cut_to(start + stride * drive.stride());
+      cut_energy -= solver.sheet().energy(solver.displacement());
     }
     solver.step();
     if (stride + CrackDrive::n_samples > drive.n_strides)
@@ -210,7 +229,7 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
   const continuum::EnergyLedger &end = solver.ledger();
   const double advance = 0.5 * (drive.n_strides - n_half) * drive.stride(); // of both halves
   run.energy = {(middle.stored + middle.kinetic - end.stored - end.kinetic) / advance,
-                (end.dissipated - middle.dissipated) / advance, (end.released - middle.released) / advance,
+                (end.dissipated - middle.dissipated) / advance, (end.released - middle.released + cut_energy) / advance,
                 near / drive.speed};
   return run;
 }

@@ -6,10 +6,11 @@ from latcon.report.claim_tables import Plot, groups
 from latcon.report.panels import Grid, entry
 from latcon.report.pictures import BLACK
 
-SIDES = {"lattice": "lattice", "local": "local continuum", "gradient": "gradient continuum",
-         "viscous-gradient": "with gradient viscosity"}
+SIDES = {"lattice": "lattice", "local": "local continuum", "local-flank": "with cut flank",
+         "gradient": "with gradients", "viscous-gradient": "and their viscosity"}
 
-WORDS = {"side": (*SIDES, "bonds-local", "bonds-gradient", "bonds-viscous-gradient")}
+CONTINUA = ("local", "gradient", "viscous-gradient", "local-flank", "gradient-flank")
+WORDS = {"side": ("lattice", *CONTINUA, *(f"bonds-{name}" for name in CONTINUA))}
 
 
 def draw_running_crack(tables):
@@ -65,9 +66,10 @@ def field(X, Y, values):
 
 PLOTS = (
     Plot("running_crack", draw_running_crack,
-         "The pictures show the fields near the tip in the lattice and in the network continua: local, with gradient "
-         "energy, and with gradient viscosity as well.",
+         "The pictures show the fields near the tip in the lattice and in the network continua: local, without "
+         "the bonds that the crack has cut, with gradient energy, and with gradient viscosity as well.",
          "Fields around the tip of a driven crack in the reference configuration, mean of four samples: lattice, network "
-         "continuum, and the same with gradient energy and micro-inertia, without and with gradient viscosity, with one "
-         "scale of colours for each row. Blue ahead of the tip: material that moves against the crack.", few_colours=False),
+         "continuum, the same without the bonds and dashpots that the crack has cut, and with gradient energy and "
+         "micro-inertia, without and with gradient viscosity, with one scale of colours for each row. Blue ahead of the "
+         "tip: material that moves against the crack.", few_colours=False),
 )

@@ -112,12 +112,13 @@ public:
     add_side("lattice", lattice_);
   }
 
-  void compare(const std::string &name, const WaveContinuum &medium)
+  void compare(const NamedContinuum &side)
   {
+    const std::string &name = side.name;
     const auto drive = [&](double size, const std::optional<CrackFrame> &frame)
     {
-      return drive_continuum_crack(sides_.drive, sides_.half, medium, subject_.cauchy_born, subject_.deformation,
-                                   mesh_of(sides_.drive, size, options_.degree), reach_, frame);
+      return drive_continuum_crack(sides_.drive, sides_.half, side.medium, side.cut, subject_.cauchy_born,
+                                   subject_.deformation, mesh_of(sides_.drive, size, options_.degree), reach_, frame);
     };
     const TipRun coarse = drive(2. * options_.finest, {}), fine = drive(options_.finest, frame(name));
     add_side(name, fine);
@@ -270,11 +271,14 @@ CrackSides crack_sides(const bridge::Subject &subject, const RunningCrackOptions
                    {end_depth, sheet.length() - end_depth,
                     0.5 * sheet.height() - bridge::held_depth(sheet, subject.material, {0., 1.})},
                    {}};
+  const std::vector<continuum::BondFamily> bonds = bridge::bond_families(sheet, subject.material);
   const auto add = [&](const std::string &prefix, WaveContinuum local, WaveContinuum gradient)
   {
     local.viscosity = gradient.viscosity = viscosity;
     sides.continua.push_back({prefix + "local", local});
     sides.continua.push_back({prefix + "gradient", gradient});
+    sides.continua.push_back({prefix + "local-flank", local, bonds});
+    sides.continua.push_back({prefix + "gradient-flank", gradient, bonds});
     gradient.viscosity = of_gradient;
     sides.continua.push_back({prefix + "viscous-gradient", gradient});
   };
@@ -305,7 +309,7 @@ ClaimOutcome running_crack_claim(const bridge::Subject &subject, const CrackSide
   CrackComparison comparison(subject, sides, options);
   for (const NamedContinuum &side : sides.continua)
   {
-    const auto compare = [&] { comparison.compare(side.name, side.medium); };
+    const auto compare = [&] { comparison.compare(side); };
     if (side.name == judged)
     {
       comparison.rows.attempt(side.name + " continuum", compare);

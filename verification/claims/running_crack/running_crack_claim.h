@@ -31,13 +31,16 @@ struct HalfSheet
 /// plane of symmetry: no displacement across it, no shear, and with a gradient energy no normal gradient of the
 /// displacement along it. Behind the tip it is free. The edge is opened cell by cell: while the tip passes a cell, the
 /// forces that held that cell's nodes fall linearly to zero.
+/// @param cut bonds that, with their dashpots, are missing in part at the open edge, see Flank; empty: none. The energy
+/// that they held is CrackEnergy::taken as well.
 /// @param bonds Cauchy-Born law of the lattice, for TipValues::anisotropy
 /// @param reach as for the lattice, at whose sites the fields are evaluated
 /// @param frame none is written if empty
 /// @throws continuum::SolverFailed, continuum::InvalidInput, continuum::OutputFailed
 TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, const WaveContinuum &medium,
-                             const continuum::Material &bonds, const Eigen::Matrix2d &F, const CrackMesh &resolution,
-                             double reach, const std::optional<CrackFrame> &frame = {});
+                             const std::vector<continuum::BondFamily> &cut, const continuum::Material &bonds,
+                             const Eigen::Matrix2d &F, const CrackMesh &resolution, double reach,
+                             const std::optional<CrackFrame> &frame = {});
 
 /// Sizes in spacings d, and resolutions. The default is the quick version.
 struct RunningCrackOptions
@@ -58,6 +61,7 @@ struct NamedContinuum
 {
   std::string name;
   WaveContinuum medium;
+  std::vector<continuum::BondFamily> cut = {}; ///< bonds that the flank lacks in part, see Flank; empty: none
 };
 
 /// Both sides of the comparison: one lattice and several continua. The subject must outlive it.
@@ -66,8 +70,9 @@ struct CrackSides
   CrackDrive drive;
   HalfSheet half; ///< the continuum's sheet
   /// "local", the network, which is judged; "gradient", with its gradient energy and micro-inertia;
-  /// "viscous-gradient", with gradient viscosity as well; if asked for, "bonds-local", "bonds-gradient" and
-  /// "bonds-viscous-gradient", the same with the Cauchy-Born law and gradient energy of the lattice.
+  /// "viscous-gradient", with gradient viscosity as well; "local-flank" and "gradient-flank", the first two without
+  /// the bonds and dashpots that the crack has cut; if asked for, "bonds-local" and so on, the same with the
+  /// Cauchy-Born law and gradient energy of the lattice.
   std::vector<NamedContinuum> continua;
 };
 

@@ -1,0 +1,106 @@
+#include "verification/claims/running_crack/flank.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "continuum/cauchy_born.h"
+
+namespace latcon::claims
+{
+namespace
+{
+
+using continuum::Order;
+using dealii::Point;
+using dealii::Tensor;
+
+// A law less half of the energy of some bonds.
+class LessBonds : public continuum::Material
+{
+public:
+  explicit LessBonds(const continuum::Material &whole, std::optional<continuum::CauchyBorn> bonds = {})
+    : whole_(whole), bonds_(std::move(bonds))
+  {
+  }
+  continuum::Response evaluate(const Tensor<2, 2> &F, Order order) const override
+  {
+    continuum::Response W = whole_.evaluate(F, order);
+    if (!bonds_)
+      return W;
+    const continuum::Response cut = bonds_->evaluate(F, order);
+    W.energy -= 0.5 * cut.energy;
+    W.first_piola -= 0.5 * cut.first_piola;
+    W.tangent -= 0.5 * cut.tangent;
+    return W;
+  }
+  double thickness_stretch(const Tensor<2, 2> &F) const override { return whole_.thickness_stretch(F); }
+
+private:
+  const continuum::Material &whole_;
+  std::optional<continuum::CauchyBorn> bonds_;
+};
+
+// The law of a whole sheet, with those of the layers of a flank.
+template <class Interface, class Law>
+class Layered : public Law
+{
+public:
+  Layered(const Law &whole, std::shared_ptr<const Flank::Layers> layers) : Law(whole), layers_(std::move(layers)) {}
+  const Interface &at(const Point<2> &X) const override
+  {
+    const std::size_t layer = layers_->at(X);
+    return layer < laws.size() ? laws[layer] : *this;
+  }
+  std::vector<Law> laws;
+
+private:
+  std::shared_ptr<const Flank::Layers> layers_;
+};
+using LayeredMaterial = Layered<continuum::Material, LessBonds>;
+using LayeredViscosity = Layered<continuum::Viscosity, continuum::FibreViscosity>;
+
+} // namespace
+
+std::size_t Flank::Layers::at(const Point<2> &X) const
+{
+  if (!(X[0] > start && X[0] < tip))
+    return depths.size();
+  return std::upper_bound(depths.begin(), depths.end(), X[1] - axis) - depths.begin();
+}
+
+Flank::Flank(double axis, double start, double pitch, const std::vector<continuum::BondFamily> &bonds,
+             const continuum::Material &whole, const continuum::Viscosity *viscosity)
+  : layers_(std::make_shared<Layers>(Layers{axis, start, start, {}}))
+{
+  // A bond reaches a whole number of lines of sites.
+  const auto lines = [pitch](const Tensor<1, 2> &direction, double length)
+  { return std::lround(std::abs(direction[1]) * length / pitch); };
+  long reach = 0;
+  for (const continuum::BondFamily &bond : bonds)
+    reach = std::max(reach, lines(bond.fibre.direction, bond.length));
+
+  const auto law = std::make_shared<LayeredMaterial>(LessBonds(whole), layers_);
+  std::shared_ptr<LayeredViscosity> dashpots;
+  if (viscosity != nullptr)
+    dashpots = std::make_shared<LayeredViscosity>(dynamic_cast<const continuum::FibreViscosity &>(*viscosity), layers_);
+  for (long layer = 1; layer <= reach; ++layer)
+  {
+    layers_->depths.push_back(static_cast<double>(layer) * pitch);
+    std::vector<continuum::FibreFamily> cut;
+    for (const continuum::BondFamily &bond : bonds)
+      if (lines(bond.fibre.direction, bond.length) >= layer)
+        cut.push_back(bond.fibre);
+    law->laws.emplace_back(whole, continuum::CauchyBorn(std::move(cut)));
+    if (dashpots == nullptr)
+      continue;
+    std::vector<continuum::FibreDashpot> remaining = dashpots->dashpots();
+    for (continuum::FibreDashpot &dashpot : remaining)
+      dashpot.weight *= lines(dashpot.direction, dashpot.length) >= layer ? 0.5 : 1.;
+    dashpots->laws.emplace_back(std::move(remaining));
+  }
+  law_ = law;
+  viscosity_ = dashpots;
+}
+
+} // namespace latcon::claims
