@@ -185,20 +185,13 @@ std::ostream &operator<<(std::ostream &out, const WrongSubject &wrong)
   return out << wrong.name;
 }
 
-void heavier_network(Subject &subject)
-{
-  std::vector<continuum::FibreFamily> families = subject.cauchy_born.families();
-  for (continuum::FibreFamily &family : families)
-    family.weight *= 1.01;
-  subject.network = continuum::IsotropicNetwork(std::move(families));
-}
-
 class NonlocalSubject : public testing::TestWithParam<WrongSubject>
 {
 };
 INSTANTIATE_TEST_SUITE_P(
   FaultMatrix, NonlocalSubject,
-  testing::Values(WrongSubject{"network", heavier_network},
+  testing::Values(WrongSubject{"network", [](Subject &s)
+                               { s.network = faults::scaled<continuum::IsotropicNetwork>(s.cauchy_born, 1.01); }},
                   WrongSubject{"lattice", [](Subject &s) { s.material.next_nearest->area_factor *= 1.01; }},
                   WrongSubject{"length", [](Subject &s) { s.lengths.isotropic_inertia *= 1.01; }},
                   WrongSubject{"shear speed", [](Subject &s) { s.theory.shear_speed = std::nan(""); }},
