@@ -62,11 +62,6 @@ def referred_to(paths):
     return set().union(*(references(path.read_text())[1] for path in paths))
 
 
-def test_ranges_are_expanded_and_bare_numbers_seen():
-    assert references("eqs. (L.9)\n/// to (L.11), (W.2)") == ({"L.9", "L.11", "W.2"}, {"L.9", "L.10", "L.11", "W.2"})
-    assert len(bare("theory.md,\n/// eq. L.2, (theory.md, L.3), eq. (L.4)", "L")) == 2
-
-
 def test_each_number_is_given_once():
     given = equations()
     assert len(given) > 90

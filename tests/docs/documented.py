@@ -25,8 +25,8 @@ def rows_of_tables(text):
 
 
 class Reference:
-    def __init__(self, text=None):
-        self.text = text if text is not None else "\n\n".join(path.read_text(encoding="utf-8") for path in REFERENCE)
+    def __init__(self):
+        self.text = "\n\n".join(path.read_text(encoding="utf-8") for path in REFERENCE)
         self.rows = rows_of_tables(self.text)
 
     def about(self, name):
@@ -73,9 +73,9 @@ def arrays(path):
             for i in range(part.GetNumberOfArrays())]
 
 
-def undocumented(folder, reference=None):
+def undocumented(folder):
     """`FILE: NAME` of all contents that the reference does not document."""
-    reference = reference or Reference()
+    reference = Reference()
     missing = set()
     for path in sorted(path for path in pathlib.Path(folder).rglob("*") if path.is_file()):
         about = reference.about(path.name)

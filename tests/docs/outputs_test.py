@@ -4,7 +4,7 @@ import os
 import pathlib
 import subprocess
 
-from documented import Reference, undocumented
+from documented import undocumented
 
 LATCON = os.environ["LATCON"]
 CASES = pathlib.Path(__file__).resolve().parents[2] / "verification" / "cases"
@@ -59,16 +59,3 @@ def test_of_a_study(tmp_path):
     file = tmp_path / "small.json"
     file.write_text(json.dumps(STUDY))
     check(run_(tmp_path, "study", file, "--skip-verification", codes=(0, 3)), "study.json", "study.csv", "study.html", "log.txt")
-
-
-def test_what_is_not_named_is_found(tmp_path):
-    made_up = tmp_path / "made-up"
-    made_up.mkdir()
-    (made_up / "crack.csv").write_text("t [s],X [m],colour [1]\n")
-    (made_up / "crack.json").write_text('{"pattern": "straight", "speed_lagrangian_uncertainty": 1, "mood": {"x": 1}}')
-    (made_up / "lattice.pvd").write_text("")
-    (made_up / "diary.txt").write_text("")
-    text = "| file | content |\n| --- | --- |\n| `crack.csv` | t [s], X [m]; the colour of a line |\n| `crack.json` | pattern, speed_lagrangian, " \
-           "each with `_uncertainty` |\n"
-    assert undocumented(made_up, Reference(text)) == ["crack.csv: colour", "crack.json: mood", "crack.json: x",
-                                                             "diary.txt", "lattice.pvd"]

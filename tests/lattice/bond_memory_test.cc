@@ -2,7 +2,6 @@
 
 #include <any>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <map>
@@ -11,10 +10,8 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "lattice/simulation.h"
-#include "lattice/time_step.h"
 #include "support/largest_error.h"
-#include "tests/lattice/sheets.h"
+#include "tests/lattice/running_crack.h"
 
 namespace bond_memory_test
 {
@@ -125,37 +122,25 @@ TEST(BondMemory, LeavesIntegratorsAtSecondOrder)
   }
 }
 
-// A running crack in a sheet with branches.
-std::unique_ptr<Simulation> crack(const TriangularLattice &sheet, const Material &material, unsigned int stages = 0)
+// Materials, each for velocity Verlet and for a number of stages, which take steps that are three times as long.
+std::vector<std::pair<unsigned int, Material>> remembering_rubbers()
 {
-  const Eigen::Matrix2d F = sheets::stretched(2.3, 2.9);
-  State state = homogeneous_state(sheet, material, F, Edges::held);
-  add_noise(state, sheet, 0.05 * sheets::spacing, 1);
-  const double step = 0.5 * time_step_limits(sheet, material, 0.3).combined;
-  const TimeStepping stepping = stages > 0 ? TimeStepping(3. * step, stages) : TimeStepping(step);
-  auto simulation = std::make_unique<Simulation>(sheet, material, std::move(state), stepping,
-                                                 Fracture(sheet, material, 3.05, BehindTipToughening{2.5e-3, 3.}, F));
-  simulation->cut(sheets::middle_row(sheet, 4, 8));
-  return simulation;
-}
-TriangularLattice cracked_sheet()
-{
-  return {sheets::spacing, 40. * sheets::spacing, 16. * sheets::spacing, Orientation::rows_along_crack};
+  std::vector<std::pair<unsigned int, Material>> all;
+  for (const unsigned int stages : {0u, 8u})
+    for (const Material &material :
+         {sheets::rubber_with_memory(), sheets::disordered_rubber(), sheets::plastic_rubber()})
+      all.emplace_back(stages, material);
+  return all;
 }
 
 // theory.md, eq. (L.29).
 TEST(BondMemory, ClosesTheEnergyBalanceThroughFracture)
 {
-  const TriangularLattice sheet = cracked_sheet();
-  for (const auto &[stages, material] : {std::pair(0u, sheets::rubber_with_memory()),
-                                         {8u, sheets::rubber_with_memory()},
-                                         {0u, sheets::disordered_rubber()},
-                                         {8u, sheets::disordered_rubber()},
-                                         {0u, sheets::plastic_rubber()},
-                                         {8u, sheets::plastic_rubber()}})
+  const TriangularLattice sheet = running_crack::small_sheet();
+  for (const auto &[stages, material] : remembering_rubbers())
   {
-    const auto simulation = crack(sheet, material, stages);
-    for (int step = 0; step < 2000; ++step)
+    const auto simulation = running_crack::start(sheet, material, stages);
+    for (int step = 0; step < (stages > 0 ? 700 : 2000); ++step)
       simulation->step();
     const EnergyBalance e = simulation->energies();
     EXPECT_GT(simulation->n_broken(), 15u);
@@ -177,34 +162,6 @@ TEST(BondMemory, ClosesTheEnergyBalanceThroughFracture)
     // The error of the time stepping, far below what memories hold.
     EXPECT_LT(std::abs(e.imbalance()), 1e-2 * stored);
   }
-}
-
-bool same_bits(const Field &a, const Field &b)
-{
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
-}
-
-void expect_same_bits(const Simulation &one, const Simulation &other)
-{
-  const State &a = one.state(), &b = other.state();
-  EXPECT_TRUE(same_bits(a.x, b.x));
-  EXPECT_TRUE(same_bits(a.vy, b.vy));
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-  {
-    EXPECT_TRUE(same_bits(a.history.kinds[kind].stretch, b.history.kinds[kind].stretch));
-    for (std::size_t v = 0; v < a.history.kinds[kind].variables.size(); ++v)
-      EXPECT_TRUE(same_bits(a.history.kinds[kind].variables[v], b.history.kinds[kind].variables[v]));
-  }
-  EXPECT_EQ(one.n_broken(), other.n_broken());
-  EXPECT_EQ(one.energies().viscous, other.energies().viscous);
-  const std::vector<MechanismEnergy> of_one = one.mechanism_energies(), of_other = other.mechanism_energies();
-  ASSERT_EQ(of_one.size(), of_other.size());
-  for (std::size_t m = 0; m < of_one.size(); ++m)
-  {
-    EXPECT_EQ(of_one[m].stored, of_other[m].stored);
-    EXPECT_EQ(of_one[m].dissipated, of_other[m].dissipated);
-  }
-  EXPECT_EQ(one.energies().imbalance(), other.energies().imbalance());
 }
 
 // An archive in memory.
@@ -237,21 +194,18 @@ private:
 
 TEST(BondMemory, ResumesBitwise)
 {
-  const TriangularLattice sheet = cracked_sheet();
-  for (const auto &[stages, material] : {std::pair(0u, sheets::rubber_with_memory()),
-                                         {8u, sheets::rubber_with_memory()},
-                                         {0u, sheets::disordered_rubber()},
-                                         {8u, sheets::disordered_rubber()},
-                                         {8u, sheets::disordered_rubber_of_three_shells()},
-                                         {0u, sheets::plastic_rubber()},
-                                         {8u, sheets::plastic_rubber()}})
+  const TriangularLattice sheet = running_crack::small_sheet();
+  std::vector<std::pair<unsigned int, Material>> subjects = remembering_rubbers();
+  subjects.emplace_back(8u, sheets::disordered_rubber_of_three_shells());
+  for (const auto &[stages, material] : subjects)
   {
-    const auto whole = crack(sheet, material, stages);
+    const int steps = stages > 0 ? 400 : 1200;
+    const auto whole = running_crack::start(sheet, material, stages);
     Stored stored;
     std::size_t broken_when_saved = 0;
-    for (int step = 0; step < 1200; ++step)
+    for (int step = 0; step < steps; ++step)
     {
-      if (step == 600)
+      if (step == steps / 2)
       {
         Archive<false> saving(stored);
         whole->archive(saving);
@@ -259,20 +213,20 @@ TEST(BondMemory, ResumesBitwise)
       }
       whole->step();
     }
-    const auto resumed = crack(sheet, material, stages);
+    const auto resumed = running_crack::start(sheet, material, stages);
     Archive<true> loading(stored);
     resumed->archive(loading);
-    for (int step = 600; step < 1200; ++step)
+    for (int step = steps / 2; step < steps; ++step)
       resumed->step();
     EXPECT_GT(broken_when_saved, 0u) << "too quiet to show anything";
     EXPECT_GT(whole->n_broken(), broken_when_saved) << "too quiet to show anything";
-    expect_same_bits(*resumed, *whole);
+    running_crack::expect_same_bits(*resumed, *whole);
   }
 }
 
 TEST(BondMemory, RejectsHistoryOfOtherMemories)
 {
-  const TriangularLattice sheet = cracked_sheet();
+  const TriangularLattice sheet = running_crack::small_sheet();
   const Material material = sheets::rubber_with_memory();
   State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
   relax_memory(state, RowPartition(sheet), material);
@@ -299,7 +253,7 @@ TEST(BondMemory, HasTheSameBitsForAllThreadsAndInstructionSets)
   {
     omp_set_num_threads(threads);
     kernels::use_instruction_set(set);
-    auto simulation = crack(sheet, material);
+    auto simulation = running_crack::start(sheet, material);
     for (int step = 0; step < 30; ++step)
       simulation->step();
     return simulation;
@@ -309,9 +263,9 @@ TEST(BondMemory, HasTheSameBitsForAllThreadsAndInstructionSets)
   {
     const auto one = run(1, sets.front(), material);
     for (const int threads : {2, 3, 40})
-      expect_same_bits(*run(threads, sets.front(), material), *one);
+      running_crack::expect_same_bits(*run(threads, sets.front(), material), *one);
     for (const std::string &set : sets)
-      expect_same_bits(*run(2, set, material), *one);
+      running_crack::expect_same_bits(*run(2, set, material), *one);
   }
   kernels::use_instruction_set(sets.front());
   omp_set_num_threads(threads_before);
@@ -320,10 +274,10 @@ TEST(BondMemory, HasTheSameBitsForAllThreadsAndInstructionSets)
 // Without viscosity the mechanisms dissipate everything, broken bonds included; stresses of sites contain overstresses.
 TEST(BondMemory, RecordsEnergiesByMechanism)
 {
-  const TriangularLattice sheet = cracked_sheet();
+  const TriangularLattice sheet = running_crack::small_sheet();
   for (const Material &material : {sheets::rubber_with_memory(0.), sheets::plastic_rubber(0.)})
   {
-    const auto simulation = crack(sheet, material);
+    const auto simulation = running_crack::start(sheet, material);
     for (int step = 0; step < 600; ++step)
       simulation->step();
     ASSERT_GT(simulation->n_broken(), 0u) << "too quiet to show anything";
@@ -373,7 +327,7 @@ TEST(BondMemory, ActsOnOneSiteAsInTheLoop)
     EXPECT_GT(power, 0.);
     forces.update_memory(state);
     forces.evaluate(state, state.vx, state.vy);
-    EXPECT_TRUE(same_bits(forces.fx(), fx));
+    EXPECT_TRUE(running_crack::same_bits(forces.fx(), fx));
     EXPECT_EQ(forces.viscous_power(), power);
   }
 }

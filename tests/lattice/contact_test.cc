@@ -138,20 +138,6 @@ TEST_P(Restitution, IsWithinTheImpulseOfHalfAStepWhereverTouchingFalls)
   }
 }
 
-TEST_P(Restitution, LastsAsLongAsTheClosedForm)
-{
-  const double beta = GetParam() * omega_0;
-  const double time_step = duration(omega_0, beta) / 1000.;
-  HeadOn pair(law_of(omega_0, beta), time_step, -1e-9 * sheets::spacing);
-  std::size_t steps = 0;
-  while (!pair.simulation->contact()->last().empty() && steps < 3000)
-  {
-    pair.simulation->step();
-    ++steps;
-  }
-  EXPECT_NEAR(static_cast<double>(steps), 1000., 2.);
-}
-
 TEST_P(Restitution, KeepsMomentumAndLedger)
 {
   const double beta = GetParam() * omega_0;

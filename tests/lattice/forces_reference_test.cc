@@ -1,7 +1,6 @@
 // Forces of all kinds of sheets against a plain implementation, on all threads and instruction sets.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -12,7 +11,7 @@
 #include "support/largest_error.h"
 #include "tests/lattice/nonlocal_sheets.h"
 #include "tests/lattice/reference_forces.h"
-#include "tests/lattice/sheets.h"
+#include "tests/lattice/running_crack.h"
 
 namespace forces_reference_test
 {
@@ -20,6 +19,7 @@ namespace forces_reference_test
 using namespace latcon;
 
 using namespace lattice;
+using running_crack::same_bits;
 
 // Variants of a sheet: material, orientation, periodic direction, and number of sites in a row.
 struct Subject
@@ -160,94 +160,72 @@ TEST(Forces, AreThoseOfTheReference)
   EXPECT_TRUE(some_retract_alone);
 }
 
-// Rows with bonds that are shorter than a limit, and no others; linear bonds do not count.
-TEST(Forces, ReportRowsWithShortBonds)
+// Stretch of the shortest bond of each row after a time at its rate now, linear bonds left out.
+std::vector<double> shortest_bonds(const State &state, const TriangularLattice &sheet, const Material &material,
+                                   double ahead)
 {
-  std::size_t n_short = 0, n_others = 0;
-  for (const Subject &subject : subjects())
-  {
-    const TriangularLattice sheet = sheet_of(subject);
-    const State state = random_state(sheet, subject.material, 3);
-    Forces forces(sheet, subject.material);
-    forces.evaluate(state, state.vx, state.vy);
-    for (std::size_t row = 0; row < sheet.rows(); ++row)
-      EXPECT_FALSE(forces.row_has_short_bonds(row)); // none are watched
-    std::vector<double> shortest(sheet.rows(), 1e9);
-    for_each_bond(state, sheet,
-                  [&](const Bond &bond)
-                  {
-                    if (std::holds_alternative<LinearBond>(subject.material.shell(bond.kind)->law))
-                      return;
-                    double &of_row = shortest[sheet.row_of(bond.near)];
-                    of_row = std::min(of_row, stretch(state, sheet, bond));
-                  });
-    for (const double limit : {0.9, 1., 1.1, 1.2})
-    {
-      forces.set_shortness_threshold(limit);
-      forces.evaluate(state, state.vx, state.vy);
-      for (std::size_t row = 0; row < sheet.rows(); ++row)
-      {
-        if (std::abs(shortest[row] / limit - 1.) > 1e-12) // a row at the limit may be either
-        {
-          EXPECT_EQ(forces.row_has_short_bonds(row), shortest[row] < limit) << row << ' ' << limit;
-        }
-        ++(shortest[row] < limit ? n_short : n_others);
-      }
-    }
-  }
-  EXPECT_GT(n_short, 20u);
-  EXPECT_GT(n_others, 20u);
+  std::vector<double> shortest(sheet.rows(), 1e9);
+  for_each_bond(state, sheet,
+                [&](const Bond &bond)
+                {
+                  if (std::holds_alternative<LinearBond>(material.shell(sheet, bond.kind)->law))
+                    return;
+                  const double l = sheet.rest_length(bond.kind) / sheet.length_ratio(bond.near, bond.kind);
+                  const Eigen::Vector2d x(state.x[bond.far] - state.x[bond.near],
+                                          state.y[bond.far] - state.y[bond.near]),
+                    v(state.vx[bond.far] - state.vx[bond.near], state.vy[bond.far] - state.vy[bond.near]);
+                  double &of_row = shortest[sheet.row_of(bond.near)];
+                  of_row = std::min(of_row, (x.norm() + ahead * std::min(0., v.dot(x.normalized()))) / l);
+                });
+  return shortest;
 }
 
-// Rows with a bond that will be shorter than a limit at its rate now, and no others, of lattices and stencils.
-TEST(Forces, FindRowsWithBondsThatWillBeShort)
+// Rows with a bond that is, or at its rate now will be, shorter than a limit, and no others, of lattices and stencils.
+TEST(Forces, FindRowsWithShortBonds)
 {
   std::size_t n_short = 0, n_others = 0;
   const auto check = [&](const TriangularLattice &sheet, const Material &material)
   {
     const State state = random_state(sheet, material, 3);
     Forces forces(sheet, material);
+    forces.evaluate(state, state.vx, state.vy);
+    for (std::size_t row = 0; row < sheet.rows(); ++row)
+      EXPECT_FALSE(forces.row_has_short_bonds(row)); // none are watched
+    const auto expect = [&](const std::vector<double> &shortest, double limit, const auto &has_short)
+    {
+      for (std::size_t row = 0; row < sheet.rows(); ++row)
+      {
+        if (std::abs(shortest[row] / limit - 1.) > 1e-12) // a row at the limit may be either
+        {
+          EXPECT_EQ(has_short(row), shortest[row] < limit) << row << ' ' << limit;
+        }
+        ++(shortest[row] < limit ? n_short : n_others);
+      }
+    };
+    for (const double limit : {0.9, 1., 1.1, 1.2})
+    {
+      forces.set_shortness_threshold(limit);
+      forces.evaluate(state, state.vx, state.vy);
+      expect(shortest_bonds(state, sheet, material, 0.), limit,
+             [&](std::size_t row) { return forces.row_has_short_bonds(row); });
+    }
+    if (std::holds_alternative<LinearBond>(material.nearest.law))
+      return;
     forces.set_shortness_threshold(1e3);
     forces.evaluate(state, state.vx, state.vy);
     for (const double ahead : {0., 1e-6, 1e-4})
       for (const double limit : {0.5, 0.9, 1.1})
-      {
-        std::vector<double> shortest(sheet.rows(), 1e9);
-        for_each_bond(state, sheet,
-                      [&](const Bond &bond)
-                      {
-                        const double l = sheet.rest_length(bond.kind) / sheet.length_ratio(bond.near, bond.kind);
-                        const Eigen::Vector2d x(state.x[bond.far] - state.x[bond.near],
-                                                state.y[bond.far] - state.y[bond.near]),
-                          v(state.vx[bond.far] - state.vx[bond.near], state.vy[bond.far] - state.vy[bond.near]);
-                        double &of_row = shortest[sheet.row_of(bond.near)];
-                        of_row = std::min(of_row, (x.norm() + ahead * std::min(0., v.dot(x.normalized()))) / l);
-                      });
-        for (std::size_t row = 0; row < sheet.rows(); ++row)
-        {
-          if (std::abs(shortest[row] / limit - 1.) > 1e-12) // a row at the limit may be either
-          {
-            EXPECT_EQ(forces.row_has_short_bonds_ahead(state, state.vx, state.vy, row, ahead, limit),
-                      shortest[row] < limit)
-              << row << ' ' << limit << ' ' << ahead;
-          }
-          ++(shortest[row] < limit ? n_short : n_others);
-        }
-      }
+        expect(shortest_bonds(state, sheet, material, ahead), limit,
+               [&](std::size_t row)
+               { return forces.row_has_short_bonds_ahead(state, state.vx, state.vy, row, ahead, limit); });
   };
   for (const Subject &subject : subjects())
-    if (!std::holds_alternative<LinearBond>(subject.material.nearest.law))
-      check(sheet_of(subject), subject.material);
+    check(sheet_of(subject), subject.material);
   check(nonlocal_sheets::sheet(Grid::Kind::square, 2., 12., 10.), sheets::rubber());
   check(nonlocal_sheets::sheet(Grid::Kind::square, 2., 12., 10., 30., Orientation::rows_along_crack, 0.5),
         sheets::rubber());
   EXPECT_GT(n_short, 100u);
   EXPECT_GT(n_others, 100u);
-}
-
-bool same_bits(const Field &a, const Field &b)
-{
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
 TEST(Forces, BitsDoNotDependOnThreads)

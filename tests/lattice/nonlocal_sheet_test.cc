@@ -264,7 +264,7 @@ TEST(NonlocalCrack, HasTheSameBitsOnAllThreadsAndInstructionSets)
     EXPECT_GE(lattice.rows() * lattice.stride(), min_places_for_threads);
     Crack crack(lattice, sheets::disordered_rubber(),
                 lattice.scatter() > 0. ? Toughening(BehindTipToughening{8. * d, 1.6}) : RetractionToughening{0.8, 2.});
-    for (int step = 0; step < 15; ++step)
+    for (int step = 0; step < 6; ++step)
       crack.simulation.step();
     EXPECT_GT(crack.simulation.n_broken(), 0u);
     return crack.values();

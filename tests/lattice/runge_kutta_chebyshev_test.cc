@@ -1,7 +1,6 @@
 #include "lattice/runge_kutta_chebyshev.h"
 
 #include <cmath>
-#include <cstring>
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -9,6 +8,7 @@
 #include "lattice/simulation.h"
 #include "support/largest_error.h"
 #include "tests/lattice/plane_modes.h"
+#include "tests/lattice/running_crack.h"
 #include "tests/lattice/smooth_motion.h"
 
 namespace runge_kutta_chebyshev_test
@@ -213,103 +213,28 @@ TEST(RungeKuttaChebyshev, KeepsTheVelocityOfHeldSites)
     }
 }
 
-// A step has the bits of its stages one after the other, each for all sites, in sheets with and without images.
-TEST(RungeKuttaChebyshev, StepHasTheBitsOfItsStages)
-{
-  constexpr double h = 3e-6;
-  constexpr unsigned int n_stages = 5;
-  const ChebyshevStages stages(n_stages);
-  for (const Periodic periodic : {Periodic{false, false}, Periodic{true, true}})
-  {
-    const TriangularLattice sheet(sheets::spacing, 20. * sheets::spacing, 20. * sheets::spacing,
-                                  Orientation::rows_along_crack, periodic);
-    const Material material = sheets::rubber();
-    State state = homogeneous_state(sheet, material, sheets::stretched(1.3, 1.8), Edges::held);
-    add_noise(state, sheet, 0.05 * sheets::spacing, 3);
-    Forces forces(sheet, material);
-    RungeKuttaChebyshev integrator(sheet, forces, h, n_stages);
-    integrator.initialise(state);
-    for (int step = 0; step < 3; ++step)
-    {
-      const State start = state;
-      State now = start, before = start;
-      for (std::size_t i = 0; i < sheet.n_places(); ++i)
-        if (sheet.is_site(i))
-        {
-          now.x[i] = start.x[i] + h * stages.first() * start.vx[i];
-          now.vx[i] = start.vx[i] + h * stages.first() * start.ax[i];
-          now.y[i] = start.y[i] + h * stages.first() * start.vy[i];
-          now.vy[i] = start.vy[i] + h * stages.first() * start.ay[i];
-        }
-      for (const ChebyshevStages::Stage &stage : stages.stages())
-      {
-        update_images(now, sheet);
-        forces.evaluate(now, now.vx, now.vy);
-        const auto moved = [&](double x0, double x1, double x2, double f0, double f1)
-        { return x0 + (stage.mu * (x1 - x0) + stage.nu * (x2 - x0)) + (h * stage.now * f1 + h * stage.start * f0); };
-        State next = now;
-        for (std::size_t i = 0; i < sheet.n_places(); ++i)
-          if (sheet.is_site(i))
-          {
-            const double m = now.inverse_mass[i];
-            next.x[i] = moved(start.x[i], now.x[i], before.x[i], start.vx[i], now.vx[i]);
-            next.y[i] = moved(start.y[i], now.y[i], before.y[i], start.vy[i], now.vy[i]);
-            next.vx[i] = moved(start.vx[i], now.vx[i], before.vx[i], start.ax[i], forces.fx()[i] * m);
-            next.vy[i] = moved(start.vy[i], now.vy[i], before.vy[i], start.ay[i], forces.fy()[i] * m);
-          }
-        before = now;
-        now = next;
-      }
-      integrator.step(state);
-      std::size_t different = 0;
-      for (std::size_t i = 0; i < sheet.n_places(); ++i)
-        if (sheet.is_site(i))
-          different +=
-            state.x[i] != now.x[i] || state.y[i] != now.y[i] || state.vx[i] != now.vx[i] || state.vy[i] != now.vy[i];
-      EXPECT_EQ(different, 0u) << "in step " << step << (periodic.x ? ", periodic" : "");
-      EXPECT_NE(state.vx[sheet.index(9, 9)], start.vx[sheet.index(9, 9)]);
-    }
-  }
-}
-
 // Same bits for 1, 2 and 4 threads, through breaking ahead, toughening, contact and the ledger.
 TEST(RungeKuttaChebyshev, BitsDoNotDependOnThreads)
 {
-  const auto result = [](int threads)
+  const TriangularLattice sheet = sheets::square(70); // more places than are left to one thread
+  ASSERT_GE(sheet.n_places(), min_places_for_threads);
+  const auto result = [&](int threads)
   {
     omp_set_num_threads(threads);
-    const TriangularLattice sheet = sheets::square(70); // more places than are left to one thread
-    EXPECT_GE(sheet.n_places(), min_places_for_threads);
-    const Material material = sheets::rubber();
-    const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
-    State state = homogeneous_state(sheet, material, F, Edges::held);
-    add_noise(state, sheet, 0.05 * sheets::spacing, 1);
-    Simulation simulation(sheet, material, std::move(state), {4e-6, 7},
-                          Fracture(sheet, material, 3.05, BehindTipToughening{16. * sheets::spacing, 2.}, F));
-    simulation.enable_contact(contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 1.));
-    simulation.cut(sheets::middle_row(sheet, 5, 8));
+    auto crack = running_crack::start(sheet, sheets::rubber(), TimeStepping{4e-6, 7}, true);
     std::size_t touching = 0;
     for (int step = 0; step < 250; ++step)
     {
-      simulation.step();
-      touching = std::max(touching, simulation.contact()->n_touching());
+      crack->step();
+      touching = std::max(touching, crack->contact()->n_touching());
     }
     EXPECT_GT(touching, 1u);
-    return std::tuple{simulation.state(), simulation.energies(), simulation.n_broken()};
+    return crack;
   };
-  const auto [one, one_energies, one_broken] = result(1);
-  EXPECT_GT(one_broken, 100u);
+  const auto one = result(1);
+  EXPECT_GT(one->n_broken(), 100u);
   for (const int threads : {2, 4})
-  {
-    const auto [state, energies, broken] = result(threads);
-    EXPECT_EQ(broken, one_broken);
-    EXPECT_EQ(std::memcmp(state.x.data(), one.x.data(), one.x.size() * sizeof(double)), 0);
-    EXPECT_EQ(std::memcmp(state.vy.data(), one.vy.data(), one.vy.size() * sizeof(double)), 0);
-    EXPECT_EQ(energies.viscous, one_energies.viscous);
-    EXPECT_EQ(energies.elastic, one_energies.elastic);
-    EXPECT_EQ(energies.kinetic, one_energies.kinetic);
-    EXPECT_EQ(energies.contact, one_energies.contact);
-  }
+    running_crack::expect_same_bits(*result(threads), *one);
 }
 
 } // namespace runge_kutta_chebyshev_test

@@ -41,13 +41,6 @@ def test_docstrings_describe_all_parameters():
                 assert re.search(rf"^(?:.*, )?\**{parameter}\b", section.replace("\\*", "*"), re.M), f"{name}: {parameter}"
 
 
-def test_parameters_and_results_are_annotated():
-    for name, thing in members():
-        if inspect.isfunction(thing):
-            missing = {*inspect.signature(thing).parameters, "return"} - {"self"} - set(thing.__annotations__)
-            assert not missing, f"{name}: {missing}"
-
-
 def test_page_has_every_name():
     known = set(re.findall(r"\w+", PAGE))
     assert not set(PUBLIC) - known

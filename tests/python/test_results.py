@@ -237,30 +237,6 @@ def test_errors_of_the_program_are_raised(tmp_path):
         latcon.lattice(tiny_case(), tmp_path / "file" / "out", progress=False)
 
 
-class Started(Exception):
-    pass
-
-
-def test_a_run_that_costs_too_much_is_refused_unless_confirmed(tmp_path):
-    def stop(line):
-        raise Started
-    # More memory than any machine has; years.
-    huge = {latcon.fracture: {"Sheet/length": "600 m", "Sheet/height": "100 m"},
-            latcon.lattice: {"Lattice/solution": "motion", "Time/end": "1e6 s"},
-            latcon.continuum: {"Continuum/cells x": 8000, "Continuum/cells y": 8000}}
-    for command, entries in huge.items():
-        case = tiny_case()
-        for key, value in entries.items():
-            case = case.set(key, value)
-        out = tmp_path / command.__name__
-        with pytest.raises(latcon.BadInput, match="--yes"):
-            command(case, out, progress=False)
-        assert not out.exists()
-        if command is latcon.lattice:
-            with pytest.raises(Started):
-                command(case, out, yes=True, progress=stop)
-
-
 def test_each_command_passes_the_confirmation_on(stand_in, tmp_path, monkeypatch):
     words = tmp_path / "words"
     case = tiny_case()

@@ -98,7 +98,7 @@ def test_each_claim_has_its_text_plots_and_error_metrics(tmp_path):
     for plot in all_plots():
         pixels = np.asarray(Image.open(tmp_path / f"{plot.name}.png").convert("RGB"), dtype=float)
         assert pixels.shape[1] == 1600
-        assert (np.ptp(pixels, axis=2) > 60).mean() > 1e-3, f"{plot.name} has no colours"
+        assert (np.ptp(pixels[::4, ::4], axis=2) > 60).mean() > 1e-3, f"{plot.name} has no colours"
 
 
 def test_what_is_missing_is_left_out(tmp_path):

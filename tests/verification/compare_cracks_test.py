@@ -10,7 +10,11 @@ import pytest
 
 from program import latcon, read_csv
 
-RUN = ["fracture", "quick", "--skip-verification", "--no-report", "--quiet"]
+from latcon import UnreadableFile
+from latcon.compare import _read_crack as read_crack
+from latcon.study.program import InputError
+
+RUN = ["fracture", "quick", "--skip-verification", "--no-report", "--quiet", "--set", "Sheet/length=3 cm", "--set", "Sheet/height=1.5 cm"]
 
 
 @pytest.fixture(scope="module")
@@ -125,16 +129,15 @@ def test_what_is_no_pair_of_cracks_is_refused(tmp_path, once):
     shutil.copytree(once.one, damaged)
     (damaged / "crack.csv").write_text("t,X,Y\n0,1,2\n0,1\n")
     assert "damaged/crack.csv: line 3 has 2 fields, the header has 3" in refused(once.one, damaged)
-    (damaged / "crack.csv").write_text("t,X,Y\n0,1,2\n0,0.5,2\n")
-    assert "damaged/crack.csv: line 3: damaged: X decreases" in refused(once.one, damaged)
-    (damaged / "crack.json").write_text("{}")
-    assert "damaged: its crack was not measured" in refused(once.one, damaged)
-    (damaged / "crack.json").write_text("{")
-    assert "damaged/crack.json: not JSON" in refused(once.one, damaged)
     info = json.loads((damaged / "run.json").read_text())
     del info["entries"]
-    (damaged / "run.json").write_text(json.dumps(info))
-    shutil.copy(once.one / "crack.json", damaged)
-    assert "damaged/run.json: does not hold the entries of the case" in refused(once.one, damaged)
+    for file, text, message in (
+            ("crack.csv", "t,X,Y\n0,1,2\n0,0.5,2\n", "damaged/crack.csv: line 3: damaged: X decreases"),
+            ("run.json", json.dumps(info), "damaged/run.json: does not hold the entries of the case"),
+            ("crack.json", "{}", "damaged: its crack was not measured"), ("crack.json", "{", "damaged/crack.json: not JSON")):
+        (damaged / file).write_text(text)
+        with pytest.raises((InputError, UnreadableFile), match=message):
+            read_crack(None, str(damaged))
     (damaged / "run.json").unlink()
-    assert "damaged/run.json: No such file" in refused(once.one, damaged)
+    with pytest.raises(UnreadableFile, match="damaged/run.json: No such file"):
+        read_crack(None, str(damaged))

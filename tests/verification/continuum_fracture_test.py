@@ -105,8 +105,8 @@ def test_stop_and_resume(points, entries, request, out):
 
 
 @pytest.mark.parametrize("points, entries", [("whole", None), ("scattered", SCATTERED)])
-def test_three_ranks_leave_the_files_of_one(points, entries, request, out):
-    run = latcon_on_ranks(3, *command(out, "--no-report", "--threads", "1", entries=entries))
+def test_two_ranks_leave_the_files_of_one(points, entries, request, out):
+    run = latcon_on_ranks(2, *command(out, "--no-report", "--threads", "1", entries=entries))
     assert run.returncode == 0, run.stderr
     expect_same(out, files(request.getfixturevalue(points)))
 

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 
 STATES = (("NN+NNN", 1.0, 1.0), ("NN+NNN", 2.3, 2.8), ("NN", 1.0, 1.0))
-ANGLES = (0.0, 15.0, 30.0)
+ANGLES = (0.0, 30.0)
 K = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0])  # k d
 DECAY, FIRST_ROW = -0.2177, -8.67e-3  # of the edge layer
 RUN_ERROR = 3e-4  # of a speed measured in a run

@@ -214,7 +214,7 @@ def test_pictures_show_something(whole):
         pixels = np.asarray(Image.open(io.BytesIO(png)).convert("RGB"), dtype=float)
         assert pixels.shape[1] == 1600
         assert pixels.shape[0] > 500
-        coloured = np.ptp(pixels[:len(pixels) // 2], axis=2) > 60  # colour bars are below
+        coloured = np.ptp(pixels[:len(pixels) // 2:4, ::4], axis=2) > 60  # colour bars are below
         assert coloured.mean() > 2e-3, f"{name} has no colours"
         assert pixels.std() > 10, f"{name} is blank"
 

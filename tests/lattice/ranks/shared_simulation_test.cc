@@ -177,7 +177,7 @@ TEST(SharedNonlocalCrack, HasTheBitsOfOneRank)
     for (Simulation *crack : {shared.simulation.get(), alone.simulation.get()})
     {
       crack->cut_bonds(slit);
-      for (int step = 0; step < 600; ++step)
+      for (int step = 0; step < 150; ++step)
         crack->step();
     }
     EXPECT_GT(alone.simulation->n_broken(), 30u) << "too quiet to show anything";

@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/faults.h"
-#include "tests/verification/claims/small_sheet.h"
-#include "verification/claims/energy/energy_claim.h"
-#include "verification/claims/prestretch/prestretch_claim.h"
+#include "tests/verification/claims/parts.h"
 
 namespace claims_test
 {
@@ -14,8 +12,6 @@ using namespace bridge;
 using namespace claims;
 using namespace input;
 using namespace output;
-
-constexpr unsigned int samples = 50;
 
 TEST(Energy, HoldsForBothShellSetsOrientationsAndLaws)
 {
@@ -28,7 +24,7 @@ TEST(Energy, HoldsForBothShellSetsOrientationsAndLaws)
       input.nearest.modulus = input.next_nearest.modulus = 2.35e5;
       for (const lattice::Material &material : {input.material(), subjects::nearest_only(input)})
       {
-        const Results results = energy_claim(subject(input, material), samples);
+        const Results results = parts::energy.check(subject(input, material));
         // Strong ellipticity of the calibrated law is judged for rubber alone: springs are another material.
         for (const Result &row : results.rows())
           EXPECT_TRUE(row.verdict() != Verdict::fails) << row.quantity;
@@ -39,7 +35,7 @@ TEST(Energy, HoldsForBothShellSetsOrientationsAndLaws)
 
 TEST(Prestretch, HoldsForBothShellSetsAcrossTheCrack)
 {
-  faults::expect_holds([](const Case &, const Subject &subject) { return prestretch_claim(subject, small_sheet()); });
+  faults::expect_holds([](const Case &, const Subject &subject) { return parts::prestretch.check(subject); });
 }
 
 // The strain-controlled test of rubber, and a loading on whose way the fitted law loses ellipticity.
@@ -92,7 +88,7 @@ TEST(Prestretch, SheetThatBucklesFailsAndIsNotCompared)
   input.strain_x = -0.3;
   const Subject buckled = subject(input);
   EXPECT_FALSE(buckled.is_stable());
-  const Results results = prestretch_claim(buckled, small_sheet());
+  const Results results = parts::prestretch.check(buckled);
   ASSERT_EQ(results.rows().size(), 1u);
   EXPECT_NE(results.rows()[0].quantity.find("it buckles in waves of kd = "), std::string::npos);
   EXPECT_EQ(results.rows()[0].verdict(), Verdict::fails);

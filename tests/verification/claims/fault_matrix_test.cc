@@ -7,11 +7,7 @@
 #include <vector>
 
 #include "tests/verification/claims/faults.h"
-#include "tests/verification/claims/small_sheet.h"
-#include "verification/claims/energy/energy_claim.h"
-#include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
-#include "verification/claims/prestretch/prestretch_claim.h"
-#include "verification/claims/wave_speeds/wave_speeds_claim.h"
+#include "tests/verification/claims/parts.h"
 
 namespace fault_matrix_test
 {
@@ -30,34 +26,20 @@ using Plant = std::function<void(Subject &)>;
 // Short versions of a claim, or of a part of it.
 Results check(const std::string &claim, const Subject &subject, const Change &of_runs)
 {
-  if (claim == "energy")
-    return energy_claim(subject, 50);
+  for (const parts::ClaimPart &part : {parts::energy, parts::intrinsic_length, parts::prestretch})
+    if (claim == part.name)
+      return part.check(subject);
   if (claim == "energy of waves")
-  {
-    WaveEnergyOptions options;
-    options.states = {Eigen::Matrix2d::Identity()};
-    options.kd = {0.25, 0.5};
-    options.mesh.cells = 4;
-    options.travelling_mesh.cells = 6;
-    return wave_energy_claim(subject, options).results;
-  }
+    return parts::energy_of_waves(subject, {Eigen::Matrix2d::Identity()}).results;
   if (claim == "wave-speeds" || claim == "damped waves")
   {
-    WaveSpeedsOptions options;
-    if (claim == "wave-speeds")
-      options.states = {Eigen::Matrix2d::Identity()};
-    else
-      options.damped_states = {subject.deformation};
-    options.kd = {0.2, 0.4};
-    options.mesh.cells = 4;
+    WaveSpeedsOptions options =
+      claim == "wave-speeds" ? parts::waves({Eigen::Matrix2d::Identity()}) : parts::waves({}, {subject.deformation});
+    options.kd = {0.2, 0.4}; // where faults of one percent are larger than what long waves leave
     if (of_runs)
       options.planted = of_runs;
     return wave_speeds_claim(subject, options).results;
   }
-  if (claim == "intrinsic-length")
-    return intrinsic_length_claim(subject, 30.).results;
-  if (claim == "prestretch")
-    return prestretch_claim(subject, small_sheet());
   CutStudy study = hole_study(true);
   study.other_sizes.clear();
   return cut_claim(subject, study).results;
@@ -96,15 +78,6 @@ std::ostream &operator<<(std::ostream &out, const PlantedFault &fault)
 lattice::MooneyRivlinBond &bond(lattice::Shell &shell)
 {
   return std::get<lattice::MooneyRivlinBond>(shell.law);
-}
-
-template <class Law>
-Law scaled(const continuum::CauchyBorn &law, double factor)
-{
-  std::vector<continuum::FibreFamily> families = law.families();
-  for (continuum::FibreFamily &family : families)
-    family.weight *= factor;
-  return Law(std::move(families));
 }
 
 // The laws of the continuum with other bonds than the lattice has; those of the third shell are the last from 6 on.
@@ -178,17 +151,17 @@ std::vector<PlantedFault> all_faults()
        return material;
      }},
     {"continuum: weights, Cauchy-Born",
-     [](Subject &s) { s.cauchy_born = scaled<continuum::CauchyBorn>(s.cauchy_born, wrong); },
+     [](Subject &s) { s.cauchy_born = faults::scaled<continuum::CauchyBorn>(s.cauchy_born, wrong); },
      {{"energy", {"mu at F = I, lattice and Cauchy-Born against a, b and s alone"}},
       {"wave-speeds", {"gradient continuum against Bloch"}},
       gradient_alpha,
       {"prestretch", {"traction on the top edge, Cauchy-Born"}},
       {"hole", {"energy"}}}},
     {"continuum: d^2 in place of the Voronoi cell of a site",
-     [](Subject &s) { s.cauchy_born = scaled<continuum::CauchyBorn>(s.cauchy_born, std::sqrt(0.75)); },
+     [](Subject &s) { s.cauchy_born = faults::scaled<continuum::CauchyBorn>(s.cauchy_born, std::sqrt(0.75)); },
      {{"energy", {"energy density, Cauchy-Born", "first Piola stress, Cauchy-Born"}}}},
     {"continuum: weights, network",
-     [](Subject &s) { s.network = scaled<continuum::IsotropicNetwork>(s.cauchy_born, wrong); },
+     [](Subject &s) { s.network = faults::scaled<continuum::IsotropicNetwork>(s.cauchy_born, wrong); },
      {{"energy", {"network"}, {}, true},
       {"wave-speeds", {"network with gradient energy against the lattice's mean over rotations"}, own_waves},
       {"intrinsic-length", {"network in all directions against the lattice's mean over directions"}},
@@ -196,7 +169,7 @@ std::vector<PlantedFault> all_faults()
        {{", network", 3}, {"", 3}, "traction on the top edge, network against the lattice's mean over rotations"}},
       {"hole", {"network: stress amplitude", "network: energy"}}}},
     {"continuum: weights, network, too small",
-     [](Subject &s) { s.network = scaled<continuum::IsotropicNetwork>(s.cauchy_born, 0.99); },
+     [](Subject &s) { s.network = faults::scaled<continuum::IsotropicNetwork>(s.cauchy_born, 0.99); },
      {{"energy", {"network"}, {}, true}}},
     {"continuum: gradient energy",
      [](Subject &s)
@@ -312,9 +285,7 @@ TEST(Surroundings, AreThoseOfTheirClosedForms)
     EXPECT_EQ(faults::failing(damped, "restitution"), 1u) << damped.rows()[0].error.value_or(-1.);
     if (integrator == input::Case::Integrator::velocity_verlet)
       continue; // WaveSpeeds.HoldsForDampedWaves
-    WaveSpeedsOptions options;
-    options.damped_states = {subject.deformation};
-    options.mesh.cells = 4;
+    WaveSpeedsOptions options = parts::waves({}, {subject.deformation});
     options.integrator = integrator;
     const Results waves = wave_speeds_claim(subject, options).results;
     EXPECT_TRUE(waves.all_hold()) << waves.verdict_text(6);

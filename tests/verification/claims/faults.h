@@ -45,6 +45,16 @@ private:
   Law first_, second_;
 };
 
+/// The law of a network of fibres with its weights times a factor.
+template <class Law>
+Law scaled(const latcon::continuum::CauchyBorn &law, double by)
+{
+  std::vector<latcon::continuum::FibreFamily> families = law.families();
+  for (latcon::continuum::FibreFamily &family : families)
+    family.weight *= by;
+  return Law(std::move(families));
+}
+
 /// The gradient energy l_d^2 A - B of the lattice with its k^4 term the wrong way round, l_d^2 A + B.
 inline void turn_sign_of_fourth_order(latcon::bridge::Subject &subject)
 {

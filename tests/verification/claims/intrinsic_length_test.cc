@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/faults.h"
+#include "tests/verification/claims/parts.h"
 
 namespace intrinsic_length_test
 {
@@ -14,8 +15,6 @@ using namespace bridge;
 using namespace claims;
 using namespace input;
 using namespace output;
-
-constexpr double angle_step = 30.;
 
 Eigen::Vector2d direction(double degrees)
 {
@@ -110,10 +109,10 @@ TEST(GradientPositivity, HasNoLengthWhereBondsAreCompressed)
 
   Subject subject = bridge::subject(input, subjects::nearest_only(input));
   subject.deformation = compressed;
-  const ClaimOutcome outcome = intrinsic_length_claim(subject, angle_step);
-  EXPECT_EQ(faults::failing(outcome.results, ""), 0u);
+  const Results results = parts::intrinsic_length.check(subject);
+  EXPECT_EQ(faults::failing(results), 0u);
   std::size_t n_reported = 0;
-  for (const Result &row : outcome.results.rows())
+  for (const Result &row : results.rows())
   {
     EXPECT_EQ(row.quantity.find("1 % below the shortest length: negative, loaded"), std::string::npos);
     n_reported += row.quantity.find("loaded: there is none, bonds are compressed") != std::string::npos &&
@@ -126,8 +125,7 @@ TEST(GradientPositivity, HasNoLengthWhereBondsAreCompressed)
 
 TEST(IntrinsicLength, HoldsForBothShellSetsAcrossTheCrack)
 {
-  faults::expect_holds([](const Case &, const Subject &subject)
-                       { return intrinsic_length_claim(subject, angle_step).results; });
+  faults::expect_holds([](const Case &, const Subject &subject) { return parts::intrinsic_length.check(subject); });
 }
 
 } // namespace intrinsic_length_test

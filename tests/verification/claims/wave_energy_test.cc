@@ -1,11 +1,10 @@
 // Energies of fields that vary, and what makes the claim about them fail.
-#include "verification/claims/energy/energy_claim.h"
-
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/faults.h"
+#include "tests/verification/claims/parts.h"
 
 namespace wave_energy_test
 {
@@ -39,12 +38,7 @@ TEST(WaveEnergy, HoldsForBothShellSetsAcrossTheCrack)
   faults::expect_holds(
     [](const Case &input, const Subject &subject)
     {
-      WaveEnergyOptions options;
-      options.states = {faults::state_for(input, subject)};
-      options.kd = {0.25, 0.5};
-      options.mesh.cells = 4;
-      options.travelling_mesh.cells = 6;
-      const ClaimOutcome outcome = wave_energy_claim(subject, options);
+      const ClaimOutcome outcome = parts::energy_of_waves(subject, {faults::state_for(input, subject)});
       EXPECT_EQ(outcome.results.count(Verdict::reported), 0u);
       if (subject.material.next_nearest) // nearest neighbours alone leave less than it judges
         expect_that_the_local_energy_is_between(outcome.tables.at("sinusoidal_energy"));

@@ -1,10 +1,9 @@
 // Waves on the lattice, in the finite elements and in closed form; and what makes the claim about them fail.
-#include "verification/claims/wave_speeds/wave_speeds_claim.h"
-
 #include <gtest/gtest.h>
 
 #include "lattice/forces.h"
 #include "tests/verification/claims/faults.h"
+#include "tests/verification/claims/parts.h"
 #include "verification/bridge/plane_waves.h"
 #include "verification/claims/lattice_waves.h"
 
@@ -181,11 +180,7 @@ TEST(WaveSpeeds, HoldsForBothShellSetsAcrossTheCrack)
   faults::expect_holds(
     [](const Case &input, const Subject &subject)
     {
-      WaveSpeedsOptions options;
-      options.states = {faults::state_for(input, subject)};
-      options.kd = {0.25, 0.5};
-      options.mesh.cells = 4;
-      const ClaimOutcome outcome = wave_speeds_claim(subject, options);
+      const ClaimOutcome outcome = wave_speeds_claim(subject, parts::waves({faults::state_for(input, subject)}));
       EXPECT_EQ(outcome.tables.at("wave_speeds").rows().size(), 4u * 2u * 2u); // directions, kd, waves
       return outcome.results;
     });
@@ -195,9 +190,7 @@ TEST(WaveSpeeds, HoldsForBothShellSetsAcrossTheCrack)
 TEST(WaveSpeeds, HoldsForDampedWaves)
 {
   const Case input = subjects::weakly_damped_case();
-  WaveSpeedsOptions options;
-  options.damped_states = {input.deformation()};
-  options.mesh.cells = 4;
+  const WaveSpeedsOptions options = parts::waves({}, {input.deformation()});
   const ClaimOutcome outcome = wave_speeds_claim(subject(input), options);
   EXPECT_EQ(outcome.results.rows().size(), 9u);
   for (const Result &row : outcome.results.rows())

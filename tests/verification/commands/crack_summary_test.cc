@@ -63,17 +63,6 @@ TEST(CrackSummary, HasALineForEachClaim)
                                   "  fracture                  nothing was checked\n");
 }
 
-TEST(CrackSummary, NamesNoRowsThatHold)
-{
-  Results results;
-  for (int i = 0; i < 30; ++i)
-    results.add(checked("row " + std::to_string(i), 0.));
-  const std::string text = crack_summary({}, oscillating(), results);
-  EXPECT_HAS(text, "30 checks hold\n");
-  EXPECT_EQ(text.find("row"), std::string::npos);
-  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 11);
-}
-
 TEST(CrackSummary, TimesHaveTwoDigits)
 {
   EXPECT_EQ(times_text({{"claims", 8.06}, {"fracture", 61.4}}), "claims 8.1 s, fracture 61 s");

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <cstring>
 #include <limits>
 #include <random>
 #include <sstream>
@@ -34,17 +35,19 @@ TEST(Parameters, FillsEveryKindOfEntry)
                              "  set title = a = b, \xc3\xbc\n"
                              "  set time step = 5 us\n"
                              "end\n");
-  EXPECT_EQ(sample.spacing, 0.000625);
-  EXPECT_EQ(sample.area_factor, 0.5);
-  EXPECT_EQ(sample.rows, 12u);
-  EXPECT_TRUE(sample.periodic);
-  EXPECT_EQ(sample.law, Law::linear);
-  EXPECT_EQ(sample.density, 12.);
-  EXPECT_EQ(sample.rule, Rule::behind_tip);
-  EXPECT_EQ(sample.steps, -3);
-  EXPECT_EQ(sample.seed, std::numeric_limits<std::uint64_t>::max());
-  EXPECT_EQ(sample.title, "a = b, \xc3\xbc");
-  EXPECT_EQ(sample.time_step, 5e-6);
+  const Sample expected{0.000625,
+                        0.5,
+                        -3,
+                        12,
+                        std::numeric_limits<std::uint64_t>::max(),
+                        true,
+                        "a = b, \xc3\xbc",
+                        Law::linear,
+                        Rule::behind_tip,
+                        {1.5, 2.5},
+                        5e-6,
+                        12.};
+  EXPECT_EQ(values(sample), values(expected));
 }
 
 TEST(Parameters, MixedUnitsInAListAreRefused)
@@ -136,18 +139,7 @@ TEST(Parameters, ResolvedCaseReadsBackBitForBit)
     written.declare(p);
     const std::string text = p.resolved_text();
     const Sample back = read(text);
-    EXPECT_TRUE(same_bits(back.spacing, written.spacing));
-    EXPECT_TRUE(same_bits(back.area_factor, written.area_factor));
-    EXPECT_TRUE(same_bits(back.density, written.density));
-    EXPECT_EQ(back.steps, written.steps);
-    EXPECT_EQ(back.rows, written.rows);
-    EXPECT_EQ(back.seed, written.seed);
-    EXPECT_EQ(back.periodic, written.periodic);
-    EXPECT_EQ(back.title, written.title);
-    EXPECT_EQ(back.law, written.law);
-    EXPECT_EQ(back.rule, written.rule);
-    EXPECT_EQ(back.stretches, written.stretches);
-    EXPECT_EQ(back.time_step, written.time_step);
+    EXPECT_EQ(values(back), values(written));
     EXPECT_EQ(lines_of(text), p.lines());
   }
 }
@@ -238,17 +230,19 @@ TEST(Parameters, JsonFillsEveryKindOfEntry)
     "Run": {"steps": -3, "seed": 18446744073709551615, "title": "x", "time step": "auto"}
   })",
                              {"Run/title=y"}, "a.json");
-  EXPECT_EQ(sample.spacing, 0.000625);
-  EXPECT_EQ(sample.area_factor, 0.5);
-  EXPECT_EQ(sample.rows, 12u);
-  EXPECT_TRUE(sample.periodic);
-  EXPECT_EQ(sample.law, Law::linear);
-  EXPECT_EQ(sample.density, 10.);
-  EXPECT_EQ(sample.rule, Rule::behind_tip);
-  EXPECT_EQ(sample.stretches, (std::vector<double>{1.5, 0.30000000000000004, 7.}));
-  EXPECT_EQ(sample.steps, -3);
-  EXPECT_EQ(sample.seed, std::numeric_limits<std::uint64_t>::max());
-  EXPECT_EQ(sample.title, "y");
+  const Sample expected{0.000625,
+                        0.5,
+                        -3,
+                        12,
+                        std::numeric_limits<std::uint64_t>::max(),
+                        true,
+                        "y",
+                        Law::linear,
+                        Rule::behind_tip,
+                        {1.5, 0.30000000000000004, 7.},
+                        {},
+                        10.};
+  EXPECT_EQ(values(sample), values(expected));
 }
 
 } // namespace parameters_test

@@ -3,10 +3,10 @@
 // A made-up case with an entry of each kind, and what reading a text as such a case comes to.
 
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -137,9 +137,10 @@ inline std::string lines_of(const std::string &text, const std::vector<std::stri
   return lines;
 }
 
-inline bool same_bits(const double a, const double b)
+inline auto values(const Sample &s)
 {
-  return std::memcmp(&a, &b, sizeof(a)) == 0;
+  return std::tie(s.spacing, s.area_factor, s.steps, s.rows, s.seed, s.periodic, s.title, s.law, s.rule, s.stretches,
+                  s.time_step, s.density);
 }
 
 // Returns whether the parameters can be declared as in `declaration`; a programming error throws.

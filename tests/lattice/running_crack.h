@@ -1,0 +1,102 @@
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "lattice/simulation.h"
+#include "lattice/site_fields.h"
+#include "lattice/time_step.h"
+#include "tests/lattice/sheets.h"
+
+/// A crack that runs through a small noisy sheet, and the comparison of two simulations bit by bit.
+namespace running_crack
+{
+
+inline latcon::lattice::TriangularLattice small_sheet()
+{
+  using namespace latcon::lattice;
+  return {sheets::spacing, 40. * sheets::spacing, 16. * sheets::spacing, Orientation::rows_along_crack};
+}
+
+/// @param stages 0: velocity Verlet, in steps that are a third as long
+inline latcon::lattice::TimeStepping stepping(const latcon::lattice::TriangularLattice &sheet,
+                                              const latcon::lattice::Material &material, unsigned int stages)
+{
+  const double step = 0.5 * time_step_limits(sheet, material, 0.3).combined;
+  return stages > 0 ? latcon::lattice::TimeStepping(3. * step, stages) : latcon::lattice::TimeStepping(step);
+}
+
+inline std::unique_ptr<latcon::lattice::Simulation> start(const latcon::lattice::TriangularLattice &sheet,
+                                                          const latcon::lattice::Material &material,
+                                                          const latcon::lattice::TimeStepping &how,
+                                                          bool has_contact = false)
+{
+  using namespace latcon::lattice;
+  const Eigen::Matrix2d F = sheets::stretched(2.3, 2.9);
+  State state = homogeneous_state(sheet, material, F, Edges::held);
+  add_noise(state, sheet, 0.05 * sheets::spacing, 1);
+  auto simulation = std::make_unique<Simulation>(sheet, material, std::move(state), how,
+                                                 Fracture(sheet, material, 3.05, BehindTipToughening{2.5e-3, 3.}, F));
+  if (has_contact)
+    simulation->enable_contact(contact_like_nearest_bond(sheet, material, 3. * sheets::spacing, 0.1, 0.1));
+  simulation->cut(sheets::middle_row(sheet, 4, 8));
+  return simulation;
+}
+
+inline std::unique_ptr<latcon::lattice::Simulation> start(const latcon::lattice::TriangularLattice &sheet,
+                                                          const latcon::lattice::Material &material,
+                                                          unsigned int stages = 0, bool has_contact = false)
+{
+  return start(sheet, material, stepping(sheet, material, stages), has_contact);
+}
+
+inline bool same_bits(const latcon::lattice::Field &a, const latcon::lattice::Field &b)
+{
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+/// Expects the same state of all sites and bonds, the same ledger, and the same stresses as frames have them.
+inline void expect_same_bits(const latcon::lattice::Simulation &one, const latcon::lattice::Simulation &other)
+{
+  using namespace latcon::lattice;
+  const State &a = one.state(), &b = other.state();
+  const TriangularLattice &sheet = one.lattice();
+  EXPECT_EQ(a.time, b.time);
+  for (std::size_t kind = 0; kind < a.bonds.n_kinds(); kind += BondStates::kinds_per_word)
+    EXPECT_TRUE(std::equal(a.bonds.words(kind), a.bonds.words(kind) + sheet.n_places(), b.bonds.words(kind)));
+  EXPECT_EQ(a.lost_bonds, b.lost_bonds);
+  EXPECT_EQ(one.tip(), other.tip());
+  EXPECT_EQ(one.n_broken(), other.n_broken());
+  ASSERT_EQ(a.history.kinds.size(), b.history.kinds.size());
+  for (std::size_t kind = 0; kind < a.history.kinds.size(); ++kind)
+  {
+    EXPECT_TRUE(same_bits(a.history.kinds[kind].stretch, b.history.kinds[kind].stretch));
+    for (std::size_t v = 0; v < a.history.kinds[kind].variables.size(); ++v)
+      EXPECT_TRUE(same_bits(a.history.kinds[kind].variables[v], b.history.kinds[kind].variables[v]));
+  }
+  const EnergyBalance e = one.energies(), f = other.energies();
+  for (const auto energy : {&EnergyBalance::elastic, &EnergyBalance::kinetic, &EnergyBalance::viscous,
+                            &EnergyBalance::broken, &EnergyBalance::contact})
+    EXPECT_EQ(e.*energy, f.*energy);
+  EXPECT_EQ(e.imbalance(), f.imbalance());
+  const std::vector<MechanismEnergy> of_one = one.mechanism_energies(), of_other = other.mechanism_energies();
+  ASSERT_EQ(of_one.size(), of_other.size());
+  for (std::size_t m = 0; m < of_one.size(); ++m)
+  {
+    EXPECT_EQ(of_one[m].stored, of_other[m].stored);
+    EXPECT_EQ(of_one[m].dissipated, of_other[m].dissipated);
+  }
+  const SiteEvaluator evaluator(sheet, one.material());
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+    if (sheet.is_site(place))
+    {
+      for (Field State::*field : {&State::x, &State::y, &State::vx, &State::vy, &State::ax, &State::ay})
+        ASSERT_EQ(std::memcmp(&(a.*field)[place], &(b.*field)[place], sizeof(double)), 0) << place;
+      ASSERT_EQ(evaluator.at(a, place).first_piola_stress, evaluator.at(b, place).first_piola_stress) << place;
+    }
+}
+
+} // namespace running_crack
