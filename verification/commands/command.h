@@ -37,7 +37,8 @@ support::ExitCode run_continuum(const input::Options &options); ///< `latcon con
 support::ExitCode run_fracture(const input::Options &options);  ///< `latcon fracture`
 support::ExitCode print_schema(const input::Options &options);  ///< `latcon schema`
 
-/// `latcon study`, `latcon batch` and `latcon compare`, which are Python: does not return if it starts.
+/// `latcon study`, `batch`, `compare`, `entries`, `init`, and `help` on entries, which are Python: does not return if
+/// it starts.
 /// @param command which of them @param names paths of what it is about @param chosen its own options, by name
 support::ExitCode continue_in_python(const input::Options &options, const std::string &command,
                                      const std::vector<std::string> &names, nlohmann::ordered_json chosen);
@@ -54,18 +55,6 @@ support::ExitCode report(const input::Options &options, const std::string &direc
 support::ExitCode resolve_cases(const input::Options &options);
 /// `latcon gate`: checks the claims that a crack waits for, see require_verified(). @throws ClaimFailed
 support::ExitCode verify_before_cracks(const input::Options &options);
-
-/// `latcon entries`: lists the entries of a section, or of all if it is empty. @throws InputError for an unknown
-/// section
-support::ExitCode print_entries(const std::string &section);
-
-/// `latcon help TOPIC` for a section or an entry. @param commands names of the commands, for typing errors
-/// @throws InputError for an unknown topic
-support::ExitCode print_topic(const std::string &topic, const std::vector<std::string> &commands);
-
-/// `latcon init`: creates the folder and a commented case in it. @throws InputError if the case exists @throws
-/// OutputError
-support::ExitCode init(const input::Options &options, const std::string &directory);
 
 /// Draws pictures and report.html of a run in a directory that this process has locked, without a word. On rank 0.
 /// @param shows_progress whether a progress line is shown meanwhile

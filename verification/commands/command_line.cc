@@ -103,12 +103,12 @@ std::string case_choices()
   return "case file, .prm or .json, or a shipped case: " + input::comma_separated(input::shipped_cases());
 }
 
-support::ExitCode print_help(const CLI::App &app, const std::string &topic)
+support::ExitCode print_help(const CLI::App &app, const input::Options &options, const std::string &topic)
 {
   const std::vector<std::string> names = command_names(app);
   const bool is_command = std::find(names.begin(), names.end(), topic) != names.end();
   if (!topic.empty() && !is_command)
-    return print_topic(topic, names);
+    return continue_in_python(options, "help", {topic}, {{"commands", names}});
   if (support::is_root_rank())
     // App::help() of a program whose command line named a command describes that command.
     std::cout << (is_command ? app.get_subcommand(topic)->help(app.get_name())
@@ -331,20 +331,20 @@ support::ExitCode run_program(int argc, char **argv)
     ->required()
     ->check(no_tilde)
     ->type_name("");
-  init_command->callback([&] { command = [&] { return init(options, directory); }; });
+  init_command->callback([&] { command = [&] { return continue_in_python(options, "init", {directory}, {}); }; });
 
   std::string section;
   CLI::App *entries_command =
     add_command("entries", "entries of a case: name, unit, default, meaning", "latcon entries Fracture");
   entries_command->add_option("SECTION", section, "section whose entries to list; default: all")->type_name("");
-  entries_command->callback([&] { command = [&] { return print_entries(section); }; });
+  entries_command->callback([&] { command = [&] { return continue_in_python(options, "entries", {section}, {}); }; });
 
   std::vector<std::string> topic; // names with blanks need no quotes
   CLI::App *help_command =
     add_command("help", "help on a command, a section or an entry of a case", "latcon help Fracture/toughening");
   help_command->add_option("TOPIC", topic, "command, section, or entry (Section/Name or its name alone)")
     ->type_name("");
-  help_command->callback([&] { command = [&] { return print_help(app, CLI::detail::join(topic, " ")); }; });
+  help_command->callback([&] { command = [&] { return print_help(app, options, CLI::detail::join(topic, " ")); }; });
 
   CLI::App *schema_command =
     add_command("schema", "all entries of a case as JSON, with the values of one", "latcon schema quick");

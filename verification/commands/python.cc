@@ -118,10 +118,10 @@ support::ExitCode run_report(const std::string &directory, const std::vector<std
 support::ExitCode continue_in_python(const input::Options &options, const std::string &command,
                                      const std::vector<std::string> &names, Json chosen)
 {
-  if (command == "compare" && !support::is_root_rank())
-    return support::ExitCode::done; // the first rank does all the work
-  if (support::n_ranks() > 1 && command != "compare")
+  if (support::n_ranks() > 1 && (command == "study" || command == "batch"))
     throw support::InputError("`latcon " + command + "` is one process; run it without mpirun");
+  if (!support::is_root_rank())
+    return support::ExitCode::done; // the first rank does all the work
   chosen.update({{"arguments", options.arguments},
                  {"overrides", options.overrides},
                  {"threads", options.threads},

@@ -20,6 +20,8 @@
 #include <string>
 #include <type_traits>
 #include <typeinfo>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include <Eigen/Core>
@@ -44,25 +46,22 @@ struct HasArchive<T, Archive, std::void_t<decltype(std::declval<T &>().archive(s
 template <class T>
 constexpr bool is_matrix = std::is_base_of_v<Eigen::MatrixBase<T>, T>;
 
-/// Archive that calls a function with each number of a record: which it is, a function that returns its name, its
-/// value.
+/// Archive that calls a function with each number of a record: a function that returns its name, and its value.
 template <bool loading, class Visit>
 class NumberArchive
 {
 public:
   static constexpr bool loads = loading;
-  explicit NumberArchive(const Visit &visit) : visit_(visit) {}
+  explicit NumberArchive(Visit &visit) : visit_(visit) {}
 
   template <class T>
   void operator()(const std::string &name, T &value)
   {
     if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::uint64_t>)
-      visit_(
-        number_++, [&] { return prefix_ + name; }, value);
+      visit_([&] { return prefix_ + name; }, value);
     else if constexpr (is_matrix<T>)
       for (Eigen::Index i = 0; i < value.size(); ++i)
-        visit_(
-          number_++, [&] { return prefix_ + name + "_" + std::to_string(i); }, value.data()[i]);
+        visit_([&] { return prefix_ + name + "_" + std::to_string(i); }, value.data()[i]);
     else
     {
       static_assert(HasArchive<T, NumberArchive>::value, "a record consists of numbers and of records");
@@ -74,9 +73,8 @@ public:
   }
 
 private:
-  const Visit &visit_;
+  Visit &visit_;
   std::string prefix_;
-  std::size_t number_ = 0;
 };
 
 /// Common base of both archives, which decomposes objects into arrays and texts.
@@ -182,25 +180,32 @@ public:
   {
     std::size_t n = all.size();
     (*this)(name + "/n", n);
-    if constexpr (Archive::loads)
-      all.clear(); // grows as large as its first column is
-    if (n == 0)
-      return;
+    std::vector<std::pair<std::string, std::variant<std::vector<double>, std::vector<std::uint64_t>>>> columns;
     Record any{};
-    for_each_number(any,
-                    [&](std::size_t column, const auto &name_of, auto &number)
-                    {
-                      const std::string column_name = name + "/" + name_of();
-                      std::vector<std::decay_t<decltype(number)>> values;
-                      if constexpr (!Archive::loads)
-                        for_each_in_column(all, column, values, [&](auto &value) { values.push_back(value); });
-                      (*this)(column_name, values);
-                      require(values.size() == n, column_name, "has a length other than `n`");
-                      auto next = values.begin();
-                      all.resize(n);
-                      if constexpr (Archive::loads)
-                        for_each_in_column(all, column, values, [&](auto &value) { value = *next++; });
-                    });
+    for_each_number(any, [&](const auto &name_of, auto &number)
+                    { columns.emplace_back(name + "/" + name_of(), std::vector<std::decay_t<decltype(number)>>()); });
+    const auto for_each_cell = [&](const auto &visit)
+    {
+      for (std::size_t row = 0; row < n; ++row)
+        for_each_number(all[row],
+                        [&, column = columns.begin()](const auto &, auto &number) mutable {
+                          visit(std::get<std::vector<std::decay_t<decltype(number)>>>((column++)->second), row, number);
+                        });
+    };
+    if constexpr (!Archive::loads)
+      for_each_cell([](auto &values, std::size_t, const auto &number) { values.push_back(number); });
+    for (auto &[column_name, column] : columns)
+      if (n > 0)
+        std::visit(
+          [&, &of = column_name](auto &values)
+          {
+            (*this)(of, values);
+            require(values.size() == n, of, "has a length other than `n`");
+          },
+          column);
+    all.resize(n);
+    if constexpr (Archive::loads)
+      for_each_cell([](const auto &values, std::size_t row, auto &number) { number = values[row]; });
   }
 
 protected:
@@ -216,25 +221,10 @@ private:
   Archive &self() { return static_cast<Archive &>(*this); }
 
   template <class Record, class Visit>
-  static void for_each_number(Record &record, const Visit &visit)
+  static void for_each_number(Record &record, Visit &&visit)
   {
-    NumberArchive<Archive::loads, Visit> archive(visit);
+    NumberArchive<Archive::loads, std::decay_t<Visit>> archive(visit);
     record.archive(archive);
-  }
-
-  // Visits a number of each record, of the type of the values of its column.
-  template <class Record, class Number, class Visit>
-  static void for_each_in_column(std::vector<Record> &all, std::size_t column, const std::vector<Number> &,
-                                 const Visit &visit)
-  {
-    for (Record &record : all)
-      for_each_number(record,
-                      [&](std::size_t position, const auto &, auto &number)
-                      {
-                        if constexpr (std::is_same_v<std::decay_t<decltype(number)>, Number>)
-                          if (position == column)
-                            visit(number);
-                      });
   }
 
   template <class Range>
