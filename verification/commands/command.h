@@ -16,6 +16,7 @@
 #include "verification/input/options.h"
 #include "verification/output/results.h"
 #include "verification/output/run_info.h"
+#include "verification/resources/resources.h"
 
 namespace latcon::claims
 {
@@ -69,6 +70,17 @@ bool has_default_threads(const input::Options &options);
 
 /// Prints a part of the output of --dry-run, on the root rank, unless --quiet.
 void print_dry_run(const input::Options &options, const std::string &text);
+
+/// Refuses a run that takes longer than 10 days, unless the user confirmed it. @param seconds estimated
+/// @throws InputError with the estimate
+void require_time(const input::Options &options, double seconds);
+
+/// Refuses a run of the lattice that needs too much memory or time, unless the user confirmed it, and prints what
+/// --dry-run shows: the resolved case, memory, sites, bonds, time step, stages, steps and estimated time. Collective.
+/// @return whether it is to be run; false with --dry-run
+[[nodiscard]] bool is_to_be_run(const input::Options &options, const input::Parameters &parameters,
+                                const input::Case &input, const lattice::TimeStepping &stepping,
+                                resources::RunKind run);
 
 /// Locks an existing directory, and removes the unfinished files that killed runs left in it and in its checkpoints.
 /// Waits up to `patience` for another process to end.

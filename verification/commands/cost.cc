@@ -1,4 +1,4 @@
-#include "verification/commands/cost.h"
+#include "verification/commands/command.h"
 
 #include <cmath>
 #include <sstream>
@@ -9,7 +9,6 @@
 #include "support/ranks.h"
 #include "support/text_wrap.h"
 #include "verification/bridge/lattice_sheet.h"
-#include "verification/commands/command.h"
 
 namespace latcon::commands
 {
@@ -83,12 +82,6 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
 
 } // namespace
 
-void require_memory(const input::Options &options, const resources::MemoryNeed &need)
-{
-  if (!options.yes)
-    resources::require_memory(need);
-}
-
 void require_time(const input::Options &options, const double seconds)
 {
   if (options.yes || !(seconds > longest_run))
@@ -107,7 +100,8 @@ bool is_to_be_run(const input::Options &options, const input::Parameters &parame
   const resources::MemoryNeed memory = resources::lattice_memory(input, run, claims);
   if (options.dry_run)
     print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
-  require_memory(options, memory);
+  if (!options.yes)
+    resources::require_memory(memory);
   if (options.dry_run && !options.quiet)
     print_dry_run(options, lattice_text(input, stepping, run, claims, breaks && !options.no_report));
   if (run != resources::RunKind::equilibrium)

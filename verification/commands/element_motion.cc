@@ -12,7 +12,6 @@
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogenisation.h"
 #include "verification/claims/continuum_waves.h"
-#include "verification/commands/equilibrium.h"
 #include "verification/commands/motion.h"
 #include "verification/output/continuum_record.h"
 

@@ -13,7 +13,6 @@
 #include "verification/claims/claim_inputs.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
-#include "verification/commands/cost.h"
 #include "verification/input/files.h"
 #include "verification/input/sha256.h"
 #include "verification/input/spelling.h"
@@ -73,7 +72,8 @@ public:
       const auto needs = request["memory"].get<std::vector<double>>();
       const double total = std::accumulate(needs.begin(), needs.end(), 0.) +
                            static_cast<double>(needs.size()) * support::resident_memory();
-      require_memory(options_, {total, 0.});
+      if (!options_.yes)
+        resources::require_memory({total, 0.});
       return {{"text", resources::memory_text({total, 0.})}};
     }
     return resolved(request);

@@ -1,4 +1,4 @@
-#include "verification/commands/usage_error.h"
+#include "verification/commands/command_line.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "support/errors.h"
-#include "verification/claims/run_claims.h"
+#include "verification/claims/claim_inputs.h"
 #include "verification/input/options.h"
 
 namespace latcon::elements

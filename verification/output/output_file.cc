@@ -1,10 +1,11 @@
 #include "verification/output/output_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <set>
 #include <system_error>
+
+#include <fnmatch.h>
 
 #include "support/atomic_file.h"
 #include "support/errors.h"
@@ -44,17 +45,12 @@ void write_names(const fs::path &folder, const Names &names)
   support::write_atomically(folder / output_list_name, text, support::Sync::yes);
 }
 
-bool fits(const std::string &file, const std::string &name)
+// Whether a file has a name of the list, in which `*` stands for digits and dots.
+bool fits(const std::string &file, std::string name)
 {
-  const std::size_t star = name.find('*');
-  if (star == std::string::npos)
-    return file == name;
-  const std::string begin = name.substr(0, star), end = name.substr(star + 1);
-  return file.size() > begin.size() + end.size() && file.compare(0, begin.size(), begin) == 0 &&
-         file.compare(file.size() - end.size(), end.size(), end) == 0 &&
-         std::all_of(file.begin() + static_cast<std::ptrdiff_t>(begin.size()),
-                     file.end() - static_cast<std::ptrdiff_t>(end.size()),
-                     [](const unsigned char c) { return std::isdigit(c) != 0 || c == '.'; });
+  if (const std::size_t star = name.find('*'); star != std::string::npos)
+    name.replace(star, 1, "+([0-9.])");
+  return fnmatch(name.c_str(), file.c_str(), FNM_EXTMATCH) == 0;
 }
 
 bool is_in(const Names &names, const fs::path &file)

@@ -11,9 +11,9 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include "lattice/simulation.h"
 #include "support/errors.h"
 #include "verification/bridge/lattice_sheet.h"
-#include "verification/input/cracked_sheet.h"
 #include "verification/output/archive.h"
 
 namespace py = pybind11;

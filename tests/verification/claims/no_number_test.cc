@@ -17,7 +17,6 @@
 #include "verification/claims/energy/energy_claim.h"
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 #include "verification/claims/prestretch/prestretch_claim.h"
-#include "verification/claims/run_claims.h"
 #include "verification/claims/steady_crack/steady_crack_claim.h"
 #include "verification/claims/wave_speeds/wave_speeds_claim.h"
 #include "verification/commands/claim_registry.h"
