@@ -12,41 +12,20 @@ namespace latcon::analysis
 namespace
 {
 
-void require(bool condition, const std::string &message)
+void check(const std::vector<TipRecord> &tip, const std::vector<BreakRecord> &breaks, const CrackMeasurementOptions &o)
 {
-  if (!condition)
-    throw std::invalid_argument(message);
-}
-
-void check(const CrackMeasurementOptions &o)
-{
-  require(o.strip_length > 0. && std::isfinite(o.strip_length), "crack measurement: the strip length must be positive");
-  require(o.lattice_spacing > 0. && o.lattice_spacing < o.strip_length,
-          "crack measurement: the lattice spacing must be between 0 and the strip length");
-  require(o.end_time >= 0. && std::isfinite(o.end_time), "crack measurement: the end time must be finite and >= 0");
-  require(o.seed_tip_X >= 0. && o.seed_tip_X < o.strip_length, "crack measurement: the seed must end inside the strip");
-}
-
-void check(const std::vector<TipRecord> &tip, double end_time)
-{
+  bool is_good = o.lattice_spacing > 0. && o.lattice_spacing < o.strip_length && std::isfinite(o.strip_length) &&
+                 o.end_time >= 0. && std::isfinite(o.end_time) && o.seed_tip_X >= 0. && o.seed_tip_X < o.strip_length;
   for (std::size_t i = 0; i < tip.size(); ++i)
   {
-    const TipRecord &entry = tip[i];
-    const std::string where = "crack measurement: tip record " + std::to_string(i);
-    require(std::isfinite(entry.t) && std::isfinite(entry.X) && std::isfinite(entry.Y) && std::isfinite(entry.x) &&
-              std::isfinite(entry.y),
-            where + " is not finite");
-    require(entry.t <= end_time, where + " is later than the end of the run");
-    require(i == 0 || entry.t >= tip[i - 1].t, where + " goes back in time");
-    require(i == 0 || entry.X >= tip[i - 1].X, where + " goes back in X");
+    const TipRecord &now = tip[i], &before = tip[i > 0 ? i - 1 : 0];
+    is_good = is_good && std::isfinite(now.t + now.X + now.Y + now.x + now.y) && now.t <= o.end_time &&
+              now.t >= before.t && now.X >= before.X;
   }
-}
-
-void check(const std::vector<BreakRecord> &breaks)
-{
-  for (std::size_t i = 0; i < breaks.size(); ++i)
-    require(std::isfinite(breaks[i].t) && std::isfinite(breaks[i].X) && std::isfinite(breaks[i].Y),
-            "crack measurement: broken bond " + std::to_string(i) + " is not finite");
+  for (const BreakRecord &bond : breaks)
+    is_good = is_good && std::isfinite(bond.t + bond.X + bond.Y);
+  if (!is_good)
+    throw std::invalid_argument("crack measurement: a record is not finite or goes back, or an option is out of range");
 }
 
 /// Returns the time at which the tip first reached X; requires tip.back().X >= X.
@@ -158,9 +137,7 @@ const char *to_string(CrackPattern pattern)
 CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vector<BreakRecord> &breaks,
                                const CrackMeasurementOptions &options)
 {
-  check(breaks);
-  check(options);
-  check(tip, options.end_time);
+  check(tip, breaks, options);
 
   CrackMeasurement m;
   m.X_begin = m.X_end = options.seed_tip_X;

@@ -84,8 +84,9 @@ void require_lattice_sheet(const input::Case &input, input::Parameters &p, const
       p.error(name + " " + field->given(), command + " starts a motion at rest, apart from noise; give 0");
 }
 
-void require_whole_held_sheet(const input::Case &input, input::Parameters &p, const std::string &command)
+void require_fracture_case(const input::Case &input, input::Parameters &p)
 {
+  const std::string command = "`latcon fracture`";
   if (input.hole_radius > 0.)
     p.error("Sheet/hole radius", command + " does not support holes; give 0");
   if (input.notch_length > 0.)
@@ -96,11 +97,6 @@ void require_whole_held_sheet(const input::Case &input, input::Parameters &p, co
               command + " needs every edge of the sheet held; give held");
   for (std::size_t id = 0; id < 5; ++id)
     check_edge(input.continuum.edges[id], p, command, id == 2 || id == 3);
-}
-
-void require_fracture_case(const input::Case &input, input::Parameters &p)
-{
-  require_whole_held_sheet(input, p, "`latcon fracture`");
   if (!input.breaking_stretch)
     p.error("Fracture/breaking stretch", "fracture needs a breaking stretch");
   if (!(input.end_time > 0.))

@@ -11,9 +11,8 @@
 namespace latcon::claims
 {
 
-/// Values in `input` of the entries that are declared as read by claims, and of the `further` ones: a line
-/// `Section/Name=value` for each, in SI and full precision, by key. Two cases with the same text are the same to the
-/// claims.
+/// Values in `input` of the entries that all claims read, and of the `further` ones: a line `Section/Name=value` for
+/// each, in SI and full precision, by key. Two cases with the same text are the same to the claims.
 /// @throws std::logic_error if a further entry does not exist
 [[nodiscard]] std::string claim_inputs_text(const input::Case &input, const std::vector<std::string> &further = {});
 

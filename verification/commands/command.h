@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 #include "support/errors.h"
 #include "support/folder_lock.h"
 #include "verification/bridge/laws.h"
+#include "verification/claims/claim.h"
 #include "verification/claims/rows.h"
 #include "verification/input/case.h"
 #include "verification/input/options.h"
@@ -18,9 +18,9 @@
 #include "verification/output/run_info.h"
 #include "verification/resources/resources.h"
 
-namespace latcon::claims
+namespace latcon::analysis
 {
-struct Claim;
+struct CrackMeasurement;
 }
 
 namespace latcon::output
@@ -31,6 +31,32 @@ class Checkpoints;
 namespace latcon::commands
 {
 
+/// All claims, in the order in which they are checked and shown.
+[[nodiscard]] const std::vector<claims::Claim> &claim_registry();
+
+/// Claims checked by `latcon verify` for these names on the command line; without names the default ones.
+/// @param names of the registry, in any order
+/// @param material of the lattice
+[[nodiscard]] std::vector<claims::Claim> selected_claims(const std::vector<std::string> &names,
+                                                         const lattice::Material &material);
+
+/// Claims that must hold before a crack is run. @param material of the sheet that breaks @param on_continuum whether it
+/// is the continuum in place of the lattice
+[[nodiscard]] std::vector<claims::Claim> claims_before_fracture(const lattice::Material &material,
+                                                                bool on_continuum = false);
+
+/// Message about a name that is not in the registry, with the nearest name that is; empty if it is in.
+[[nodiscard]] std::string unknown_claim(const std::string &name);
+
+/// Names of all claims as the help shows them: "{energy,wave-speeds}".
+[[nodiscard]] std::string claim_choices();
+
+/// A line for each claim, with its title, for the help.
+[[nodiscard]] std::string claim_list();
+
+/// Writes claims.json, titles and statements for the report, into `folder`, which must exist. @throws OutputError
+void write_claims(const std::vector<claims::Claim> &claims, const std::string &folder);
+
 // The commands. Each runs on every MPI rank and returns the exit code of the program, or throws.
 support::ExitCode verify(const input::Options &options);        ///< `latcon verify`
 support::ExitCode run_lattice(const input::Options &options);   ///< `latcon lattice`
@@ -38,14 +64,11 @@ support::ExitCode run_continuum(const input::Options &options); ///< `latcon con
 support::ExitCode run_fracture(const input::Options &options);  ///< `latcon fracture`
 support::ExitCode print_schema(const input::Options &options);  ///< `latcon schema`
 
-/// `latcon study`, `batch`, `compare`, `entries`, `init`, and `help` on entries, which are Python: does not return if
-/// it starts.
+/// `latcon study`, `batch`, `compare`, `report`, `entries`, `init`, and `help` on entries, which are Python: does not
+/// return if it starts.
 /// @param command which of them @param names paths of what it is about @param chosen its own options, by name
 support::ExitCode continue_in_python(const input::Options &options, const std::string &command,
                                      const std::vector<std::string> &names, nlohmann::ordered_json chosen);
-
-/// `latcon report`. @param directory of a run, or of several @param animation whether to draw animations as well
-support::ExitCode report(const input::Options &options, const std::string &directory, bool animation);
 
 /// Declared entries, shipped cases and claims as JSON; with a case its values.
 [[nodiscard]] nlohmann::ordered_json schema_document(const input::Options &options);
@@ -82,11 +105,17 @@ void require_time(const input::Options &options, double seconds);
                                 const input::Case &input, const lattice::TimeStepping &stepping,
                                 resources::RunKind run);
 
-/// Locks an existing directory, and removes the unfinished files that killed runs left in it and in its checkpoints.
-/// Waits up to `patience` for another process to end.
-/// @throws InputError if another process writes there @throws support::OutputError
-std::unique_ptr<support::FolderLock> lock_directory(const std::string &directory,
-                                                    std::chrono::milliseconds patience = std::chrono::seconds(1));
+/// Number of checks that hold and fail, a line for each claim.
+[[nodiscard]] std::string claim_lines(const output::Results &results);
+
+/// Seconds of each phase: "claims 8.1 s, fracture 61 s".
+[[nodiscard]] std::string times_text(const std::vector<std::pair<std::string, double>> &times);
+
+/// Summary of a crack for the terminal, in lines of 120 columns: its pattern with the criterion, measured quantities
+/// with uncertainties and, if the case has any, reference values, a line for each claim, and rows that fail. At most a
+/// dozen lines if none fails.
+[[nodiscard]] std::string crack_summary(const input::Case &input, const analysis::CrackMeasurement &crack,
+                                        const output::Results &results);
 
 /// Output directory of a run, locked until the run has ended, and its provenance. Rank 0 alone writes.
 ///

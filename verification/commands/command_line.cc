@@ -12,7 +12,6 @@
 #include "lattice/row_kernels.h"
 #include "support/available_cores.h"
 #include "support/ranks.h"
-#include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/commands/recorded_output.h"
 #include "verification/elements/elements.h"
@@ -27,17 +26,13 @@ namespace
 using Json = nlohmann::ordered_json;
 using Words = std::vector<std::string>;
 
-// Sets the threads of each rank; by default OMP_NUM_THREADS, or as many as there are cores for it.
-void set_threads(const input::Options &options)
+// Sets the threads of each rank; by default OMP_NUM_THREADS, or as many as there are cores for it. Throws for an
+// environment variable that names no instruction set of the lattice.
+void set_up_threads(const input::Options &options)
 {
   const unsigned int available = support::available_cores_per_rank(); // on all ranks, whatever their variables
   if (const unsigned int threads = has_default_threads(options) ? available : options.threads; threads > 0)
     omp_set_num_threads(static_cast<int>(threads));
-}
-
-// Throws for an environment variable that names no instruction set of the lattice.
-void check_instruction_set()
-{
   try
   {
     lattice::kernels::limit_instruction_sets();
@@ -56,28 +51,6 @@ constexpr const char *shared_options =
   "Also, with every command (described by latcon --help): --set, --output-dir, --threads, --quiet,\n"
   "--no-report, --verbose, --resume, --dry-run, --yes.\n";
 
-// Describes the studies that a user can give.
-std::string study_choices()
-{
-  const std::vector<std::string> names = input::shipped_studies();
-  return "study file (.json)" +
-         (names.empty() ? std::string() : ", or a shipped one: " + input::comma_separated(names));
-}
-
-// Default output directory of a study; of the study file that a sweep wrote beside a copy of its case, its own folder.
-std::string study_folder(const std::string &study, bool is_sweep)
-{
-  const std::filesystem::path path(study), folder = std::filesystem::absolute(path).parent_path();
-  const auto has = [&folder](const char *file)
-  {
-    std::error_code none;
-    return std::filesystem::exists(folder / file, none);
-  };
-  if (path.filename() == "sweep.json" && (has("base.prm") || has("base.json")))
-    return path.has_parent_path() ? path.parent_path().string() : folder.string();
-  return "output/" + path.stem().string() + (is_sweep ? "-sweep" : "");
-}
-
 // Adds an option or a flag of a command that is Python, which gets its value under a key. @param type of it in the help
 template <class Value>
 CLI::Option *keep(CLI::App *command, Json &chosen, const std::string &key, const std::string &name,
@@ -95,11 +68,6 @@ void keep(CLI::App *command, Json &chosen, const std::string &key, const std::st
   chosen[key] = false;
   command->add_flag_callback(
     name, [&chosen, key] { chosen[key] = true; }, help);
-}
-
-std::string case_choices()
-{
-  return "case file, .prm or .json, or a shipped case: " + input::comma_separated(input::shipped_cases());
 }
 
 support::ExitCode print_help(const CLI::App &app, const input::Options &options, const std::string &topic)
@@ -209,7 +177,11 @@ support::ExitCode run_program(int argc, char **argv)
                                                         suffix + (options.on_continuum ? "-continuum-crack" : ""));
                                          return run(options);
                                        });
-    subcommand->add_option("CASE", options.case_file, case_choices())->required()->type_name("");
+    subcommand
+      ->add_option("CASE", options.case_file,
+                   "case file, .prm or .json, or a shipped case: " + input::comma_separated(input::shipped_cases()))
+      ->required()
+      ->type_name("");
     return subcommand;
   };
   add_case_command("lattice", "equilibrium or motion of the unbroken lattice sheet", "latcon lattice hole", "-lattice",
@@ -241,14 +213,14 @@ support::ExitCode run_program(int argc, char **argv)
   const auto add_study_command =
     [&](const std::string &name, const std::string &help, const std::string &example, Json &chosen)
   {
-    CLI::App *subcommand = add_command(name, help, example,
-                                       [&, name]
-                                       {
-                                         if (options.output_dir.empty())
-                                           options.output_dir = study_folder(study, !chosen["sweeps"].empty());
-                                         return continue_in_python(options, name, {study}, chosen);
-                                       });
-    subcommand->add_option("STUDY", study, study_choices() + "; with --sweep a case")->required()->type_name("");
+    CLI::App *subcommand =
+      add_command(name, help, example, [&, name] { return continue_in_python(options, name, {study}, chosen); });
+    subcommand
+      ->add_option("STUDY", study,
+                   "study file (.json), or a shipped one: " + input::comma_separated(input::shipped_studies()) +
+                     "; with --sweep a case")
+      ->required()
+      ->type_name("");
     keep(subcommand, chosen, "sweeps", "--sweep", "ENTRY", Words(),
          "Section/Name=START:STOP:COUNT or =VALUE,VALUE,...: run the case STUDY for these values; repeatable: "
          "all combinations");
@@ -318,7 +290,9 @@ support::ExitCode run_program(int argc, char **argv)
   bool animation = false;
   CLI::App *report_command =
     add_command("report", "summary table, pictures and report.html of finished runs", "latcon report output/quick",
-                [&] { return report(options, directory, animation); });
+                [&] {
+                  return continue_in_python(options, "report", {directory}, {{"animation", animation}});
+                });
   report_command
     ->add_option("DIR", directory,
                  "output directory of a run, or a folder of several; with --output-dir it is only read")
@@ -373,8 +347,7 @@ support::ExitCode run_program(int argc, char **argv)
         return support::ExitCode::done;
       }
       options.case_file = input::case_path(options.case_file);
-      set_threads(options);
-      check_instruction_set();
+      set_up_threads(options);
       return command();
     });
 }

@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "continuum/errors.h"
-#include "verification/commands/element_motion.h"
+#include "verification/commands/finite_elements.h"
 #include "verification/output/checkpoints.h"
 #include "verification/resources/resources.h"
 

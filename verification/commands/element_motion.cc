@@ -1,4 +1,4 @@
-#include "verification/commands/element_motion.h"
+#include "verification/commands/finite_elements.h"
 
 #include <algorithm>
 #include <cmath>

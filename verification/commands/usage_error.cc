@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 
 #include "verification/input/case_text.h"
-#include "verification/input/spelling.h"
 
 namespace latcon::commands
 {

@@ -21,7 +21,6 @@
 #include <type_traits>
 #include <typeinfo>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <Eigen/Core>
@@ -46,35 +45,27 @@ struct HasArchive<T, Archive, std::void_t<decltype(std::declval<T &>().archive(s
 template <class T>
 constexpr bool is_matrix = std::is_base_of_v<Eigen::MatrixBase<T>, T>;
 
-/// Archive that calls a function with each number of a record: a function that returns its name, and its value.
+/// Archive that calls a function with each number of a record.
 template <bool loading, class Visit>
 class NumberArchive
 {
 public:
   static constexpr bool loads = loading;
-  explicit NumberArchive(Visit &visit) : visit_(visit) {}
+  explicit NumberArchive(const Visit &visit) : visit_(visit) {}
 
   template <class T>
-  void operator()(const std::string &name, T &value)
+  void operator()(const std::string &, T &value)
   {
     if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::uint64_t>)
-      visit_([&] { return prefix_ + name; }, value);
+      visit_(value);
     else if constexpr (is_matrix<T>)
-      for (Eigen::Index i = 0; i < value.size(); ++i)
-        visit_([&] { return prefix_ + name + "_" + std::to_string(i); }, value.data()[i]);
+      std::for_each(value.data(), value.data() + value.size(), visit_);
     else
-    {
-      static_assert(HasArchive<T, NumberArchive>::value, "a record consists of numbers and of records");
-      const std::string outer = prefix_;
-      prefix_ += name + "_";
       value.archive(*this);
-      prefix_ = outer;
-    }
   }
 
 private:
-  Visit &visit_;
-  std::string prefix_;
+  const Visit &visit_;
 };
 
 /// Common base of both archives, which decomposes objects into arrays and texts.
@@ -174,38 +165,31 @@ public:
     require(next == values.end(), name + "/sizes", "are less than the number of values");
   }
 
-  /// Archives many small objects as columns. Their archive() may contain only numbers and objects of numbers.
+  /// Archives many small objects as one list of real numbers. Their archive() may contain only numbers and objects of
+  /// numbers.
   template <class Record>
   void records(const std::string &name, std::vector<Record> &all)
   {
-    std::size_t n = all.size();
-    (*this)(name + "/n", n);
-    std::vector<std::pair<std::string, std::variant<std::vector<double>, std::vector<std::uint64_t>>>> columns;
+    std::size_t per_record = 0;
     Record any{};
-    for_each_number(any, [&](const auto &name_of, auto &number)
-                    { columns.emplace_back(name + "/" + name_of(), std::vector<std::decay_t<decltype(number)>>()); });
-    const auto for_each_cell = [&](const auto &visit)
-    {
-      for (std::size_t row = 0; row < n; ++row)
-        for_each_number(all[row],
-                        [&, column = columns.begin()](const auto &, auto &number) mutable {
-                          visit(std::get<std::vector<std::decay_t<decltype(number)>>>((column++)->second), row, number);
-                        });
-    };
-    if constexpr (!Archive::loads)
-      for_each_cell([](auto &values, std::size_t, const auto &number) { values.push_back(number); });
-    for (auto &[column_name, column] : columns)
-      if (n > 0)
-        std::visit(
-          [&, &of = column_name](auto &values)
-          {
-            (*this)(of, values);
-            require(values.size() == n, of, "has a length other than `n`");
-          },
-          column);
-    all.resize(n);
-    if constexpr (Archive::loads)
-      for_each_cell([](const auto &values, std::size_t row, auto &number) { number = values[row]; });
+    for_each_number(any, [&](const auto &) { ++per_record; });
+    std::vector<double> values;
+    for (Record &record : all)
+      for_each_number(record, [&](const auto &number) { values.push_back(static_cast<double>(number)); });
+    (*this)(name, values);
+    require(values.size() % per_record == 0, name, "ends with an incomplete element");
+    all.resize(values.size() / per_record);
+    auto next = values.begin();
+    for (Record &record : all)
+      for_each_number(record,
+                      [&](auto &number)
+                      {
+                        using Number = std::decay_t<decltype(number)>;
+                        require(std::is_same_v<Number, double> ||
+                                  (*next >= 0. && *next <= 0x1p53 && std::floor(*next) == *next),
+                                name, "has a part where a whole number should be");
+                        number = static_cast<Number>(*next++);
+                      });
   }
 
 protected:
@@ -221,9 +205,9 @@ private:
   Archive &self() { return static_cast<Archive &>(*this); }
 
   template <class Record, class Visit>
-  static void for_each_number(Record &record, Visit &&visit)
+  static void for_each_number(Record &record, const Visit &visit)
   {
-    NumberArchive<Archive::loads, std::decay_t<Visit>> archive(visit);
+    NumberArchive<Archive::loads, Visit> archive(visit);
     record.archive(archive);
   }
 

@@ -12,9 +12,9 @@
 #include "support/ranks.h"
 #include "support/text_wrap.h"
 #include "verification/input/case.h"
+#include "verification/input/files.h"
 #include "verification/input/options.h"
 #include "verification/input/parameters.h"
-#include "verification/input/sha256.h"
 #include "verification/output/output_file.h"
 #include "verification/output/run_info.h"
 

@@ -187,11 +187,10 @@ void NearTipRecord::check_loaded() const
   std::size_t samples = 0;
   for (const Block &block : blocks_)
   {
-    const std::size_t n = block.negative_zone_depth.size();
+    const std::size_t n = block.backward_speeds.size();
     samples += n;
-    lattice::require_archived(block.vortices.size() == n && block.backward_speeds.size() == n &&
-                                block.following_speeds.size() == n && block.asymmetry.size() <= n &&
-                                block.wedge_angle.size() <= n,
+    lattice::require_archived(block.vortices.size() == n && block.following_speeds.size() == n &&
+                                block.asymmetry.size() <= n && block.wedge_angle.size() <= n,
                               "`blocks` have different numbers of samples");
   }
   lattice::require_archived(samples == sampler_.samples(),
@@ -222,8 +221,6 @@ void NearTipRecord::step()
   if (const auto asymmetry = analysis::velocity_asymmetry(field))
     block.asymmetry.push_back(*asymmetry);
   block.backward_speeds.push_back(analysis::backward_speeds(field));
-  const std::vector<double> &backward = block.backward_speeds.back();
-  block.negative_zone_depth.push_back(backward.empty() ? 0. : *std::min_element(backward.begin(), backward.end()));
   block.following_speeds.push_back(analysis::speeds_behind_tip(field));
   block.vortices.emplace_back();
   for (const analysis::Vortex &vortex : analysis::vortices(field, 0., vortices_within * d))
@@ -310,7 +307,6 @@ std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack)
     put_measured(name, n > 0 ? std::optional<double>(sum / static_cast<double>(n)) : std::nullopt, uncertainty(means));
   };
   put_means("velocity_asymmetry_of_samples", [](const Block &block) { return block.asymmetry; });
-  put_means("negative_zone_depth_of_samples", [](const Block &block) { return block.negative_zone_depth; });
   // The same of a function of the speeds stored per sample; no value without their threshold.
   const auto put_speeds =
     [&](const std::string &name, auto speeds_of, const std::optional<double> &needed, auto value_of)
@@ -326,6 +322,8 @@ std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack)
                 return values;
               });
   };
+  put_speeds("negative_zone_depth_of_samples", &Block::backward_speeds, 0.,
+             [](const auto &speeds) { return speeds.empty() ? 0. : *std::min_element(speeds.begin(), speeds.end()); });
   const auto turning = [&](const auto &speeds) { return number_above(speeds, vortex_limit * *laboratory_speed); };
   put_speeds("vortices_of_samples", &Block::vortices, laboratory_speed, turning);
   put_speeds("samples_with_vortex", &Block::vortices, laboratory_speed,

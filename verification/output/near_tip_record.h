@@ -54,7 +54,7 @@ public:
 private:
   struct Block
   {
-    std::vector<double> asymmetry, negative_zone_depth, wedge_angle; ///< of samples that have one
+    std::vector<double> asymmetry, wedge_angle; ///< of samples that have one
     // Per sample. The thresholds on these speeds are known at the end, with the speed of the crack.
     std::vector<std::vector<double>> vortices;         ///< speeds of vortices [m/s]
     std::vector<std::vector<double>> backward_speeds;  ///< see backward_speeds()
@@ -64,7 +64,6 @@ private:
     void archive(Archive &archive)
     {
       archive("asymmetry", asymmetry);
-      archive("negative_zone_depth", negative_zone_depth);
       archive("wedge_angle", wedge_angle);
       archive("vortices", vortices);
       archive("backward_speeds", backward_speeds);

@@ -46,27 +46,15 @@ void write_names(const fs::path &folder, const Names &names)
 }
 
 // Whether a file has a name of the list, in which `*` stands for digits and dots.
-bool fits(const std::string &file, std::string name)
-{
-  if (const std::size_t star = name.find('*'); star != std::string::npos)
-    name.replace(star, 1, "+([0-9.])");
-  return fnmatch(name.c_str(), file.c_str(), FNM_EXTMATCH) == 0;
-}
-
 bool is_in(const Names &names, const fs::path &file)
 {
-  return std::any_of(names.begin(), names.end(),
-                     [&](const std::string &name) { return fits(file.filename().string(), name); });
-}
-
-// Returns the first name that is free.
-fs::path folder_for_earlier(const fs::path &folder)
-{
-  const fs::path plain = folder / "earlier-run";
-  fs::path aside = plain;
-  for (int i = 2; fs::exists(fs::symlink_status(aside)); ++i)
-    aside = plain.string() + "-" + std::to_string(i);
-  return aside;
+  const auto fits = [&file](std::string name)
+  {
+    if (const std::size_t star = name.find('*'); star != std::string::npos)
+      name.replace(star, 1, "+([0-9.])");
+    return fnmatch(name.c_str(), file.filename().c_str(), FNM_EXTMATCH) == 0;
+  };
+  return std::any_of(names.begin(), names.end(), fits);
 }
 
 } // namespace
@@ -114,7 +102,9 @@ fs::path archive_earlier_output(const fs::path &folder, const fs::path &keep)
         files.push_back(entry.path());
     if (files.empty())
       return {};
-    const fs::path aside = folder_for_earlier(folder);
+    fs::path aside = folder / "earlier-run"; // or the first name that is free
+    for (int i = 2; fs::exists(fs::symlink_status(aside)); ++i)
+      aside = folder / ("earlier-run-" + std::to_string(i));
     fs::create_directory(aside);
     for (const fs::path &file : files)
       fs::rename(file, aside / file.filename());

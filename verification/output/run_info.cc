@@ -3,7 +3,6 @@
 #include "support/full_precision.h"
 #include "support/ranks.h"
 #include "verification/input/files.h"
-#include "verification/input/sha256.h"
 #include "verification/output/output_file.h"
 
 #include <latcon_build_facts.h>

@@ -19,7 +19,7 @@
 #include "verification/claims/prestretch/prestretch_claim.h"
 #include "verification/claims/steady_crack/steady_crack_claim.h"
 #include "verification/claims/wave_speeds/wave_speeds_claim.h"
-#include "verification/commands/claim_registry.h"
+#include "verification/commands/command.h"
 
 namespace no_number_test
 {

@@ -1,5 +1,5 @@
 // Summary of a crack for the terminal.
-#include "verification/commands/crack_summary.h"
+#include "verification/commands/command.h"
 
 #include <algorithm>
 

@@ -58,7 +58,7 @@ struct Sample
   {
     p.add("Lattice", "spacing", spacing, Above(0.), "m", "Distance d of nearest sites", Presence::required);
     p.add("Lattice", "nearest neighbour area factor", area_factor, Between(0., 1.), "1", "Share s of the area");
-    p.add("Lattice", "rows", rows, AtLeast(2), "Rows of sites");
+    p.add("Lattice", "rows", rows, Range(2), "Rows of sites");
     p.add("Lattice", "periodic", periodic, "Whether the ends are joined");
     p.add("Lattice", "law", law, {{"mooney-rivlin", Law::mooney_rivlin}, {"linear", Law::linear}}, "Law of the bonds");
     p.add("Lattice", "density", density, Above(0.), "kg/m^2", "Mass per area");
