@@ -1,4 +1,5 @@
 // Summary of a crack for the terminal.
+#include "verification/analysis/crack_measurement.h"
 #include "verification/commands/command.h"
 
 #include <algorithm>
