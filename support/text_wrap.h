@@ -17,11 +17,11 @@ namespace latcon::support
 /// Returns a text with blanks behind it, as wide as `width` or wider.
 [[nodiscard]] std::string padded(const std::string &text, std::size_t width);
 
-/// Returns at most 63 characters of numbers in a format of std::printf().
+/// Returns at most 511 characters of numbers in a format of std::printf().
 template <class... Numbers>
 [[nodiscard]] std::string formatted(const char *format, Numbers... numbers)
 {
-  std::array<char, 64> text{};
+  std::array<char, 512> text{};
   std::snprintf(text.data(), text.size(), format, numbers...);
   return text.data();
 }

@@ -25,7 +25,7 @@ ALLOWED = {
     "verification/input": ("support", "lattice/bonds", "lattice"),
     "verification/bridge": (*SIDES, "verification/input"),
     "verification/output": (*SIDES, "verification/input", "verification/bridge", "verification/analysis"),
-    "verification/stepping": ("support", "lattice/bonds", "lattice", "verification/input", "verification/bridge"),
+    "verification/stepping": (*SIDES[:3], "verification/input", "verification/bridge", "verification/output"),
     "verification/resources": MODELS,
     "verification/claims": MODELS,
     "verification/claims/*": (*MODELS, "verification/claims"),

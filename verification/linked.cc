@@ -9,6 +9,6 @@ const Elements &elements()
   return latcon_elements();
 }
 
-Session::~Session() = default;
+void finish() {}
 
 } // namespace latcon::elements

@@ -21,8 +21,9 @@ int main(int argc, char **argv)
   {
     latcon::commands::install_signal_handlers();
     const latcon::support::MpiSession mpi;
-    const latcon::elements::Session elements;
-    return static_cast<int>(latcon::commands::run_program(argc, argv));
+    const latcon::support::ExitCode exit_code = latcon::commands::run_program(argc, argv);
+    latcon::elements::finish();
+    return static_cast<int>(exit_code);
   }
   catch (const std::exception &error) // of the start, such as no further thread under `ulimit -u`
   {

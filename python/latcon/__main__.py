@@ -1,4 +1,4 @@
-"""``python3 -m latcon``: commands of the program that are Python: ``study``, ``batch``, ``compare`` of two cracks."""
+"""``python3 -m latcon``: commands of the program that are Python: studies, comparisons, explanations of entries."""
 from __future__ import annotations
 
 import json
@@ -14,8 +14,8 @@ def main(words: list[str]) -> int:
     if words[:1] == ["--parsed"]:
         from .study.command import run
         # Paths, which need not be UTF-8, then the other options.
-        paths = ("output_dir", "program", "data", *(("first", "second") if words[1] == "compare" else ("study",)))
-        return run(words[1], dict(zip(paths, words[2:-1])) | json.loads(words[-1]))
+        own = {"compare": ("first", "second"), "study": ("study",), "batch": ("study",)}.get(words[1], ("word",))
+        return run(words[1], dict(zip(("output_dir", "program", "data", *own), words[2:-1])) | json.loads(words[-1]))
     try:
         program = os.fspath(find_program())
     except ProgramNotFound as error:

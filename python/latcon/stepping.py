@@ -7,7 +7,6 @@ from __future__ import annotations
 import functools
 import importlib.machinery
 import importlib.util
-import io
 import os
 from collections.abc import Callable
 from typing import Any
@@ -63,8 +62,7 @@ class Simulation:
         self.case = as_case(case)
         self._sheet = _module().Sheet(self.case.text(), side == "continuum")
         if checkpoint is not None:
-            with np.load(checkpoint, allow_pickle=False) as stored:
-                self._sheet.load({name.replace("|", "/"): stored[name].tobytes() for name in stored.files})
+            self._sheet.load(os.fspath(checkpoint))
         self.sites = self._sheet.sites()
         self.reference: Floats = self._sheet.reference()[self.sites]
         self.broken: list[tuple[float, int, int, float, float, float]] = []
@@ -155,11 +153,8 @@ class Simulation:
         write_frame(path, self.frame())
 
     def checkpoint(self, path: str | os.PathLike[str]) -> None:
-        """Writes the state, from which a simulation of the same case by the same program continues with the same bits (`.npz`)."""
-        data = io.BytesIO()
-        np.savez_compressed(data, **{name.replace("/", "|"): np.frombuffer(content, np.uint8)
-                                     for name, content in self._sheet.save().items()})
-        write_atomically(os.fspath(path), data.getvalue())
+        """Writes the state, from which a simulation of the same case by the same program continues with the same bits (HDF5)."""
+        write_atomically(os.fspath(path), self._sheet.save())
 
     def _index(self, places: Any) -> Any:
         return np.searchsorted(self.sites, places)

@@ -46,15 +46,15 @@ def test_views_follow_the_steps_and_cannot_be_written(sim):
 
 def test_a_checkpoint_continues_with_the_same_bits(sim, tmp_path):
     sim.step(300)
-    sim.checkpoint(tmp_path / "state.npz")
-    other = Simulation(tiny_case(), tmp_path / "state.npz")
+    sim.checkpoint(tmp_path / "state.h5")
+    other = Simulation(tiny_case(), tmp_path / "state.h5")
     assert other.time == sim.time and other.energies == sim.energies
     n_before = len(sim.broken)
     for one in (sim, other):
         one.step(300)
     assert sim.broken[n_before:] == other.broken and (sim.x == other.x).all() and (sim.vy == other.vy).all()
     with pytest.raises(ValueError, match="of another size"):
-        Simulation(tiny_case().set("Sheet/length", "2 cm"), tmp_path / "state.npz")
+        Simulation(tiny_case().set("Sheet/length", "2 cm"), tmp_path / "state.h5")
 
 
 def test_forces_add_their_impulse(sim):

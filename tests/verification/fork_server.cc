@@ -134,7 +134,6 @@ int main(int argc, char **argv)
   setenv("OMP_NUM_THREADS", "1", 1);
   setenv("OPENBLAS_NUM_THREADS", "1", 1);
   const support::MpiSession mpi;
-  const elements::Session elements;
   serve();
   return 0;
 }

@@ -3,59 +3,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
-#include "verification/analysis/crack_steady_part.h"
+#include "support/text_wrap.h"
 
 namespace latcon::analysis
 {
 namespace
 {
 
-void require(bool condition, const std::string &message)
+void check(const std::vector<TipRecord> &tip, const std::vector<BreakRecord> &breaks, const CrackMeasurementOptions &o)
 {
-  if (!condition)
-    throw std::invalid_argument(message);
-}
-
-void check(const CrackMeasurementOptions &o)
-{
-  require(o.strip_length > 0. && std::isfinite(o.strip_length), "crack measurement: the strip length must be positive");
-  require(o.lattice_spacing > 0. && o.lattice_spacing < o.strip_length,
-          "crack measurement: the lattice spacing must be between 0 and the strip length");
-  require(o.end_time >= 0. && std::isfinite(o.end_time), "crack measurement: the end time must be finite and >= 0");
-  require(o.seed_tip_X >= 0. && o.seed_tip_X < o.strip_length, "crack measurement: the seed must end inside the strip");
-}
-
-void check(const std::vector<TipRecord> &tip, double end_time)
-{
+  bool is_good = o.lattice_spacing > 0. && o.lattice_spacing < o.strip_length && std::isfinite(o.strip_length) &&
+                 o.end_time >= 0. && std::isfinite(o.end_time) && o.seed_tip_X >= 0. && o.seed_tip_X < o.strip_length;
   for (std::size_t i = 0; i < tip.size(); ++i)
   {
-    const TipRecord &entry = tip[i];
-    const std::string where = "crack measurement: tip record " + std::to_string(i);
-    require(std::isfinite(entry.t) && std::isfinite(entry.X) && std::isfinite(entry.Y) && std::isfinite(entry.x) &&
-              std::isfinite(entry.y),
-            where + " is not finite");
-    require(entry.t <= end_time, where + " is later than the end of the run");
-    require(i == 0 || entry.t >= tip[i - 1].t, where + " goes back in time");
-    require(i == 0 || entry.X >= tip[i - 1].X, where + " goes back in X");
+    const TipRecord &now = tip[i], &before = tip[i > 0 ? i - 1 : 0];
+    is_good = is_good && std::isfinite(now.t + now.X + now.Y + now.x + now.y) && now.t <= o.end_time &&
+              now.t >= before.t && now.X >= before.X;
   }
-}
-
-void check(const std::vector<BreakRecord> &breaks)
-{
-  for (std::size_t i = 0; i < breaks.size(); ++i)
-    require(std::isfinite(breaks[i].t) && std::isfinite(breaks[i].X) && std::isfinite(breaks[i].Y),
-            "crack measurement: broken bond " + std::to_string(i) + " is not finite");
-}
-
-template <typename... Values>
-std::string text(const char *format, Values... values)
-{
-  char buffer[512];
-  std::snprintf(buffer, sizeof(buffer), format, values...);
-  return buffer;
+  for (const BreakRecord &bond : breaks)
+    is_good = is_good && std::isfinite(bond.t + bond.X + bond.Y);
+  if (!is_good)
+    throw std::invalid_argument("crack measurement: a record is not finite or goes back, or an option is out of range");
 }
 
 /// Returns the time at which the tip first reached X; requires tip.back().X >= X.
@@ -98,9 +68,10 @@ void decide_oscillating_or_straight(CrackMeasurement &m, bool is_long_enough, co
   {
     if (is_long_enough)
       m.pattern = CrackPattern::straight;
-    m.reason = is_long_enough ? "the path has no waviness"
-                              : text("only %.3g mm of path, or too few entries in it: too short to decide",
-                                     1e3 * (m.X_end - m.X_begin));
+    m.reason = is_long_enough
+                 ? "the path has no waviness"
+                 : support::formatted("only %.3g mm of path, or too few entries in it: too short to decide",
+                                      1e3 * (m.X_end - m.X_begin));
     return;
   }
   const SinusoidFit &fit = *m.sinusoid;
@@ -108,25 +79,27 @@ void decide_oscillating_or_straight(CrackMeasurement &m, bool is_long_enough, co
   const bool is_high = amplitude >= o.min_amplitude;
   const bool has_periods = m.periods >= o.min_periods;
   const bool is_path = 2. * std::acos(-1.) * fit.curve.amplitude() / fit.curve.wavelength <= o.max_steepness;
-  const std::string sinusoid =
-    text("the best-fitting sinusoid has an amplitude of %.3g d, %s the %.3g d of an oscillation (%.3g mm, wavelength "
-         "%.3g mm, %.1f periods)",
-         amplitude, is_high ? "at least" : "less than", o.min_amplitude, 1e3 * fit.amplitude.value,
-         1e3 * fit.wavelength.value, m.periods);
+  const std::string sinusoid = support::formatted(
+    "the best-fitting sinusoid has an amplitude of %.3g d, %s the %.3g d of an oscillation (%.3g mm, wavelength "
+    "%.3g mm, %.1f periods)",
+    amplitude, is_high ? "at least" : "less than", o.min_amplitude, 1e3 * fit.amplitude.value,
+    1e3 * fit.wavelength.value, m.periods);
   if (is_high && is_path && has_periods && fit.share_of_path >= o.min_share && fit.log_evidence >= o.min_log_evidence)
   {
     m.wavelength = fit.wavelength;
     m.amplitude = fit.amplitude;
     if (m.periods < o.clear_periods)
-      m.reason =
-        sinusoid + text(", but fewer than %.3g periods: an oscillation is likely, not certain", o.clear_periods);
+      m.reason = sinusoid + support::formatted(", but fewer than %.3g periods: an oscillation is likely, not certain",
+                                               o.clear_periods);
     else if (fit.log_evidence < o.clear_log_evidence)
-      m.reason = sinusoid + text(", but its log evidence %.1f is below %.3g: an oscillation is likely, not certain",
-                                 fit.log_evidence, o.clear_log_evidence);
+      m.reason = sinusoid +
+                 support::formatted(", but its log evidence %.1f is below %.3g: an oscillation is likely, not certain",
+                                    fit.log_evidence, o.clear_log_evidence);
     else
     {
       m.pattern = CrackPattern::oscillating;
-      m.reason = sinusoid + text(" and makes up %.0f %% of the path, log evidence %.1f", share, fit.log_evidence);
+      m.reason =
+        sinusoid + support::formatted(" and makes up %.0f %% of the path, log evidence %.1f", share, fit.log_evidence);
     }
     return;
   }
@@ -139,17 +112,18 @@ void decide_oscillating_or_straight(CrackMeasurement &m, bool is_long_enough, co
   if (!is_high)
     m.reason = sinusoid;
   else if (!is_wavy)
-    m.reason =
-      sinusoid + text(", but explains only %.0f %% of a path that stays within %.2g d (rms) of a straight line",
-                      100. * fit.R_squared, strayed_rms);
+    m.reason = sinusoid + support::formatted(
+                            ", but explains only %.0f %% of a path that stays within %.2g d (rms) of a straight line",
+                            100. * fit.R_squared, strayed_rms);
   else if (!is_path)
     m.reason = sinusoid + ", but is too steep: the tip jumps between strands";
   else if (!has_periods)
-    m.reason = sinusoid + text(", but fewer than %.3g periods: it may be a bend", o.min_periods);
+    m.reason = sinusoid + support::formatted(", but fewer than %.3g periods: it may be a bend", o.min_periods);
   else
-    m.reason = sinusoid + text(", but makes up %.0f %% of the path with log evidence %.1f; an oscillation needs at "
-                               "least %.0f %% and %.3g: the path wanders",
-                               share, fit.log_evidence, 100. * o.min_share, o.min_log_evidence);
+    m.reason = sinusoid +
+               support::formatted(", but makes up %.0f %% of the path with log evidence %.1f; an oscillation needs at "
+                                  "least %.0f %% and %.3g: the path wanders",
+                                  share, fit.log_evidence, 100. * o.min_share, o.min_log_evidence);
 }
 
 } // namespace
@@ -163,9 +137,7 @@ const char *to_string(CrackPattern pattern)
 CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vector<BreakRecord> &breaks,
                                const CrackMeasurementOptions &options)
 {
-  check(breaks);
-  check(options);
-  check(tip, options.end_time);
+  check(tip, breaks, options);
 
   CrackMeasurement m;
   m.X_begin = m.X_end = options.seed_tip_X;
@@ -180,13 +152,14 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
   if (advance < min_advance && (tip.empty() || tip.back().t < 0.5 * options.end_time))
   {
     m.pattern = CrackPattern::arrested;
-    m.reason = text("the tip advanced %.3g mm from the seed and stood for at least half of the run", 1e3 * advance);
+    m.reason = support::formatted("the tip advanced %.3g mm from the seed and stood for at least half of the run",
+                                  1e3 * advance);
     return m;
   }
   if (advance < min_advance)
   {
-    m.reason =
-      text("the tip has advanced %.3g mm from the seed and was still moving: too short to decide", 1e3 * advance);
+    m.reason = support::formatted(
+      "the tip has advanced %.3g mm from the seed and was still moving: too short to decide", 1e3 * advance);
     return m;
   }
 
@@ -212,13 +185,14 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
   if (m.branched_fraction >= options.min_branched_fraction)
   {
     m.pattern = CrackPattern::branching;
-    m.reason = text("the crack has two or more strands over %.0f %% of the crack", 100. * m.branched_fraction);
+    m.reason =
+      support::formatted("the crack has two or more strands over %.0f %% of the crack", 100. * m.branched_fraction);
   }
   else if (stands_still(tip, options))
   {
     m.pattern = CrackPattern::arrested;
-    m.reason = text("the tip stopped at X = %.3g mm, Y = %.3g mm, %.3g ms before the end of the run", 1e3 * X_last,
-                    1e3 * tip.back().Y, 1e3 * (options.end_time - tip.back().t));
+    m.reason = support::formatted("the tip stopped at X = %.3g mm, Y = %.3g mm, %.3g ms before the end of the run",
+                                  1e3 * X_last, 1e3 * tip.back().Y, 1e3 * (options.end_time - tip.back().t));
   }
   else
     decide_oscillating_or_straight(m, steady_part.is_long_enough, options);

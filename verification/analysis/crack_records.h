@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 namespace latcon::analysis
 {
 
@@ -9,6 +11,7 @@ struct TipRecord
   double t;    ///< time [s], not decreasing along a record
   double X, Y; ///< reference position [m], X not decreasing along a record
   double x, y; ///< current position at time t [m]
+  std::size_t n_broken = 0; ///< bonds broken so far
 
   template <class Archive>
   void archive(Archive &archive)
@@ -18,6 +21,7 @@ struct TipRecord
     archive("Y", Y);
     archive("x", x);
     archive("y", y);
+    archive("n_broken", n_broken);
   }
 };
 

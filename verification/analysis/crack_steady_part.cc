@@ -1,4 +1,4 @@
-#include "verification/analysis/crack_steady_part.h"
+#include "verification/analysis/crack_measurement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "support/dense.h"
-#include "verification/analysis/crack_measurement.h"
 
 namespace latcon::analysis
 {

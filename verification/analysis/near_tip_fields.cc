@@ -184,8 +184,7 @@ const NearTipSample *NearTipSampler::sample(const lattice::State &state, std::si
   fold_until(now.reference.x() - heading_to * lattice_.lattice_spacing());
   if (!samples_at(tip) || calls_at_rest_ >= calls_of_rest)
     return nullptr;
-  pending_.push_back(look(state, now, tip, taken_ % samples_for_tensors == 0));
-  ++taken_;
+  pending_.push_back(look(state, now, tip, samples() % samples_for_tensors == 0));
   plain_.add(pending_.back().sums, false);
   return &pending_.back();
 }

@@ -195,7 +195,7 @@ public:
   /// Folds the remaining samples with the known part of the path. To be called once, after the last sample.
   void finish();
 
-  std::size_t samples() const { return taken_; }
+  std::size_t samples() const { return plain_.samples(); }
   const NearTipGrid &grid() const { return grid_; }
   /// Returns the mean over all samples.
   NearTipField plain() const { return plain_.mean(); }
@@ -223,17 +223,16 @@ public:
     archive("pending", pending_);
     archive("last_tip", last_tip_);
     archive("calls_at_rest", calls_at_rest_);
-    archive("taken", taken_);
     if constexpr (Archive::loads)
     {
-      lattice::require_archived(taken_ <= path_.size() && n_pending <= taken_,
-                                "`taken` does not match the length of `path`");
+      lattice::require_archived(samples() <= path_.size() && n_pending <= samples(),
+                                "`samples` does not match the length of `path`");
       lattice::require_archived(!last_tip_ || (*last_tip_ < lattice_.n_places() && lattice_.is_site(*last_tip_)),
                                 "`last_tip` is not a site of the sheet");
       std::size_t folded = 0;
       for (const NearTipSums &sums : folded_)
         folded += sums.samples();
-      lattice::require_archived(plain_.samples() == taken_ && folded == taken_ - n_pending,
+      lattice::require_archived(folded == samples() - n_pending,
                                 "`samples` does not match the number of samples taken");
       for (const NearTipSample &sample : pending_)
         lattice::require_archived(sample.block < n_blocks && sample.sums.samples() == 1, "a pending sample is invalid");
@@ -263,7 +262,6 @@ private:
   std::deque<NearTipSample> pending_; // not folded yet
   std::optional<std::size_t> last_tip_;
   std::size_t calls_at_rest_ = 0;
-  std::size_t taken_ = 0;
 };
 
 } // namespace latcon::analysis

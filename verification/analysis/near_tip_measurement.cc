@@ -50,17 +50,6 @@ double fastest(const NearTipField &field)
   return std::sqrt(square);
 }
 
-// Returns true if both components change sign between corners: a cheap test that excludes nearly all cells.
-bool may_surround_zero(const std::array<Eigen::Vector2d, 4> &corners)
-{
-  const auto changes_sign = [&](Eigen::Index k)
-  {
-    return std::any_of(corners.begin() + 1, corners.end(),
-                       [&](const Eigen::Vector2d &v) { return (v[k] > 0.) != (corners[0][k] > 0.); });
-  };
-  return changes_sign(0) && changes_sign(1);
-}
-
 // Returns the winding number of a vector around the corners of a cell: the Poincare index of its interior.
 int winding(const std::array<Eigen::Vector2d, 4> &corners)
 {
@@ -201,7 +190,7 @@ std::vector<Vortex> vortices(const NearTipField &field, double slowest, double w
         v[c] = field.velocity[grid.point(corners[c][0], corners[c][1])] + nudge;
         x[c] = field.position(corners[c][0], corners[c][1]);
       }
-      if (!may_surround_zero(v) || winding(v) != 1)
+      if (winding(v) != 1)
         continue;
       const Eigen::Matrix2d dv = cell_derivatives(v), dx = cell_derivatives(x);
       const Eigen::Matrix2d L = dv * dx.inverse(); // dv/dx: the pitches cancel

@@ -65,8 +65,7 @@ void require_lattice_sheet(const input::Case &input, input::Parameters &p, const
   if (!c.mesh_file.empty())
     p.error("Continuum/mesh file", command + " does not support a mesh file; the lattice fills a rectangle");
   if (!c.body_force.is_zero())
-    p.error(c.body_force.x != "0" ? "Body force/force x" : "Body force/force y",
-            command + " does not support body forces; give 0");
+    p.error(std::string("Body force/force ") + c.body_force.given(), command + " does not support body forces; give 0");
   if (input.has_sheet())
     check_period(input, p, command);
   if (input.solution == input::Case::Solution::relaxed)
@@ -82,11 +81,12 @@ void require_lattice_sheet(const input::Case &input, input::Parameters &p, const
   for (const auto &[field, name] : {std::pair(&c.initial_displacement, std::string("Initial state/displacement")),
                                     std::pair(&c.initial_velocity, std::string("Initial state/velocity"))})
     if (!field->is_zero())
-      p.error(name + (field->x != "0" ? " x" : " y"), command + " starts a motion at rest, apart from noise; give 0");
+      p.error(name + " " + field->given(), command + " starts a motion at rest, apart from noise; give 0");
 }
 
-void require_whole_held_sheet(const input::Case &input, input::Parameters &p, const std::string &command)
+void require_fracture_case(const input::Case &input, input::Parameters &p)
 {
+  const std::string command = "`latcon fracture`";
   if (input.hole_radius > 0.)
     p.error("Sheet/hole radius", command + " does not support holes; give 0");
   if (input.notch_length > 0.)
@@ -97,11 +97,6 @@ void require_whole_held_sheet(const input::Case &input, input::Parameters &p, co
               command + " needs every edge of the sheet held; give held");
   for (std::size_t id = 0; id < 5; ++id)
     check_edge(input.continuum.edges[id], p, command, id == 2 || id == 3);
-}
-
-void require_fracture_case(const input::Case &input, input::Parameters &p)
-{
-  require_whole_held_sheet(input, p, "`latcon fracture`");
   if (!input.breaking_stretch)
     p.error("Fracture/breaking stretch", "fracture needs a breaking stretch");
   if (!(input.end_time > 0.))

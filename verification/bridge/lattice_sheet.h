@@ -13,10 +13,8 @@ namespace latcon::bridge
 /// displacements other than that of the loading, tractions, body forces, held rims.
 void require_lattice_sheet(const input::Case &input, input::Parameters &parameters, const std::string &command);
 
-/// Reports in addition holes, notches, and free edges: `command` requires all bonds at every free site.
-void require_whole_held_sheet(const input::Case &input, input::Parameters &parameters, const std::string &command);
-
-/// Reports in addition what `latcon fracture` cannot run, such as a missing breaking stretch or end time.
+/// Reports what `latcon fracture` cannot run: holes, notches and free edges, as it requires all bonds at every free
+/// site, or a missing breaking stretch or end time.
 void require_fracture_case(const input::Case &input, input::Parameters &parameters);
 
 /// Returns the state of the sheet at the homogeneous deformation of the case, at rest and without noise, with its hole

@@ -1,4 +1,4 @@
-/// Entries of a case that claims may read.
+/// Checks of claims on the subject of a case, and the entries of it that they may read.
 #pragma once
 
 #include <string>
@@ -11,9 +11,8 @@
 namespace latcon::claims
 {
 
-/// Values in `input` of the entries that are declared as read by claims, and of the `further` ones: a line
-/// `Section/Name=value` for each, in SI and full precision, by key. Two cases with the same text are the same to the
-/// claims.
+/// Values in `input` of the entries that all claims read, and of the `further` ones: a line `Section/Name=value` for
+/// each, in SI and full precision, by key. Two cases with the same text are the same to the claims.
 /// @throws std::logic_error if a further entry does not exist
 [[nodiscard]] std::string claim_inputs_text(const input::Case &input, const std::vector<std::string> &further = {});
 
@@ -44,5 +43,23 @@ inline constexpr double largest_stretch = 3.5;
 /// Reports user-defined laws without values at stretches at which claims evaluate them. To be called before
 /// Parameters::finish() by commands that check claims.
 void check_user_laws(const input::Case &input, input::Parameters &parameters);
+
+struct ClaimInput;
+
+/// Lattices on which claims are checked.
+enum class Shells
+{
+  own,             ///< the lattice of the case
+  own_and_nearest, ///< also the one with nearest-neighbour bonds alone, if the case has further shells
+};
+
+/// Checks the claim of this name. Collective. @throws std::out_of_range if there is none
+[[nodiscard]] ClaimOutcome check_claim(const std::string &name, const ClaimInput &input);
+
+/// Checks claims on the subject of a case, small versions if `quick`. Collective.
+/// @param laws laws that are judged; results for others are reported
+/// @param frames folder for frames of sheets in motion, on one rank; empty: none are written
+ClaimOutcome run_claims(const input::Case &input, const std::vector<Claim> &claims, bool quick, Shells shells,
+                        const bridge::Laws &laws, const std::string &frames = {});
 
 } // namespace latcon::claims

@@ -73,8 +73,8 @@ std::array<bridge::PlaneWave, 2> discrete_waves(const WaveContinuum &medium, con
 /// Frequencies and decays of both waves, measured on the moving finite element sheet as lattice_waves does on the
 /// lattice: average acceleration, extrapolated from two time steps. Every rank computes all of it.
 /// @throws std::runtime_error if a wave does not oscillate; what DynamicSolver throws
-std::array<Oscillation, 2> finite_element_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
-                                                const Eigen::Vector2d &K, const WaveMesh &mesh);
+std::vector<Oscillation> finite_element_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
+                                              const Eigen::Vector2d &K, const WaveMesh &mesh);
 
 /// One wave measured on the moving finite element sheet.
 struct ElementWave

@@ -150,35 +150,29 @@ continuum::DynamicSettings settings_for(double time_step, const WaveMesh &resolu
   return settings;
 }
 
-// Both standing waves, released from rest.
-std::array<Oscillation, 2> measure(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
-                                   const WaveMesh &resolution, double time_step)
+// Follows waves with shapes in the nodal values of a sheet that has started. @param at_rest sheet of `moving`
+// @param amplitude of the start, in shapes [m] @param look called with each sample
+std::vector<Oscillation> measure(
+  MovingSheet &moving, const WaveSheet &at_rest, const std::vector<Vector> &shapes, double amplitude,
+  const Sampling &sampling, std::size_t max_steps, const std::function<void()> &look = [] {})
 {
-  MovingSheet moving(medium, K, resolution, settings_for(time_step, resolution, 1e-9));
-  continuum::DynamicSolver &solver = moving.solver;
-  const WaveSheet at_rest(medium, solver.sheet(), F);
-  const std::array<Vector, 2> shapes = elastic_waves(medium, solver.sheet(), F, K);
-  // Nonlinear terms change frequencies by the square of this strain; Newton's method sees the wave above the round-off
-  // of the forces in the stretched sheet.
-  const double amplitude = 1e-4 / K.norm();
-  Vector u = at_rest.base;
-  u.add(amplitude, shapes[0], amplitude, shapes[1]);
-  solver.start(u, solver.sheet().make_owned());
-
-  const std::array<Vector, 2> weights{at_rest.weighted(at_rest.mass, shapes[0]),
-                                      at_rest.weighted(at_rest.mass, shapes[1])};
-  const auto amplitudes = [&]() -> std::array<double, 2>
+  std::vector<Vector> weights;
+  for (const Vector &shape : shapes)
+    weights.push_back(at_rest.weighted(at_rest.mass, shape));
+  const auto amplitudes = [&]
   {
+    look();
     const Vector difference = moving.displacement_from(at_rest.base);
-    const auto of = [&](std::size_t w) { return weights[w] * difference / (amplitude * (weights[w] * shapes[w])); };
-    return {of(0), of(1)};
+    std::vector<double> of_waves;
+    for (std::size_t w = 0; w < shapes.size(); ++w)
+      of_waves.push_back(weights[w] * difference / (amplitude * (weights[w] * shapes[w])));
+    return of_waves;
   };
-  constexpr std::size_t max_steps = 2000;
-  return followed_to_turns(time_step, 1, max_steps, "the finite element sheet", amplitudes, [&] { solver.step(); });
+  return followed(sampling, max_steps, "the finite element sheet", amplitudes, [&] { moving.solver.step(); });
 }
 
-// Amplitude of the wave; nonlinear terms change frequencies by its square.
-constexpr double memory_wave_strain = 1e-4;
+// Amplitude of a wave; nonlinear terms change frequencies by its square.
+constexpr double element_strain = 1e-4;
 
 // Relaxation times of branches by their numbers [s].
 std::vector<double> relaxation_times(const continuum::FibreMemory &memory)
@@ -199,41 +193,6 @@ double memory_step(const WaveContinuum &medium, const bridge::MemoryWave &wave)
   for (const double time : relaxation_times(*medium.memory))
     steps.add(std::sqrt(0.1 * time / rate));
   return steps.smallest();
-}
-
-ElementWave measure(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
-                    const bridge::MemoryWave &wave, const WaveMesh &resolution, double time_step, std::size_t stride)
-{
-  MovingSheet moving(medium, K, resolution, settings_for(time_step, resolution, 1e-10));
-  continuum::DynamicSolver &solver = moving.solver;
-  const continuum::Sheet &sheet = solver.sheet();
-  const WaveSheet at_rest(medium, sheet, F);
-  // At the phase of the wave, times `factor`, added to the homogeneous state or to nothing.
-  const auto field = [&](const std::complex<double> &factor, bool is_on_base)
-  {
-    const Eigen::Vector2cd p = memory_wave_strain / K.norm() * factor * wave.polarisation;
-    Vector nodal = interpolated(sheet, CosineWave(K, p.real()));
-    if (is_on_base)
-      nodal += at_rest.base;
-    return nodal;
-  };
-  // Re(s tau / (1 + s tau) p) is the strain of the spring, so that a branch is relaxed at Re(p / (1 + s tau)).
-  std::vector<Vector> relaxed;
-  for (const double time : relaxation_times(*medium.memory))
-    relaxed.push_back(field(1. / (1. + wave.rate * time), true));
-  solver.start(field(1., true), field(wave.rate, false), 0., relaxed);
-
-  const Vector shape = interpolated(sheet, CosineWave(K, wave.polarisation.real().normalized())),
-               weights = at_rest.weighted(at_rest.mass, shape);
-  const double of_wave = solver.ledger().stored + solver.ledger().kinetic - energy(sheet, at_rest.base);
-  support::LargestError imbalance;
-  const auto amplitude = [&]
-  {
-    imbalance.add(std::abs(solver.ledger().imbalance) / of_wave);
-    return (weights * moving.displacement_from(at_rest.base)) * K.norm() / (memory_wave_strain * (weights * shape));
-  };
-  const Oscillation found = followed(wave.frequency(), time_step, stride, amplitude, [&] { solver.step(); });
-  return {found, imbalance.error(), 0.};
 }
 
 } // namespace
@@ -296,23 +255,66 @@ std::array<bridge::PlaneWave, 2> discrete_waves(const WaveContinuum &medium, con
   return bridge::plane_waves({inverse * K2 * inverse.transpose(), inverse * C2 * inverse.transpose()}, {1., 0.});
 }
 
-std::array<Oscillation, 2> finite_element_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
-                                                const Eigen::Vector2d &K, const WaveMesh &mesh)
+std::vector<Oscillation> finite_element_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
+                                              const Eigen::Vector2d &K, const WaveMesh &mesh)
 {
+  // Both standing waves, released from rest.
+  const auto run = [&](const Sampling &sampling)
+  {
+    MovingSheet moving(medium, K, mesh, settings_for(sampling.time_step, mesh, 1e-9));
+    const WaveSheet at_rest(medium, moving.solver.sheet(), F);
+    const std::array<Vector, 2> shapes = elastic_waves(medium, moving.solver.sheet(), F, K);
+    // Newton's method sees the wave above the round-off of the forces in the stretched sheet.
+    const double amplitude = element_strain / K.norm();
+    Vector u = at_rest.base;
+    u.add(amplitude, shapes[0], amplitude, shapes[1]);
+    moving.solver.start(u, moving.solver.sheet().make_owned());
+    constexpr std::size_t max_steps = 2000;
+    return measure(moving, at_rest, {shapes[0], shapes[1]}, amplitude, sampling, max_steps);
+  };
   // The error of average acceleration is (w h)^2 / 12 before extrapolation, which leaves some (w h)^4 / 300 of it.
   const double time_step = 2. * M_PI / 28. / bridge::fastest_frequency(continuum_waves(medium, F, K));
-  return extrapolated(measure(medium, F, K, mesh, time_step), measure(medium, F, K, mesh, 0.5 * time_step));
+  return extrapolated({time_step, 1}, 1, run);
 }
 
 ElementWave element_wave(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
                          const bridge::MemoryWave &wave, const WaveMesh &mesh)
 {
   const double time_step = memory_step(medium, wave), rate = std::abs(wave.rate);
-  const std::size_t stride = sampling_stride(wave.frequency(), wave.decay(), time_step, 25.);
-  const ElementWave whole = measure(medium, F, K, wave, mesh, time_step, stride),
-                    half = measure(medium, F, K, wave, mesh, 0.5 * time_step, 2 * stride);
-  return {extrapolated(whole.oscillation, half.oscillation), half.imbalance,
-          std::pow(rate * 0.5 * time_step, 2) / 6. * followed_periods * 2. * M_PI * rate / wave.frequency()};
+  double largest_imbalance = 0.; // of the last run
+  const auto run = [&](const Sampling &sampling)
+  {
+    MovingSheet moving(medium, K, mesh, settings_for(sampling.time_step, mesh, 1e-10));
+    continuum::DynamicSolver &solver = moving.solver;
+    const continuum::Sheet &sheet = solver.sheet();
+    const WaveSheet at_rest(medium, sheet, F);
+    // At the phase of the wave, times `factor`, added to the homogeneous state or to nothing.
+    const auto field = [&](const std::complex<double> &factor, bool is_on_base)
+    {
+      const Eigen::Vector2cd p = element_strain / K.norm() * factor * wave.polarisation;
+      Vector nodal = interpolated(sheet, CosineWave(K, p.real()));
+      if (is_on_base)
+        nodal += at_rest.base;
+      return nodal;
+    };
+    // Re(s tau / (1 + s tau) p) is the strain of the spring, so that a branch is relaxed at Re(p / (1 + s tau)).
+    std::vector<Vector> relaxed;
+    for (const double time : relaxation_times(*medium.memory))
+      relaxed.push_back(field(1. / (1. + wave.rate * time), true));
+    solver.start(field(1., true), field(wave.rate, false), 0., relaxed);
+    const double of_wave = solver.ledger().stored + solver.ledger().kinetic - energy(sheet, at_rest.base);
+    support::LargestError imbalance;
+    const Vector shape = interpolated(sheet, CosineWave(K, wave.polarisation.real().normalized()));
+    const std::vector<Oscillation> found =
+      measure(moving, at_rest, {shape}, element_strain / K.norm(), sampling, sampling.n_samples * sampling.stride,
+              [&] { imbalance.add(std::abs(solver.ledger().imbalance) / of_wave); });
+    largest_imbalance = imbalance.error();
+    return found;
+  };
+  const Sampling sampling = sampling_of(wave.frequency(), wave.decay(), time_step, 25.);
+  const Oscillation found = extrapolated(sampling, 2 * sampling.stride, run)[0];
+  return {found, largest_imbalance,
+          std::pow(rate * 0.5 * time_step, 2) / 6. * sampled_periods * 2. * M_PI * rate / wave.frequency()};
 }
 
 double sinusoidal_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,

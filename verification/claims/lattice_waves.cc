@@ -43,31 +43,24 @@ Eigen::Vector2d project(const lattice::Field &shape, const lattice::State &now, 
   return sum;
 }
 
-// Both standing waves, released from rest.
-std::array<Oscillation, 2> measure(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
-                                   const std::array<bridge::PlaneWave, 2> &waves, const lattice::TimeStepping &stepping,
-                                   std::size_t stride)
+// Follows waves of the lattice. @param start displaced from `at_rest` along `directions`, in a cosine for each
+std::vector<Oscillation> measure(const WaveCell &cell, const lattice::Material &material, const lattice::State &at_rest,
+                                 lattice::State start, const std::vector<Eigen::Vector2d> &directions,
+                                 const Sampling &sampling, unsigned int stages, std::size_t max_steps)
 {
-  const double time_step = stepping.step;
-  const lattice::State at_rest = lattice::homogeneous_state(cell.sheet, material, F, lattice::Edges::free);
-  lattice::State state = at_rest;
-  const double amplitude = strain / cell.K.norm();
-  for (const bridge::PlaneWave &wave : waves)
-    add_wave(state, cell, amplitude, wave.polarisation);
-  lattice::Simulation simulation(cell.sheet, material, std::move(state), stepping);
+  lattice::Simulation simulation(cell.sheet, material, std::move(start),
+                                 lattice::TimeStepping(sampling.time_step, stages));
   const lattice::Field shape = cosine_of(cell);
   const double norm = std::inner_product(shape.begin(), shape.end(), shape.begin(), 0.);
-  // The undamped period tells overdamped waves apart, in as many steps as dashpots leave time for.
-  constexpr double most_periods = 2., most_steps = 5e6;
-  const double slowest = support::smallest_of({waves[0].frequency, waves[1].frequency});
-  const auto max_steps =
-    static_cast<std::size_t>(support::smallest_of({most_steps, most_periods * 2. * M_PI / (slowest * time_step)}));
-  const auto amplitudes = [&]() -> std::array<double, 2>
+  const auto amplitudes = [&]
   {
     const Eigen::Vector2d sum = project(shape, simulation.state(), at_rest);
-    return {waves[0].polarisation.dot(sum) / (amplitude * norm), waves[1].polarisation.dot(sum) / (amplitude * norm)};
+    std::vector<double> of_waves;
+    for (const Eigen::Vector2d &direction : directions)
+      of_waves.push_back(direction.dot(sum) / (strain / cell.K.norm() * norm));
+    return of_waves;
   };
-  return followed_to_turns(time_step, stride, max_steps, "the lattice", amplitudes, [&] { simulation.step(); });
+  return followed(sampling, max_steps, "the lattice", amplitudes, [&] { simulation.step(); });
 }
 
 // Largest w h and h / tau. Velocity Verlet has sin(w' h / 2) = w h / 2, so extrapolation leaves (3 / 2560) of the
@@ -122,19 +115,6 @@ lattice::State excited(const WaveCell &cell, const lattice::Material &material, 
     }
   }
   return state;
-}
-
-Oscillation measure(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
-                    const bridge::MemoryWave &wave, double time_step, std::size_t stride)
-{
-  const lattice::State at_rest = lattice::homogeneous_state(cell.sheet, material, F, lattice::Edges::free);
-  lattice::Simulation simulation(cell.sheet, material, excited(cell, material, at_rest, wave), time_step);
-  const Eigen::Vector2d direction = wave.polarisation.real().normalized();
-  const lattice::Field shape = cosine_of(cell);
-  return followed(
-    wave.frequency(), time_step, stride,
-    [&] { return direction.dot(project(shape, simulation.state(), at_rest)) * cell.K.norm() / strain; },
-    [&] { simulation.step(); });
 }
 
 // Periods of the lattice along x and y, over d.
@@ -213,8 +193,8 @@ double smallest_stretch(const lattice::TriangularLattice &lattice, const Eigen::
   return stretches.smallest();
 }
 
-std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Material &material,
-                                         const Eigen::Matrix2d &F, const input::Case::Integrator integrator)
+std::vector<Oscillation> lattice_waves(const WaveCell &cell, const lattice::Material &material,
+                                       const Eigen::Matrix2d &F, const input::Case::Integrator integrator)
 {
   const bool chebyshev = integrator == input::Case::Integrator::runge_kutta_chebyshev;
   const std::array<bridge::PlaneWave, 2> waves = bridge::bloch_waves(cell.sheet, material, F, cell.K);
@@ -225,25 +205,40 @@ std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Ma
   const double longest = support::smallest_of({limit, phase_per_step / fastest});
   const lattice::TimeStepping coarsest =
     chebyshev ? lattice::chebyshev_time_stepping(longest, limits, 0) : lattice::TimeStepping(longest);
-  const double time_step = coarsest.step;
+  const lattice::State at_rest = lattice::homogeneous_state(cell.sheet, material, F, lattice::Edges::free);
+  lattice::State start = at_rest; // both standing waves, released from rest
+  for (const bridge::PlaneWave &wave : waves)
+    add_wave(start, cell, strain / cell.K.norm(), wave.polarisation);
+  const auto run = [&](const Sampling &sampling)
+  {
+    // The undamped period tells overdamped waves apart, in as many steps as dashpots leave time for.
+    constexpr double most_periods = 2., most_steps = 5e6;
+    const double slowest = support::smallest_of({waves[0].frequency, waves[1].frequency});
+    const double steps = support::smallest_of({most_steps, most_periods * 2. * M_PI / (slowest * sampling.time_step)});
+    // The halves with as many stages, on which the constants of the error depend.
+    return measure(cell, material, at_rest, start, {waves[0].polarisation, waves[1].polarisation}, sampling,
+                   coarsest.stages, static_cast<std::size_t>(steps));
+  };
   // Dashpots can ask for steps so short that there is no error to extrapolate, and no news in every step.
-  const double phase = fastest * time_step;
+  const double phase = fastest * coarsest.step;
   const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * phase_per_step / phase));
   constexpr double no_error = 1e-3; // its square over 24 is 4e-8
-  if (phase < no_error)
-    return measure(cell, material, F, waves, coarsest, stride);
-  // The halves with as many stages, on which the constants of the error depend.
-  return extrapolated(measure(cell, material, F, waves, coarsest, stride),
-                      measure(cell, material, F, waves, {0.5 * time_step, coarsest.stages}, 2 * stride));
+  const Sampling sampling{coarsest.step, stride};
+  return phase < no_error ? run(sampling) : extrapolated(sampling, 2 * stride, run);
 }
 
 Oscillation lattice_wave(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
                          const bridge::MemoryWave &wave)
 {
-  const double time_step = memory_step(cell, material, F, wave);
-  const std::size_t stride = sampling_stride(wave.frequency(), wave.decay(), time_step, 50.);
-  return extrapolated(measure(cell, material, F, wave, time_step, stride),
-                      measure(cell, material, F, wave, 0.5 * time_step, 2 * stride));
+  const lattice::State at_rest = lattice::homogeneous_state(cell.sheet, material, F, lattice::Edges::free);
+  const lattice::State start = excited(cell, material, at_rest, wave);
+  const Sampling sampling = sampling_of(wave.frequency(), wave.decay(), memory_step(cell, material, F, wave), 50.);
+  return extrapolated(sampling, 2 * sampling.stride,
+                      [&](const Sampling &of)
+                      {
+                        return measure(cell, material, at_rest, start, {wave.polarisation.real().normalized()}, of, 0,
+                                       of.n_samples * of.stride);
+                      })[0];
 }
 
 } // namespace latcon::claims

@@ -57,9 +57,9 @@ double smallest_stretch(const lattice::TriangularLattice &lattice, const Eigen::
 /// that the integrator takes in the sheet of a case.
 /// @param integrator Runge-Kutta-Chebyshev is for materials with dashpots in all bonds
 /// @throws std::runtime_error if a wave does not oscillate
-std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Material &material,
-                                         const Eigen::Matrix2d &F,
-                                         input::Case::Integrator integrator = input::Case::Integrator::velocity_verlet);
+std::vector<Oscillation> lattice_waves(const WaveCell &cell, const lattice::Material &material,
+                                       const Eigen::Matrix2d &F,
+                                       input::Case::Integrator integrator = input::Case::Integrator::velocity_verlet);
 
 /// Frequency and decay of one wave of a lattice with Maxwell branches, measured on the moving lattice.
 ///

@@ -38,72 +38,66 @@ std::complex<double> recurrence(const std::vector<double> &values, double step, 
   return std::log(root) / (static_cast<double>(stride) * step);
 }
 
-double checked(double amplitude)
-{
-  if (!std::isfinite(amplitude))
-    throw std::runtime_error("a wave has an amplitude that is not finite");
-  return amplitude;
-}
-
 } // namespace
 
-Oscillation extrapolated(const Oscillation &whole, const Oscillation &half)
+Sampling sampling_of(double frequency, double decay, double time_step, double per_period)
 {
-  return {half.frequency + (half.frequency - whole.frequency) / 3., half.decay + (half.decay - whole.decay) / 3.,
-          half.residual};
+  if (!(frequency > 0.) || !std::isfinite(frequency) || !std::isfinite(decay))
+    throw std::runtime_error("a wave does not oscillate: it is overdamped, or the sheet is unstable");
+  const double steps = 2. * M_PI / frequency / time_step; // of a period
+  const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(steps / per_period));
+  return {time_step, stride,
+          static_cast<std::size_t>(std::ceil(sampled_periods * steps / static_cast<double>(stride)))};
 }
 
-std::array<Oscillation, 2> extrapolated(const std::array<Oscillation, 2> &whole, const std::array<Oscillation, 2> &half)
+std::vector<Oscillation> followed(const Sampling &sampling, std::size_t max_steps, const std::string &sheet,
+                                  const std::function<std::vector<double>()> &amplitudes,
+                                  const std::function<void()> &advance)
 {
-  return {extrapolated(whole[0], half[0]), extrapolated(whole[1], half[1])};
-}
-
-std::array<Oscillation, 2> followed_to_turns(double time_step, std::size_t stride, std::size_t max_steps,
-                                             const std::string &sheet,
-                                             const std::function<std::array<double, 2>()> &amplitudes,
-                                             const std::function<void()> &advance)
-{
-  std::array<std::vector<double>, 2> values;
-  std::array<unsigned int, 2> turns{};
-  for (std::size_t step = 0; turns[0] < 2 || turns[1] < 2; ++step)
+  std::vector<std::vector<double>> values; // of each wave
+  std::vector<unsigned int> turns;
+  const auto is_over = [&]
+  {
+    return sampling.n_samples > 0
+             ? !values.empty() && values[0].size() > sampling.n_samples
+             : !turns.empty() && std::all_of(turns.begin(), turns.end(), [](unsigned int n) { return n >= 2; });
+  };
+  for (std::size_t step = 0; !is_over(); ++step)
   {
     if (step > max_steps)
       throw std::runtime_error("a wave of " + sheet + " did not oscillate: it is overdamped, or unstable");
     if (step > 0)
       advance();
-    if (step % stride != 0)
+    if (step % sampling.stride != 0)
       continue;
-    const std::array<double, 2> now = amplitudes();
-    for (std::size_t w = 0; w < 2; ++w)
+    const std::vector<double> now = amplitudes();
+    values.resize(now.size());
+    turns.resize(now.size());
+    for (std::size_t w = 0; w < now.size(); ++w)
     {
-      turns[w] += !values[w].empty() && checked(now[w]) * values[w].back() < 0. ? 1 : 0;
-      values[w].push_back(checked(now[w]));
+      if (!std::isfinite(now[w]))
+        throw std::runtime_error("a wave has an amplitude that is not finite");
+      turns[w] += !values[w].empty() && now[w] * values[w].back() < 0. ? 1 : 0;
+      values[w].push_back(now[w]);
     }
   }
-  const double sampling = static_cast<double>(stride) * time_step;
-  return {fit_oscillation(values[0], sampling), fit_oscillation(values[1], sampling)};
+  std::vector<Oscillation> found;
+  for (const std::vector<double> &of_wave : values)
+    found.push_back(fit_oscillation(of_wave, static_cast<double>(sampling.stride) * sampling.time_step));
+  return found;
 }
 
-std::size_t sampling_stride(double frequency, double decay, double time_step, double samples_per_period)
+std::vector<Oscillation> extrapolated(const Sampling &whole, std::size_t half_stride,
+                                      const std::function<std::vector<Oscillation>(const Sampling &)> &run)
 {
-  if (!(frequency > 0.) || !std::isfinite(frequency) || !std::isfinite(decay))
-    throw std::runtime_error("a wave does not oscillate: it is overdamped, or the sheet is unstable");
-  return std::max<std::size_t>(1, static_cast<std::size_t>(2. * M_PI / frequency / time_step / samples_per_period));
-}
-
-Oscillation followed(double frequency, double time_step, std::size_t stride, const std::function<double()> &amplitude,
-                     const std::function<void()> &advance)
-{
-  const auto samples = static_cast<std::size_t>(
-    std::ceil(followed_periods * 2. * M_PI / frequency / time_step / static_cast<double>(stride)));
-  std::vector<double> values{checked(amplitude())};
-  for (std::size_t step = 1; step <= samples * stride; ++step)
+  const std::vector<Oscillation> coarse = run(whole);
+  std::vector<Oscillation> found = run({0.5 * whole.time_step, half_stride, whole.n_samples});
+  for (std::size_t w = 0; w < found.size(); ++w)
   {
-    advance();
-    if (step % stride == 0)
-      values.push_back(checked(amplitude()));
+    found[w].frequency += (found[w].frequency - coarse[w].frequency) / 3.;
+    found[w].decay += (found[w].decay - coarse[w].decay) / 3.;
   }
-  return fit_oscillation(values, static_cast<double>(stride) * time_step);
+  return found;
 }
 
 Oscillation fit_oscillation(const std::vector<double> &values, double step)

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -17,34 +16,34 @@ struct Oscillation
   double residual;  ///< rms of the residual of the fit, over the rms of the values [-]
 };
 
-/// Returns the oscillation without the error of the time stepping, of second order, from runs with a step and half of
-/// it.
-Oscillation extrapolated(const Oscillation &whole, const Oscillation &half);
+/// How waves of a sheet in motion are sampled.
+struct Sampling
+{
+  double time_step;   ///< [s]
+  std::size_t stride; ///< time steps between samples
+  /// Samples after the first; 0: until each wave has changed its sign twice, within three quarters of its damped
+  /// period.
+  std::size_t n_samples = 0;
+};
 
-/// Returns those of two waves.
-std::array<Oscillation, 2> extrapolated(const std::array<Oscillation, 2> &whole,
-                                        const std::array<Oscillation, 2> &half);
+/// Periods for which a wave is sampled whose frequency is known.
+inline constexpr double sampled_periods = 0.8;
 
-/// Samples and steps two waves of one sheet until each has changed its sign twice, within three quarters of its damped
-/// period, and fits their amplitudes. @param amplitudes of the present state @param advance one time step
-/// @param stride time steps between samples @param sheet in the message: "the lattice"
-/// @throws std::runtime_error if a wave has not turned in `max_steps`; what fit_oscillation() throws
-std::array<Oscillation, 2> followed_to_turns(double time_step, std::size_t stride, std::size_t max_steps,
-                                             const std::string &sheet,
-                                             const std::function<std::array<double, 2>()> &amplitudes,
-                                             const std::function<void()> &advance);
+/// Returns the sampling of a wave through them. @param per_period samples @throws std::runtime_error if the wave does
+/// not oscillate
+Sampling sampling_of(double frequency, double decay, double time_step, double per_period);
 
-/// Samples and steps a wave through 0.8 of a period, and fits its amplitude.
-/// @param amplitude of the present state @param advance one time step
-Oscillation followed(double frequency, double time_step, std::size_t stride, const std::function<double()> &amplitude,
-                     const std::function<void()> &advance);
+/// Samples and steps waves of one sheet, and fits their amplitudes. @param sheet in the message: "the lattice"
+/// @param max_steps in which each wave must turn @param amplitudes of the present state @param advance one time step
+/// @throws std::runtime_error if a wave has not turned; what fit_oscillation() throws
+std::vector<Oscillation> followed(const Sampling &sampling, std::size_t max_steps, const std::string &sheet,
+                                  const std::function<std::vector<double>()> &amplitudes,
+                                  const std::function<void()> &advance);
 
-/// Periods for which followed() follows a wave.
-inline constexpr double followed_periods = 0.8;
-
-/// Returns the time steps between samples, for that many samples in a period of the wave.
-/// @throws std::runtime_error if the wave does not oscillate
-std::size_t sampling_stride(double frequency, double decay, double time_step, double samples_per_period);
+/// Returns the oscillations without the error of the time stepping, of second order, from runs with a step and half of
+/// it. @param half_stride stride of the second run
+std::vector<Oscillation> extrapolated(const Sampling &whole, std::size_t half_stride,
+                                      const std::function<std::vector<Oscillation>(const Sampling &)> &run);
 
 /// Least-squares fit to values at the times 0, step, 2 step, ...: a linear recurrence over an eighth of a period for a
 /// start, then Gauss-Newton. No initial guess is needed.

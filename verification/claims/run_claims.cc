@@ -1,11 +1,10 @@
-#include "verification/claims/run_claims.h"
+#include "verification/claims/claim_inputs.h"
 
 #include <map>
 #include <optional>
 
 #include "support/one_thread.h"
 #include "verification/bridge/subject.h"
-#include "verification/claims/claim_inputs.h"
 #include "verification/claims/claim_list.h"
 
 namespace latcon::claims

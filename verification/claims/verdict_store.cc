@@ -6,8 +6,6 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <system_error>
 
@@ -175,12 +173,12 @@ std::optional<std::string> stored_text(const std::string &file)
 {
   if (!std::filesystem::exists(file))
     return {};
-  std::ifstream stream;
-  if (std::filesystem::is_regular_file(file)) // a pipe would block
-    stream.open(file, std::ios::binary);
-  if (!stream.is_open())
+  // A pipe would block.
+  const input::InputFile stored =
+    std::filesystem::is_regular_file(file) ? input::read_input_file(file) : input::InputFile{"", "it is no file"};
+  if (!stored.problem.empty())
     throw UnusableVerdicts("it cannot be read");
-  return std::string(std::istreambuf_iterator<char>(stream), {});
+  return stored.text;
 }
 
 } // namespace latcon::claims

@@ -1,4 +1,4 @@
-#include "verification/commands/claim_registry.h"
+#include "verification/commands/command.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "verification/input/case_text.h"
-#include "verification/input/spelling.h"
 #include "verification/output/output_file.h"
 
 namespace latcon::commands

@@ -1,5 +1,6 @@
 #include "verification/commands/command.h"
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -10,11 +11,9 @@
 
 #include "support/atomic_file.h"
 #include "support/ranks.h"
-#include "verification/commands/crack_summary.h"
 #include "verification/commands/recorded_output.h"
 #include "verification/commands/signals.h"
 #include "verification/input/files.h"
-#include "verification/input/sha256.h"
 #include "verification/output/checkpoints.h"
 #include "verification/output/output_file.h"
 
@@ -35,6 +34,26 @@ void require_same_libraries(const input::Case &input, input::Parameters &paramet
       parameters.error(std::string(input::Case::shell_sections[number]) + "/library",
                        "the ranks find different libraries, or some none",
                        {std::string(input::Case::shell_sections[number]) + "/law"});
+  }
+}
+
+// Locks an existing directory, and removes the unfinished files that killed runs left in it and in its checkpoints.
+// Waits for a moment for another process to end. @throws InputError if it still writes there @throws
+// support::OutputError
+std::unique_ptr<support::FolderLock> lock_directory(const std::string &directory)
+{
+  try
+  {
+    auto lock = std::make_unique<support::FolderLock>(directory, std::chrono::seconds(1));
+    if (lock->is_held())
+      for (const std::string &folder : {directory, directory + "/checkpoints"})
+        support::remove_stale_parts(folder, std::filesystem::file_time_type::max());
+    return lock;
+  }
+  catch (const support::FolderInUse &error)
+  {
+    throw support::InputError(std::string(error.what()) +
+                              "; wait until it has ended, or choose another folder (--output-dir)");
   }
 }
 
@@ -59,23 +78,6 @@ void print_dry_run(const input::Options &options, const std::string &text)
 {
   if (support::is_root_rank() && !options.quiet)
     std::cout << text << std::flush;
-}
-
-std::unique_ptr<support::FolderLock> lock_directory(const std::string &directory, std::chrono::milliseconds patience)
-{
-  try
-  {
-    auto lock = std::make_unique<support::FolderLock>(directory, patience);
-    if (lock->is_held())
-      for (const std::string &folder : {directory, directory + "/checkpoints"})
-        support::remove_stale_parts(folder, std::filesystem::file_time_type::max());
-    return lock;
-  }
-  catch (const support::FolderInUse &error)
-  {
-    throw support::InputError(std::string(error.what()) +
-                              "; wait until it has ended, or choose another folder (--output-dir)");
-  }
 }
 
 std::shared_ptr<Run::Record> Run::last;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,15 +10,17 @@
 #include "support/errors.h"
 #include "support/folder_lock.h"
 #include "verification/bridge/laws.h"
+#include "verification/claims/claim.h"
 #include "verification/claims/rows.h"
 #include "verification/input/case.h"
 #include "verification/input/options.h"
 #include "verification/output/results.h"
 #include "verification/output/run_info.h"
+#include "verification/resources/resources.h"
 
-namespace latcon::claims
+namespace latcon::analysis
 {
-struct Claim;
+struct CrackMeasurement;
 }
 
 namespace latcon::output
@@ -30,6 +31,32 @@ class Checkpoints;
 namespace latcon::commands
 {
 
+/// All claims, in the order in which they are checked and shown.
+[[nodiscard]] const std::vector<claims::Claim> &claim_registry();
+
+/// Claims checked by `latcon verify` for these names on the command line; without names the default ones.
+/// @param names of the registry, in any order
+/// @param material of the lattice
+[[nodiscard]] std::vector<claims::Claim> selected_claims(const std::vector<std::string> &names,
+                                                         const lattice::Material &material);
+
+/// Claims that must hold before a crack is run. @param material of the sheet that breaks @param on_continuum whether it
+/// is the continuum in place of the lattice
+[[nodiscard]] std::vector<claims::Claim> claims_before_fracture(const lattice::Material &material,
+                                                                bool on_continuum = false);
+
+/// Message about a name that is not in the registry, with the nearest name that is; empty if it is in.
+[[nodiscard]] std::string unknown_claim(const std::string &name);
+
+/// Names of all claims as the help shows them: "{energy,wave-speeds}".
+[[nodiscard]] std::string claim_choices();
+
+/// A line for each claim, with its title, for the help.
+[[nodiscard]] std::string claim_list();
+
+/// Writes claims.json, titles and statements for the report, into `folder`, which must exist. @throws OutputError
+void write_claims(const std::vector<claims::Claim> &claims, const std::string &folder);
+
 // The commands. Each runs on every MPI rank and returns the exit code of the program, or throws.
 support::ExitCode verify(const input::Options &options);        ///< `latcon verify`
 support::ExitCode run_lattice(const input::Options &options);   ///< `latcon lattice`
@@ -37,13 +64,11 @@ support::ExitCode run_continuum(const input::Options &options); ///< `latcon con
 support::ExitCode run_fracture(const input::Options &options);  ///< `latcon fracture`
 support::ExitCode print_schema(const input::Options &options);  ///< `latcon schema`
 
-/// `latcon study`, `latcon batch` and `latcon compare`, which are Python: does not return if it starts.
+/// `latcon study`, `batch`, `compare`, `report`, `entries`, `init`, and `help` on entries, which are Python: does not
+/// return if it starts.
 /// @param command which of them @param names paths of what it is about @param chosen its own options, by name
 support::ExitCode continue_in_python(const input::Options &options, const std::string &command,
                                      const std::vector<std::string> &names, nlohmann::ordered_json chosen);
-
-/// `latcon report`. @param directory of a run, or of several @param animation whether to draw animations as well
-support::ExitCode report(const input::Options &options, const std::string &directory, bool animation);
 
 /// Declared entries, shipped cases and claims as JSON; with a case its values.
 [[nodiscard]] nlohmann::ordered_json schema_document(const input::Options &options);
@@ -54,18 +79,6 @@ support::ExitCode report(const input::Options &options, const std::string &direc
 support::ExitCode resolve_cases(const input::Options &options);
 /// `latcon gate`: checks the claims that a crack waits for, see require_verified(). @throws ClaimFailed
 support::ExitCode verify_before_cracks(const input::Options &options);
-
-/// `latcon entries`: lists the entries of a section, or of all if it is empty. @throws InputError for an unknown
-/// section
-support::ExitCode print_entries(const std::string &section);
-
-/// `latcon help TOPIC` for a section or an entry. @param commands names of the commands, for typing errors
-/// @throws InputError for an unknown topic
-support::ExitCode print_topic(const std::string &topic, const std::vector<std::string> &commands);
-
-/// `latcon init`: creates the folder and a commented case in it. @throws InputError if the case exists @throws
-/// OutputError
-support::ExitCode init(const input::Options &options, const std::string &directory);
 
 /// Draws pictures and report.html of a run in a directory that this process has locked, without a word. On rank 0.
 /// @param shows_progress whether a progress line is shown meanwhile
@@ -81,11 +94,28 @@ bool has_default_threads(const input::Options &options);
 /// Prints a part of the output of --dry-run, on the root rank, unless --quiet.
 void print_dry_run(const input::Options &options, const std::string &text);
 
-/// Locks an existing directory, and removes the unfinished files that killed runs left in it and in its checkpoints.
-/// Waits up to `patience` for another process to end.
-/// @throws InputError if another process writes there @throws support::OutputError
-std::unique_ptr<support::FolderLock> lock_directory(const std::string &directory,
-                                                    std::chrono::milliseconds patience = std::chrono::seconds(1));
+/// Refuses a run that takes longer than 10 days, unless the user confirmed it. @param seconds estimated
+/// @throws InputError with the estimate
+void require_time(const input::Options &options, double seconds);
+
+/// Refuses a run of the lattice that needs too much memory or time, unless the user confirmed it, and prints what
+/// --dry-run shows: the resolved case, memory, sites, bonds, time step, stages, steps and estimated time. Collective.
+/// @return whether it is to be run; false with --dry-run
+[[nodiscard]] bool is_to_be_run(const input::Options &options, const input::Parameters &parameters,
+                                const input::Case &input, const lattice::TimeStepping &stepping,
+                                resources::RunKind run);
+
+/// Number of checks that hold and fail, a line for each claim.
+[[nodiscard]] std::string claim_lines(const output::Results &results);
+
+/// Seconds of each phase: "claims 8.1 s, fracture 61 s".
+[[nodiscard]] std::string times_text(const std::vector<std::pair<std::string, double>> &times);
+
+/// Summary of a crack for the terminal, in lines of 120 columns: its pattern with the criterion, measured quantities
+/// with uncertainties and, if the case has any, reference values, a line for each claim, and rows that fail. At most a
+/// dozen lines if none fails.
+[[nodiscard]] std::string crack_summary(const input::Case &input, const analysis::CrackMeasurement &crack,
+                                        const output::Results &results);
 
 /// Output directory of a run, locked until the run has ended, and its provenance. Rank 0 alone writes.
 ///

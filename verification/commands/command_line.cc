@@ -12,10 +12,8 @@
 #include "lattice/row_kernels.h"
 #include "support/available_cores.h"
 #include "support/ranks.h"
-#include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/commands/recorded_output.h"
-#include "verification/commands/usage_error.h"
 #include "verification/elements/elements.h"
 #include "verification/input/case_text.h"
 #include "verification/input/files.h"
@@ -28,17 +26,13 @@ namespace
 using Json = nlohmann::ordered_json;
 using Words = std::vector<std::string>;
 
-// Sets the threads of each rank; by default OMP_NUM_THREADS, or as many as there are cores for it.
-void set_threads(const input::Options &options)
+// Sets the threads of each rank; by default OMP_NUM_THREADS, or as many as there are cores for it. Throws for an
+// environment variable that names no instruction set of the lattice.
+void set_up_threads(const input::Options &options)
 {
   const unsigned int available = support::available_cores_per_rank(); // on all ranks, whatever their variables
   if (const unsigned int threads = has_default_threads(options) ? available : options.threads; threads > 0)
     omp_set_num_threads(static_cast<int>(threads));
-}
-
-// Throws for an environment variable that names no instruction set of the lattice.
-void check_instruction_set()
-{
   try
   {
     lattice::kernels::limit_instruction_sets();
@@ -56,28 +50,6 @@ constexpr const char *exit_codes =
 constexpr const char *shared_options =
   "Also, with every command (described by latcon --help): --set, --output-dir, --threads, --quiet,\n"
   "--no-report, --verbose, --resume, --dry-run, --yes.\n";
-
-// Describes the studies that a user can give.
-std::string study_choices()
-{
-  const std::vector<std::string> names = input::shipped_studies();
-  return "study file (.json)" +
-         (names.empty() ? std::string() : ", or a shipped one: " + input::comma_separated(names));
-}
-
-// Default output directory of a study; of the study file that a sweep wrote beside a copy of its case, its own folder.
-std::string study_folder(const std::string &study, bool is_sweep)
-{
-  const std::filesystem::path path(study), folder = std::filesystem::absolute(path).parent_path();
-  const auto has = [&folder](const char *file)
-  {
-    std::error_code none;
-    return std::filesystem::exists(folder / file, none);
-  };
-  if (path.filename() == "sweep.json" && (has("base.prm") || has("base.json")))
-    return path.has_parent_path() ? path.parent_path().string() : folder.string();
-  return "output/" + path.stem().string() + (is_sweep ? "-sweep" : "");
-}
 
 // Adds an option or a flag of a command that is Python, which gets its value under a key. @param type of it in the help
 template <class Value>
@@ -98,17 +70,12 @@ void keep(CLI::App *command, Json &chosen, const std::string &key, const std::st
     name, [&chosen, key] { chosen[key] = true; }, help);
 }
 
-std::string case_choices()
-{
-  return "case file, .prm or .json, or a shipped case: " + input::comma_separated(input::shipped_cases());
-}
-
-support::ExitCode print_help(const CLI::App &app, const std::string &topic)
+support::ExitCode print_help(const CLI::App &app, const input::Options &options, const std::string &topic)
 {
   const std::vector<std::string> names = command_names(app);
   const bool is_command = std::find(names.begin(), names.end(), topic) != names.end();
   if (!topic.empty() && !is_command)
-    return print_topic(topic, names);
+    return continue_in_python(options, "help", {topic}, {{"commands", names}});
   if (support::is_root_rank())
     // App::help() of a program whose command line named a command describes that command.
     std::cout << (is_command ? app.get_subcommand(topic)->help(app.get_name())
@@ -157,12 +124,16 @@ support::ExitCode run_program(int argc, char **argv)
   app.add_flag("--dry-run", options.dry_run, "check the input, print the resolved case and its cost, run nothing");
   app.add_flag("--yes", options.yes, "run also what would take more than 10 days or the memory of the machine");
 
-  const auto add_command = [&app](const std::string &name, const std::string &help, const std::string &example)
+  const auto add_command = [&](const std::string &name, const std::string &help, const std::string &example,
+                               const std::function<support::ExitCode()> &run)
   {
     CLI::App *subcommand = app.add_subcommand(name, help);
     subcommand->footer(std::string(shared_options) + "Example: " + example + "\n\n" + exit_codes);
+    subcommand->callback([&command, run] { command = run; });
     return subcommand;
   };
+  const auto is_given = [&app](const std::string &name, const std::string &option)
+  { return app.get_subcommand(name)->count(option) > 0; };
   const auto default_folder = [&options](const std::string &name)
   {
     if (options.output_dir.empty())
@@ -170,8 +141,16 @@ support::ExitCode run_program(int argc, char **argv)
   };
 
   options.case_file = input::shipped_case_file("fig1");
+  std::string laws;
   CLI::App *verify_command = add_command("verify", "check that lattice and continuum agree, claim by claim",
-                                         "latcon verify energy --quick --output-dir output/energy");
+                                         "latcon verify energy --quick --output-dir output/energy",
+                                         [&]
+                                         {
+                                           options.laws_of_case =
+                                             laws.empty() ? is_given("verify", "--case") : laws == "case";
+                                           default_folder("verify");
+                                           return verify(options);
+                                         });
   verify_command->add_option("CLAIM", options.claims, "claims to check; default: all but those marked (only if named)")
     ->check(CLI::Validator([](const std::string &name) { return unknown_claim(name); }, claim_choices()))
     ->type_name("");
@@ -179,7 +158,6 @@ support::ExitCode run_program(int argc, char **argv)
     ->add_option("--case", options.case_file,
                  "case whose material, loading and laws to verify; default: the rubber of Fig. 1")
     ->type_name("FILE");
-  std::string laws;
   verify_command
     ->add_option("--laws", laws,
                  "which laws of the continuum are judged, all or those on which the case relies; others are reported; "
@@ -188,26 +166,22 @@ support::ExitCode run_program(int argc, char **argv)
     ->type_name("LAWS");
   verify_command->add_flag("--quick", options.quick, "small versions");
   verify_command->footer(claim_list() + verify_command->get_footer());
-  verify_command->callback(
-    [&]
-    {
-      options.laws_of_case = laws.empty() ? verify_command->count("--case") > 0 : laws == "case";
-      default_folder("verify");
-      command = [&] { return verify(options); };
-    });
 
   const auto add_case_command = [&](const std::string &name, const std::string &help, const std::string &example,
                                     const std::string &suffix, support::ExitCode (*run)(const input::Options &))
   {
-    CLI::App *subcommand = add_command(name, help, example);
-    subcommand->add_option("CASE", options.case_file, case_choices())->required()->type_name("");
-    subcommand->callback(
-      [&command, &options, default_folder, suffix, run]
-      {
-        default_folder(std::filesystem::path(options.case_file).stem().string() + suffix +
-                       (options.on_continuum ? "-continuum-crack" : ""));
-        command = [&options, run] { return run(options); };
-      });
+    CLI::App *subcommand = add_command(name, help, example,
+                                       [&options, default_folder, suffix, run]
+                                       {
+                                         default_folder(std::filesystem::path(options.case_file).stem().string() +
+                                                        suffix + (options.on_continuum ? "-continuum-crack" : ""));
+                                         return run(options);
+                                       });
+    subcommand
+      ->add_option("CASE", options.case_file,
+                   "case file, .prm or .json, or a shipped case: " + input::comma_separated(input::shipped_cases()))
+      ->required()
+      ->type_name("");
     return subcommand;
   };
   add_case_command("lattice", "equilibrium or motion of the unbroken lattice sheet", "latcon lattice hole", "-lattice",
@@ -229,8 +203,8 @@ support::ExitCode run_program(int argc, char **argv)
         "which side breaks, the lattice or the nonlocal continuum; default: lattice")
       ->check(CLI::IsMember({"lattice", "continuum"}))
       ->type_name("SIDE");
-  CLI::App *resolve_command = add_command("resolve", "cases as JSON, for programs", "latcon resolve <questions.jsonl");
-  resolve_command->callback([&] { command = [&] { return resolve_cases(options); }; });
+  CLI::App *resolve_command = add_command("resolve", "cases as JSON, for programs", "latcon resolve <questions.jsonl",
+                                          [&] { return resolve_cases(options); });
   for (CLI::App *internal : {gate_command, resolve_command})
     internal->group(""); // not listed: `latcon study` uses them
 
@@ -239,8 +213,14 @@ support::ExitCode run_program(int argc, char **argv)
   const auto add_study_command =
     [&](const std::string &name, const std::string &help, const std::string &example, Json &chosen)
   {
-    CLI::App *subcommand = add_command(name, help, example);
-    subcommand->add_option("STUDY", study, study_choices() + "; with --sweep a case")->required()->type_name("");
+    CLI::App *subcommand =
+      add_command(name, help, example, [&, name] { return continue_in_python(options, name, {study}, chosen); });
+    subcommand
+      ->add_option("STUDY", study,
+                   "study file (.json), or a shipped one: " + input::comma_separated(input::shipped_studies()) +
+                     "; with --sweep a case")
+      ->required()
+      ->type_name("");
     keep(subcommand, chosen, "sweeps", "--sweep", "ENTRY", Words(),
          "Section/Name=START:STOP:COUNT or =VALUE,VALUE,...: run the case STUDY for these values; repeatable: "
          "all combinations");
@@ -249,13 +229,6 @@ support::ExitCode run_program(int argc, char **argv)
     subcommand->add_flag("--quick", options.quick, "small version");
     subcommand->add_flag("--skip-verification", options.skip_verification,
                          "run the cracks unverified; noted in every output");
-    subcommand->callback(
-      [&, name]
-      {
-        if (options.output_dir.empty())
-          options.output_dir = study_folder(study, !chosen["sweeps"].empty());
-        command = [&, name] { return continue_in_python(options, name, {study}, chosen); };
-      });
     return subcommand;
   };
   CLI::App *study_command = add_study_command("study", "a sweep of cracks, compared with what a source states",
@@ -283,7 +256,12 @@ support::ExitCode run_program(int argc, char **argv)
   std::string first, second;
   CLI::App *compare_command =
     add_command("compare", "two cracks, or a lattice frame and a continuum frame site by site",
-                "latcon compare output/strip output/thin");
+                "latcon compare output/strip output/thin",
+                [&]
+                {
+                  default_folder("compare");
+                  return continue_in_python(options, "compare", {first, second}, compared);
+                });
   compare_command
     ->add_option("LATTICE", first,
                  "output directory of a crack; or frame (.vtp), series (.pvd) or output directory of a lattice")
@@ -307,55 +285,50 @@ support::ExitCode run_program(int argc, char **argv)
   keep(compare_command, compared, "excluded", "--exclude", "X,Y,R", Words(),
        "X,Y,R, centre and radius of a circle in the undeformed sheet whose sites are not compared, as at a "
        "crack tip; repeatable");
-  compare_command->callback(
-    [&]
-    {
-      default_folder("compare");
-      command = [&] { return continue_in_python(options, "compare", {first, second}, compared); };
-    });
 
   std::string directory;
   bool animation = false;
   CLI::App *report_command =
-    add_command("report", "summary table, pictures and report.html of finished runs", "latcon report output/quick");
+    add_command("report", "summary table, pictures and report.html of finished runs", "latcon report output/quick",
+                [&] {
+                  return continue_in_python(options, "report", {directory}, {{"animation", animation}});
+                });
   report_command
     ->add_option("DIR", directory,
                  "output directory of a run, or a folder of several; with --output-dir it is only read")
     ->required()
     ->type_name("");
   report_command->add_flag("--animation", animation, "draw animation.gif of each crack as well");
-  report_command->callback([&] { command = [&] { return report(options, directory, animation); }; });
 
-  CLI::App *init_command = add_command("init", "a folder with a commented case to start from", "latcon init my-strip");
+  CLI::App *init_command = add_command("init", "a folder with a commented case to start from", "latcon init my-strip",
+                                       [&] { return continue_in_python(options, "init", {directory}, {}); });
   init_command->add_option("DIR", directory, "folder; the case in it has its name")
     ->required()
     ->check(no_tilde)
     ->type_name("");
-  init_command->callback([&] { command = [&] { return init(options, directory); }; });
 
   std::string section;
   CLI::App *entries_command =
-    add_command("entries", "entries of a case: name, unit, default, meaning", "latcon entries Fracture");
+    add_command("entries", "entries of a case: name, unit, default, meaning", "latcon entries Fracture",
+                [&] { return continue_in_python(options, "entries", {section}, {}); });
   entries_command->add_option("SECTION", section, "section whose entries to list; default: all")->type_name("");
-  entries_command->callback([&] { command = [&] { return print_entries(section); }; });
 
   std::vector<std::string> topic; // names with blanks need no quotes
   CLI::App *help_command =
-    add_command("help", "help on a command, a section or an entry of a case", "latcon help Fracture/toughening");
+    add_command("help", "help on a command, a section or an entry of a case", "latcon help Fracture/toughening",
+                [&] { return print_help(app, options, CLI::detail::join(topic, " ")); });
   help_command->add_option("TOPIC", topic, "command, section, or entry (Section/Name or its name alone)")
     ->type_name("");
-  help_command->callback([&] { command = [&] { return print_help(app, CLI::detail::join(topic, " ")); }; });
 
   CLI::App *schema_command =
-    add_command("schema", "all entries of a case as JSON, with the values of one", "latcon schema quick");
+    add_command("schema", "all entries of a case as JSON, with the values of one", "latcon schema quick",
+                [&]
+                {
+                  options.case_is_given = is_given("schema", "CASE");
+                  return print_schema(options);
+                });
   schema_command->add_option("CASE", options.case_file, "case whose values to print; default: declarations only")
     ->type_name("");
-  schema_command->callback(
-    [&]
-    {
-      options.case_is_given = schema_command->count("CASE") > 0;
-      command = [&] { return print_schema(options); };
-    });
 
   return run_command(
     [&]
@@ -374,8 +347,7 @@ support::ExitCode run_program(int argc, char **argv)
         return support::ExitCode::done;
       }
       options.case_file = input::case_path(options.case_file);
-      set_threads(options);
-      check_instruction_set();
+      set_up_threads(options);
       return command();
     });
 }

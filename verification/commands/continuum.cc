@@ -3,9 +3,7 @@
 #include <sstream>
 
 #include "continuum/errors.h"
-#include "verification/commands/cost.h"
-#include "verification/commands/element_motion.h"
-#include "verification/commands/equilibrium.h"
+#include "verification/commands/finite_elements.h"
 #include "verification/output/checkpoints.h"
 #include "verification/resources/resources.h"
 
@@ -44,7 +42,8 @@ support::ExitCode run_continuum(const input::Options &options)
   const resources::MemoryNeed memory = resources::continuum_memory(input, size);
   if (options.dry_run)
     print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
-  require_memory(options, memory);
+  if (!options.yes)
+    resources::require_memory(memory);
   bridge::ContinuumModel model(input);
   if (moves && !input.continuum.time_step)
   {

@@ -1,4 +1,4 @@
-#include "verification/commands/cost.h"
+#include "verification/commands/command.h"
 
 #include <cmath>
 #include <sstream>
@@ -9,7 +9,6 @@
 #include "support/ranks.h"
 #include "support/text_wrap.h"
 #include "verification/bridge/lattice_sheet.h"
-#include "verification/commands/command.h"
 
 namespace latcon::commands
 {
@@ -43,7 +42,7 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
   std::ostringstream out;
   out << (sheet.is_triangular() ? "# lattice: " : "# nonlocal continuum: ") << sites << " sites, " << bonds
       << " bonds, " << 2 * sites << " unknowns, " << sheet.length() << " m x " << sheet.height() << " m\n";
-  double steps = 0.;
+  double steps = 0., parts = 1.;
   double frames = 2.;  // the first and the last
   double at_most = 1.; // maximum number of steps over the expected one
   if (run != resources::RunKind::equilibrium)
@@ -61,13 +60,14 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
     out << "\n";
     if (input.frame_interval > 0.)
       frames += std::floor(steps * stepping.step / input.frame_interval);
-    if (const double parts = resources::parts_of_first_step(input, stepping, run); parts > 1.)
+    parts = resources::parts_of_first_step(input, stepping, run);
+    if (parts > 1.)
       out << "# bonds of the loaded sheet are so short that the first step is made in " << parts
           << " parts; the time below is that of all steps likewise\n";
     if (run == resources::RunKind::fracture)
       frames += cost_of_motion_frame * input.motion_frames;
   }
-  const double seconds = resources::lattice_seconds(input, stepping, run, steps, frames);
+  const double seconds = resources::lattice_seconds(input, stepping, run, steps * parts, frames);
   out << "# time: about " << seconds_text(seconds) << " on " << omp_get_max_threads() << " threads of each rank";
   if (at_most > 1.)
     out << ", at most " << seconds_text(at_most * seconds) << " if the crack is slower or does not run";
@@ -80,21 +80,7 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
   return out.str();
 }
 
-// Rough time of a crack or a motion of the lattice on this machine [s], from the number of force evaluations; nothing
-// is measured. @param steps that are expected
-double rough_seconds(const input::Case &input, const lattice::TimeStepping &stepping, const double steps)
-{
-  const double ranks = support::n_ranks();
-  return resources::core_seconds(input, steps * stepping.evaluations()) / (ranks * omp_get_max_threads());
-}
-
 } // namespace
-
-void require_memory(const input::Options &options, const resources::MemoryNeed &need)
-{
-  if (!options.yes)
-    resources::require_memory(need);
-}
 
 void require_time(const input::Options &options, const double seconds)
 {
@@ -114,13 +100,14 @@ bool is_to_be_run(const input::Options &options, const input::Parameters &parame
   const resources::MemoryNeed memory = resources::lattice_memory(input, run, claims);
   if (options.dry_run)
     print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
-  require_memory(options, memory);
+  if (!options.yes)
+    resources::require_memory(memory);
   if (options.dry_run && !options.quiet)
     print_dry_run(options, lattice_text(input, stepping, run, claims, breaks && !options.no_report));
   if (run != resources::RunKind::equilibrium)
-    require_time(options,
-                 rough_seconds(input, stepping,
-                               breaks ? resources::expected_steps(input, stepping) : input.end_time / stepping.step));
+    require_time(options, resources::lattice_seconds(
+                            input, stepping, run,
+                            breaks ? resources::expected_steps(input, stepping) : input.end_time / stepping.step, 0.));
   return !options.dry_run;
 }
 

@@ -1,39 +1,25 @@
-#include "verification/commands/crack_summary.h"
+#include "verification/commands/command.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "support/text_wrap.h"
+#include "verification/analysis/crack_measurement.h"
 
 namespace latcon::commands
 {
 namespace
 {
 
-constexpr std::size_t columns = 120;
 // Leaves room for the measured quantities; results.csv has all rows.
 constexpr std::size_t most_failing_rows = 4;
 
-// Scale and unit for display.
-std::pair<double, std::string> display(const std::string &unit)
-{
-  if (unit == "m")
-    return {1e2, " cm"};
-  if (unit == "m^2")
-    return {1e6, " mm²"};
-  if (unit == "s")
-    return {1e3, " ms"};
-  if (unit == "degrees")
-    return {1., "°"};
-  return {1., unit == "1" ? "" : " " + unit};
-}
-
-// A number with a readable unit: lengths in cm, areas in mm^2, times in ms. @param deviation standard deviation in the
-// same unit, or none
+// A number with a readable unit: lengths in cm. @param deviation standard deviation in the same unit, or none
 std::string quantity_text(const double value, const std::optional<double> deviation, const std::string &unit)
 {
-  const auto [scale, symbol] = display(unit);
+  const double scale = unit == "m" ? 1e2 : 1.;
+  const std::string symbol = unit == "m" ? " cm" : " " + unit;
   // Equal values have a deviation of round-off.
   if (!deviation || !(*deviation > 1e-12 * std::abs(value)))
     return support::formatted("%.4g", scale * value) + symbol;
@@ -97,7 +83,7 @@ std::string crack_summary(const input::Case &input, const analysis::CrackMeasure
   for (const std::string &line : support::wrap_text(
          (crack.pattern == analysis::CrackPattern::undecided ? "The pattern of the crack is " : "The crack is ") +
            pattern + ": " + crack.reason,
-         columns))
+         120))
     text += line + "\n";
   text += line_of("Lagrangian crack speed", crack.speed_lagrangian, "m/s", input.reference_speed);
   text += line_of("laboratory crack speed", crack.speed_laboratory, "m/s", {});

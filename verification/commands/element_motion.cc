@@ -1,4 +1,4 @@
-#include "verification/commands/element_motion.h"
+#include "verification/commands/finite_elements.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,6 @@
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogenisation.h"
 #include "verification/claims/continuum_waves.h"
-#include "verification/commands/equilibrium.h"
 #include "verification/commands/motion.h"
 #include "verification/output/continuum_record.h"
 

@@ -1,8 +1,7 @@
-#include "verification/commands/equilibrium.h"
+#include "verification/commands/finite_elements.h"
 
 #include <algorithm>
 #include <iostream>
-#include <memory>
 
 #include "continuum/errors.h"
 #include "continuum/field_writer.h"
@@ -45,7 +44,7 @@ output::Results equilibrium(const input::Case &input, bridge::ContinuumModel &mo
   checkpoints.resume([](auto &) {}); // it writes none
   output::ContinuumRecord record;
   continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
-  auto set_up = std::make_unique<output::Stopwatch::Phase>(run.info().stopwatch(), "set-up");
+  auto set_up = run.info().stopwatch().phase("set-up");
   continuum::StaticSolver solver(model.mesh(), model.constitution(), model.conditions(), static_settings(input));
   set_up.reset();
   const auto write_frame = [&](double load_factor)

@@ -9,12 +9,8 @@
 #include "support/largest_error.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/claims/claim_inputs.h"
-#include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
-#include "verification/commands/cost.h"
-#include "verification/commands/crack_summary.h"
 #include "verification/commands/motion.h"
-#include "verification/input/cracked_sheet.h"
 #include "verification/output/crack_film.h"
 #include "verification/output/near_tip_record.h"
 
@@ -32,7 +28,7 @@ support::ExitCode draw_page(Run &run)
   {
     auto phase = run.info().stopwatch().phase("report");
     const support::ExitCode drawn = draw_report(run.directory(), run.is_verbose());
-    phase.stop();
+    phase.reset();
     if (drawn != support::ExitCode::claim_failed)
       exit_code = drawn;
     if (run.is_verbose() && exit_code == support::ExitCode::done)
@@ -200,8 +196,8 @@ std::pair<analysis::CrackMeasurement, output::Results> run_crack(const input::Ca
     motion.near_tip().write(run.directory(), crack);
   return {crack, measured_results(
                    input, crack, record.imbalance(),
-                   output::allowed_imbalance_of_crack(
-                     input.integrator, simulation.state().time / input.automatic().fracture_time_stepping().step))};
+                   output::allowed_imbalance(
+                     input.integrator, simulation.state().time / input.automatic().fracture_time_stepping().step, 2.))};
 }
 
 } // namespace

@@ -10,7 +10,6 @@
 
 #include "support/ranks.h"
 #include "verification/claims/verdict_store.h"
-#include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/elements/elements.h"
 #include "verification/input/files.h"

@@ -26,13 +26,15 @@ std::pair<std::string, double> Motion::progress() const
 }
 
 // Checks the state of the motion in a checkpoint before it is used. @throws std::invalid_argument
-void Motion::check_loaded() const
+void Motion::check_loaded()
 {
+  step_ = checkpoints_.found()->step;
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double done = static_cast<double>(step_), frames = static_cast<double>(n_frames());
+  lattice::require_archived(time() == checkpoints_.found()->time, "`time` differs from that in `run`");
   // Steps may have been added up one by one.
-  output::require_matching_time(*checkpoints_.found(), step_, time(), done * time_step_,
-                                std::max(4., done) * epsilon * time());
+  lattice::require_archived(std::abs(time() - done * time_step_) <= std::max(4., done) * epsilon * time(),
+                            "`time` does not match the number of steps");
   lattice::require_archived(done == 0. || time() <= input_.end_time + time() / done, "`time` is after the end");
   // One frame at the start and one per interval, but at most one per step.
   if (input_.frame_interval > 0.)
@@ -48,7 +50,6 @@ void Motion::go(const std::string &phase_name)
   {
     this->archive(archive);
     archive("next_frame", next_frame_);
-    archive("step", step_);
     if constexpr (std::decay_t<decltype(archive)>::loads)
       check_loaded();
   };

@@ -52,7 +52,7 @@ protected:
   Run &run_;
 
 private:
-  void check_loaded() const;
+  void check_loaded();
 
   output::Checkpoints &checkpoints_;
   double time_step_;                       // [s]

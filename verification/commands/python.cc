@@ -13,7 +13,6 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "support/atomic_file.h"
 #include "support/child_process.h"
 #include "support/errors.h"
 #include "support/ranks.h"
@@ -87,41 +86,15 @@ int wait_with_progress(pid_t child, const std::string &what)
 // Exit status of the script after it has named missing Debian packages: PACKAGES_MISSING of report/__main__.py.
 constexpr int packages_missing = 69;
 
-// Draws report.html by python/latcon/report. @return the exit code of the script @param options of the script
-support::ExitCode run_report(const std::string &directory, const std::vector<std::string> &options, bool shows_progress)
-{
-  const std::string python = python_interpreter(), package = package_folder(), page = directory + "/report.html";
-  std::vector<std::string> command{python, "-sP", package + "/latcon/report/__main__.py", "report", directory};
-  command.insert(command.end(), options.begin(), options.end());
-  const pid_t child = support::start_child({command, environment_of_python(package)});
-  const int status = shows_progress ? wait_with_progress(child, "drawing report.html") : support::wait_for_child(child);
-  if (status == support::not_started)
-    throw support::OutputError(page, "cannot start " + python);
-  if (status > 128)
-    throw support::OutputError(page, "the report script was killed");
-  if (status == packages_missing)
-  {
-    std::cerr << "latcon: no report; every other file is complete. With these packages, draw it by: latcon report "
-              << directory << std::endl;
-    return support::ExitCode::output_failed;
-  }
-  // The script uses the exit codes of this program.
-  for (const support::ExitCode known : {support::ExitCode::done, support::ExitCode::bad_input,
-                                        support::ExitCode::claim_failed, support::ExitCode::output_failed})
-    if (status == static_cast<int>(known))
-      return known;
-  throw support::OutputError(page, "the report script failed");
-}
-
 } // namespace
 
 support::ExitCode continue_in_python(const input::Options &options, const std::string &command,
                                      const std::vector<std::string> &names, Json chosen)
 {
-  if (command == "compare" && !support::is_root_rank())
-    return support::ExitCode::done; // the first rank does all the work
-  if (support::n_ranks() > 1 && command != "compare")
+  if (support::n_ranks() > 1 && (command == "study" || command == "batch"))
     throw support::InputError("`latcon " + command + "` is one process; run it without mpirun");
+  if (!support::is_root_rank())
+    return support::ExitCode::done; // the first rank does all the work
   chosen.update({{"arguments", options.arguments},
                  {"overrides", options.overrides},
                  {"threads", options.threads},
@@ -162,29 +135,29 @@ support::ExitCode continue_in_python(const input::Options &options, const std::s
   std::_Exit(static_cast<int>(support::ExitCode::output_failed));
 }
 
-support::ExitCode report(const input::Options &options, const std::string &directory, const bool animation)
-{
-  if (!std::filesystem::is_directory(directory))
-    throw support::InputError(directory + " is not a directory");
-  if (!support::is_root_rank())
-    return support::ExitCode::done;
-  std::vector<std::string> words;
-  if (options.quiet)
-    words.emplace_back("--quiet");
-  if (animation)
-    words.emplace_back("--animation");
-  if (!options.output_dir.empty())
-  {
-    support::create_folders(options.output_dir);
-    words.insert(words.end(), {"--output-dir", options.output_dir});
-  }
-  const auto lock = lock_directory(options.output_dir.empty() ? directory : options.output_dir);
-  return run_report(directory, words, false);
-}
-
 support::ExitCode draw_report(const std::string &directory, const bool shows_progress)
 {
-  return run_report(directory, {"--quiet"}, shows_progress);
+  const std::string python = python_interpreter(), package = package_folder(), page = directory + "/report.html";
+  const pid_t child =
+    support::start_child({{python, "-sP", package + "/latcon/report/__main__.py", "report", directory, "--quiet"},
+                          environment_of_python(package)});
+  const int status = shows_progress ? wait_with_progress(child, "drawing report.html") : support::wait_for_child(child);
+  if (status == support::not_started)
+    throw support::OutputError(page, "cannot start " + python);
+  if (status > 128)
+    throw support::OutputError(page, "the report script was killed");
+  if (status == packages_missing)
+  {
+    std::cerr << "latcon: no report; every other file is complete. With these packages, draw it by: latcon report "
+              << directory << std::endl;
+    return support::ExitCode::output_failed;
+  }
+  // The script uses the exit codes of this program.
+  for (const support::ExitCode known : {support::ExitCode::done, support::ExitCode::bad_input,
+                                        support::ExitCode::claim_failed, support::ExitCode::output_failed})
+    if (status == static_cast<int>(known))
+      return known;
+  throw support::OutputError(page, "the report script failed");
 }
 
 } // namespace latcon::commands

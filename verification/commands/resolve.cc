@@ -1,7 +1,5 @@
 // `latcon resolve` and `latcon gate`, for `latcon study` and `latcon batch`, which are Python (python/latcon/study).
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <iostream>
 #include <numeric>
 
@@ -11,12 +9,9 @@
 #include "support/machine_memory.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/claims/claim_inputs.h"
-#include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
-#include "verification/commands/cost.h"
+#include "verification/input/case_text.h"
 #include "verification/input/files.h"
-#include "verification/input/sha256.h"
-#include "verification/input/spelling.h"
 #include "verification/input/units.h"
 
 namespace latcon::commands
@@ -26,16 +21,6 @@ namespace
 
 using Json = nlohmann::ordered_json;
 using Words = std::vector<std::string>;
-
-// zeta = (eta / a) / (d / sqrt(a / rho)) of the nearest-neighbour bonds [-]: the retardation time divided by the travel
-// time of a wave over one spacing (theory.md, eq. (L.5)). None for linear bonds, which have no a.
-Json zeta(const input::Case &input)
-{
-  const input::ShellCase &bond = input.nearest;
-  if (bond.law != input::ShellCase::Law::mooney_rivlin || !(bond.a > 0.))
-    return nullptr;
-  return bond.viscosity / bond.a * std::sqrt(bond.a / input.density) / input.spacing;
-}
 
 // Answers requests; keeps the base case alone, so that an edit of its file changes no run.
 class Resolver
@@ -73,7 +58,8 @@ public:
       const auto needs = request["memory"].get<std::vector<double>>();
       const double total = std::accumulate(needs.begin(), needs.end(), 0.) +
                            static_cast<double>(needs.size()) * support::resident_memory();
-      require_memory(options_, {total, 0.});
+      if (!options_.yes)
+        resources::require_memory({total, 0.});
       return {{"text", resources::memory_text({total, 0.})}};
     }
     return resolved(request);
@@ -108,10 +94,10 @@ private:
     parameters.finish();
     if (request["wants_text"])
       return parameters.resolved_text();
-    Json reply{{"spacing", input.spacing}, {"zeta", zeta(input)}};
+    Json reply{{"spacing", input.spacing}};
     Json &values = reply["values"] = Json::object();
     for (const std::string key : request["keys"])
-      values[key] = value_of(parameters.value(key));
+      values[key] = parameters.value(key);
     add_cost(input, reply);
     for (const std::uint64_t seed : seeds)
     {
@@ -119,13 +105,6 @@ private:
       reply["sha256"].push_back(input::sha256(parameters.lines()));
     }
     return reply;
-  }
-
-  static Json value_of(const std::string &text)
-  {
-    char *end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    return !text.empty() && *end == '\0' && std::isfinite(value) ? Json(value) : Json(text);
   }
 
   static void add_cost(const input::Case &input, Json &reply)

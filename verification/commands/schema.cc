@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "support/ranks.h"
-#include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/input/files.h"
 

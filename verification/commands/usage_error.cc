@@ -1,11 +1,10 @@
-#include "verification/commands/usage_error.h"
+#include "verification/commands/command_line.h"
 
 #include <algorithm>
 
 #include <CLI/CLI.hpp>
 
 #include "verification/input/case_text.h"
-#include "verification/input/spelling.h"
 
 namespace latcon::commands
 {

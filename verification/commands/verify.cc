@@ -2,7 +2,6 @@
 
 #include "verification/claims/claim_inputs.h"
 #include "verification/claims/verdict_store.h"
-#include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/elements/elements.h"
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "support/errors.h"
-#include "verification/claims/run_claims.h"
+#include "verification/claims/claim_inputs.h"
 #include "verification/input/options.h"
 
 namespace latcon::elements
@@ -25,16 +25,8 @@ struct Elements
 /// @throws support::OutputError if it cannot be loaded
 [[nodiscard]] const Elements &elements();
 
-/// Finalises the libraries of the finite elements, if they were started, on destruction: to be created after MpiSession
-/// and before any call of elements().
-class Session
-{
-public:
-  Session() = default;
-  ~Session();
-  Session(const Session &) = delete;
-  Session &operator=(const Session &) = delete;
-};
+/// Finalises the libraries of the finite elements, if they were started: to be called once, before MPI ends.
+void finish();
 
 } // namespace latcon::elements
 

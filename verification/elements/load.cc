@@ -41,7 +41,7 @@ const Elements &elements()
   return table;
 }
 
-Session::~Session()
+void finish()
 {
   started.reset();
 }

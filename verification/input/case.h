@@ -25,6 +25,7 @@
 namespace latcon::lattice
 {
 struct ContactLaw;
+class Simulation;
 }
 
 namespace latcon::input
@@ -369,5 +370,10 @@ void require_no_plasticity(const Case &input, Parameters &parameters, const std:
 /// @param state of the sheet, which tells the held sites
 std::vector<lattice::Constraint> edge_constraints(const Case &input, const lattice::State &state,
                                                   const lattice::TriangularLattice &sheet);
+
+/// Returns the loaded sheet of a case with noise, ends, contact and the seed crack, before its first step. Collective.
+/// @param input a case that bridge::require_fracture_case() accepts @param band of input.sheet(); must outlive the
+/// result
+[[nodiscard]] std::unique_ptr<lattice::Simulation> cracked_sheet(const Case &input, const lattice::RowPartition &band);
 
 } // namespace latcon::input

@@ -147,9 +147,8 @@ void ContinuumCase::declare(Parameters &p)
         "material law of the finite element sheet: Cauchy-Born law of the lattice, its mean over all bond directions, "
         "or the "
         "plane-stress Mooney-Rivlin law calibrated along the loading path");
-  p.add("Continuum", "ratio", mooney_rivlin_ratio, Between{-0.9, 0.9}, "1",
-        "r = C2 / (C1 + C2) of the law mooney-rivlin; auto: calibrated along the loading path")
-    .read_by = ReadBy::claims;
+  p.add("Continuum", "ratio", mooney_rivlin_ratio, Range{-0.9, 0.9}, "1",
+        "r = C2 / (C1 + C2) of the law mooney-rivlin; auto: calibrated along the loading path");
   p.add("Continuum", "gradient", gradient,
         {{"none", ContinuumGradient::none},
          {"isotropic", ContinuumGradient::isotropic},
@@ -158,48 +157,46 @@ void ContinuumCase::declare(Parameters &p)
         "strain-gradient energy: none, (mu l_s^2 / 2) |Grad F|^2, the energy of the lattice's bonds, or its mean over "
         "all bond "
         "directions, for the law mooney-rivlin-network");
-  p.add("Continuum", "static length", static_length, MagnitudeOrZero{}, "m",
+  p.add("Continuum", "static length", static_length, magnitude_or_zero, "m",
         "l_s of the isotropic gradient energy; auto: fitted to the direction-averaged dispersion of the lattice");
-  p.add("Continuum", "inertia length", inertia_length, MagnitudeOrZero{}, "m",
+  p.add("Continuum", "inertia length", inertia_length, magnitude_or_zero, "m",
         "l_d of the micro-inertia and of the gradient energies lattice and network; auto: 0 without a gradient energy, "
         "fitted together with l_s for isotropic, the longest bond over sqrt(12) for the others");
-  p.add("Continuum", "penalty", penalty, Between{0.1, 1000.}, "1",
+  p.add("Continuum", "penalty", penalty, Range{0.1, 1000.}, "1",
         "gamma: penalty gamma p (p + 1) / h on jumps of the normal derivative");
-  p.add("Continuum", "cells x", cells_x, Between{1., 65536.},
-        "number of cells along x of a sheet without hole or notch");
-  p.add("Continuum", "cells y", cells_y, Between{1., 65536.},
-        "number of cells along y of a sheet without hole or notch");
-  p.add("Continuum", "refinements", refinements, Between{0., 12.},
+  p.add("Continuum", "cells x", cells_x, Range{1., 65536.}, "number of cells along x of a sheet without hole or notch");
+  p.add("Continuum", "cells y", cells_y, Range{1., 65536.}, "number of cells along y of a sheet without hole or notch");
+  p.add("Continuum", "refinements", refinements, Range{0., 12.},
         "number of uniform refinements of the mesh of a sheet with a hole or a notch, or of a mesh from a file");
   p.add("Continuum", "mesh file", mesh_file,
         "Gmsh mesh of quadrilaterals [m] that replaces the sheet; physical curves named left, right, bottom, top, "
         "inner, or without names 0 to 4");
-  p.add("Continuum", "degree", degree, Between{1., 5.},
+  p.add("Continuum", "degree", degree, Range{1., 5.},
         "polynomial degree p of the elements; at least 2 with a gradient energy");
-  p.add("Continuum", "adaptive cycles", adaptive_cycles, Between{0., 30.},
+  p.add("Continuum", "adaptive cycles", adaptive_cycles, Range{0., 30.},
         "number of adaptive mesh refinements after the loading");
-  p.add("Continuum", "refined fraction", refined_fraction, Between{0.001, 1.}, "1",
+  p.add("Continuum", "refined fraction", refined_fraction, Range{0.001, 1.}, "1",
         "fraction of the cells refined in each adaptive cycle");
-  p.add("Continuum", "reaction tolerance", reaction_tolerance, Magnitude{}, "1",
+  p.add("Continuum", "reaction tolerance", reaction_tolerance, magnitude, "1",
         "largest relative change of the largest reaction in the last adaptive cycle that counts as converged; "
         "auto: the change is reported without a verdict");
-  p.add("Continuum", "first load step", first_load_step, Between{0.001, 1.}, "1", "first increment of the load factor");
-  p.add("Continuum", "relative tolerance", relative_tolerance, Between{1e-14, 1e-4}, "1",
+  p.add("Continuum", "first load step", first_load_step, Range{0.001, 1.}, "1", "first increment of the load factor");
+  p.add("Continuum", "relative tolerance", relative_tolerance, Range{1e-14, 1e-4}, "1",
         "relative residual at which Newton's method stops, not below its round-off");
   p.add(
-    "Continuum", "direct limit", direct_limit, Between{0., 1e7},
+    "Continuum", "direct limit", direct_limit, Range{0., 1e7},
     "largest number of unknowns for the direct solver; above it multigrid with conjugate gradients or, with viscosity "
     "or Maxwell branches, GMRES");
   p.add("Continuum", "solution", solution, {{"equilibrium", Solution::equilibrium}, {"motion", Solution::motion}},
         "what `latcon continuum` computes: static equilibrium, or the motion until the end time");
   p.add(
-    "Continuum", "time step", time_step, Magnitude{}, "s",
+    "Continuum", "time step", time_step, magnitude, "s",
     "time step of the motion; auto: half the time in which a longitudinal wave crosses a cell, at most a tenth of the "
     "shortest relaxation time");
   p.add("Continuum", "rule", rule,
         {{"average-acceleration", Rule::average_acceleration}, {"generalised-alpha", Rule::generalised_alpha}},
         "time integration scheme");
-  p.add("Continuum", "spectral radius", spectral_radius, Between{0., 1.}, "1",
+  p.add("Continuum", "spectral radius", spectral_radius, Range{0., 1.}, "1",
         "spectral radius of generalised-alpha at high frequencies: 1 conserves their energy, 0 removes it in one step");
   for (std::size_t id = 0; id < edges.size(); ++id)
     edges[id].declare(p, id < 4);

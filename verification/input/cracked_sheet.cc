@@ -1,6 +1,6 @@
-#include "verification/input/cracked_sheet.h"
-
 #include "lattice/seed.h"
+#include "lattice/simulation.h"
+#include "verification/input/case.h"
 
 namespace latcon::input
 {

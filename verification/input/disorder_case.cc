@@ -36,7 +36,7 @@ void DisorderCase::declare(Parameters &parameters)
                  "its elastic and viscous force and its energy");
   parameters.add("Disorder", "stiffness width", stiffness.width, width, "1",
                  "standard deviation of the factor of the cross-section, in the range of `strength width`");
-  parameters.add("Disorder", "seed", seed, Any{}, "seed of the factors of the bonds");
+  parameters.add("Disorder", "seed", seed, any_number, "seed of the factors of the bonds");
 }
 
 void DisorderCase::check(Parameters &parameters) const

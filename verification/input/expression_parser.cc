@@ -11,7 +11,6 @@
 #include <muParser.h>
 
 #include "verification/input/case_text.h"
-#include "verification/input/spelling.h"
 
 namespace latcon::input
 {

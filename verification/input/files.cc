@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include "verification/input/case_text.h"
-#include "verification/input/spelling.h"
 
 namespace latcon::input
 {

@@ -1,7 +1,10 @@
-/// Files that come with latcon, and input files of the user: cases and studies.
+/// Files that come with latcon, input files of the user, cases and studies, and hashes of files.
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace latcon::input
@@ -45,5 +48,11 @@ struct InputFile
 /// Shipped cases, as a hint for a user whose file was not found: "; nearest shipped case: quick" or
 /// "; shipped cases: fig1, quick". @param path as the user gave it
 [[nodiscard]] std::string shipped_case_hint(const std::string &path);
+
+/// Returns the SHA-256 (FIPS 180-4) of `bytes`, as 64 hexadecimal digits.
+[[nodiscard]] std::string sha256(std::string_view bytes);
+
+/// Returns the SHA-256 of a file without its first `skipped` bytes; empty if the file cannot be read.
+[[nodiscard]] std::string sha256_of_file(const std::filesystem::path &path, std::size_t skipped = 0);
 
 } // namespace latcon::input

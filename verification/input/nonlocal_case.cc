@@ -12,14 +12,15 @@ void NonlocalCase::declare(Parameters &p)
         {{"square", lattice::Grid::Kind::square}, {"triangular", lattice::Grid::Kind::triangular}},
         "grid of the points of the nonlocal continuum that `latcon fracture --side continuum` breaks; its rows have the "
         "orientation of the lattice's");
-  p.add("Nonlocal", "refinement", refinement, Between{1., 20.}, "1",
-        "m: spacing of the lattice over that of the grid; bonds keep the lengths of the lattice's shells, up to a spacing "
-        "of the grid; a point has at most 127 pairs of opposite ones");
-  p.add("Nonlocal", "half width", half_width, Between{0., 0.5236}, "rad",
+  p.add(
+    "Nonlocal", "refinement", refinement, Range{1., 20.}, "1",
+    "m: spacing of the lattice over that of the grid; bonds keep the lengths of the lattice's shells, up to a spacing "
+    "of the grid; a point has at most 127 pairs of opposite ones");
+  p.add("Nonlocal", "half width", half_width, Range{0., 0.5236}, "rad",
         "bonds leave points within this angle of the lattice's six directions in each shell: 0 rad: in these alone; 30 "
         "deg: in all directions");
   p.add(
-    "Nonlocal", "scatter", scatter, Between{0., 0.5}, "1",
+    "Nonlocal", "scatter", scatter, Range{0., 0.5}, "1",
     "points are displaced from the grid at random by up to so many of its spacings along x and along y, from `noise "
     "seed`; 0: a grid; 0.5: without any long-range order");
 }

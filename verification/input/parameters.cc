@@ -4,7 +4,6 @@
 #include "support/text_wrap.h"
 #include "verification/input/case_text.h"
 #include "verification/input/files.h"
-#include "verification/input/spelling.h"
 
 #include <cctype>
 #include <filesystem>

@@ -31,6 +31,8 @@ struct Range
   Bound lower, upper;
 
   Range(Bound from, Bound to) : lower(from), upper(to) {}
+  /// from <= x <= to
+  explicit Range(double from, double to = infinity) : lower{from, true}, upper{to, to < infinity} {}
 
   /// Not-a-number and infinities are in no range.
   [[nodiscard]] bool contains(double value) const;
@@ -42,34 +44,11 @@ struct Range
 };
 
 /// Every finite number.
-struct Any : Range
-{
-  Any() : Range({-infinity, false}, {infinity, false}) {}
-};
-
+inline const Range any_number({-Range::infinity, false}, {Range::infinity, false});
 /// 1e-20 <= x <= 1e20: positive quantities in any system of units. Products of a dozen such numbers are finite.
-struct Magnitude : Range
-{
-  Magnitude() : Range({1e-20, true}, {1e20, true}) {}
-};
-
-/// 0 <= x <= 1e20: as Magnitude, or zero.
-struct MagnitudeOrZero : Range
-{
-  MagnitudeOrZero() : Range({0., true}, {1e20, true}) {}
-};
-
-/// x >= lower
-struct AtLeast : Range
-{
-  explicit AtLeast(double lower) : Range({lower, true}, {infinity, false}) {}
-};
-
-/// lower <= x <= upper
-struct Between : Range
-{
-  Between(double lower, double upper) : Range({lower, true}, {upper, true}) {}
-};
+inline const Range magnitude(1e-20, 1e20);
+/// 0 <= x <= 1e20: as magnitude, or zero.
+inline const Range magnitude_or_zero(0., 1e20);
 
 /// Required and optional entries.
 enum class Presence
@@ -89,14 +68,6 @@ enum class ValueType
   text          ///< any text on one line
 };
 
-/// What reads an entry besides the runs of its case.
-enum class ReadBy
-{
-  runs,                ///< nothing
-  claims,              ///< every claim: verdicts depend on the entry
-  claims_on_user_laws, ///< every claim, if a shell has a law of the user
-};
-
 /// Declaration of one entry of a case.
 struct Declaration
 {
@@ -112,7 +83,6 @@ struct Declaration
   bool may_be_auto = false;                     ///< whether the word `auto` is allowed
   std::vector<std::string> words{};             ///< of ValueType::word
   std::string default_text{};                   ///< as a case file would hold it; meaningless if required
-  ReadBy read_by = ReadBy::runs;                ///< set where the entry is declared
 
   [[nodiscard]] std::string key() const { return section + "/" + name; }
 };
@@ -146,32 +116,30 @@ public:
   /// @param unit          SI unit, e.g. "m", "kg/m^3", "N s/m"; "1" for a pure number
   /// @param documentation what it is, in words and symbol
   /// @tparam Number       double or std::optional<double>
-  /// @return the declaration, valid until the next one, of which `read_by` may be set
   template <typename Number>
-  Declaration &add(const std::string &section, const std::string &name, Number &member, const Range &range,
-                   const std::string &unit, const std::string &documentation, Presence presence = Presence::optional);
+  void add(const std::string &section, const std::string &name, Number &member, const Range &range,
+           const std::string &unit, const std::string &documentation, Presence presence = Presence::optional);
 
   /// Real numbers, separated by commas, possibly none; `range` holds for each. All have a unit written, or none has.
-  Declaration &add(const std::string &section, const std::string &name, std::vector<double> &member, const Range &range,
-                   const std::string &unit, const std::string &documentation);
+  void add(const std::string &section, const std::string &name, std::vector<double> &member, const Range &range,
+           const std::string &unit, const std::string &documentation);
 
   /// Whole numbers. The range is compared in double precision, so bounds beyond 2^53 are blurred.
   /// @param member int, unsigned int or std::uint64_t
   template <typename Integer, typename = std::enable_if_t<std::is_integral_v<Integer>>>
-  Declaration &add(const std::string &section, const std::string &name, Integer &member, const Range &range,
-                   const std::string &documentation);
+  void add(const std::string &section, const std::string &name, Integer &member, const Range &range,
+           const std::string &documentation);
 
   /// `true` or `false`.
-  Declaration &add(const std::string &section, const std::string &name, bool &member, const std::string &documentation);
+  void add(const std::string &section, const std::string &name, bool &member, const std::string &documentation);
 
   /// A text on one line, without `#`, not ending in `\`; blanks around it are lost.
-  Declaration &add(const std::string &section, const std::string &name, std::string &member,
-                   const std::string &documentation);
+  void add(const std::string &section, const std::string &name, std::string &member, const std::string &documentation);
 
   /// One word out of several, each standing for a value of an enumeration.
   template <typename Enumeration, typename = std::enable_if_t<std::is_enum_v<Enumeration>>>
-  Declaration &add(const std::string &section, const std::string &name, Enumeration &member,
-                   const std::vector<std::pair<std::string, Enumeration>> &words, const std::string &documentation);
+  void add(const std::string &section, const std::string &name, Enumeration &member,
+           const std::vector<std::pair<std::string, Enumeration>> &words, const std::string &documentation);
 
   /// Reads a case file; problems are kept for finish().
   /// @param path name of the file; JSON if it ends in `.json`, deal.II's format otherwise
@@ -238,10 +206,10 @@ private:
     [[nodiscard]] std::string place() const; // where the value comes from
   };
 
-  Declaration &declare(Entry entry);
-  Declaration &add_words(const std::string &section, const std::string &name, const std::vector<std::string> &words,
-                         const std::function<void(std::size_t)> &set, const std::function<std::size_t()> &get,
-                         const std::string &documentation, ValueType type = ValueType::word);
+  void declare(Entry entry);
+  void add_words(const std::string &section, const std::string &name, const std::vector<std::string> &words,
+                 const std::function<void(std::size_t)> &set, const std::function<std::size_t()> &get,
+                 const std::string &documentation, ValueType type = ValueType::word);
   void take_override(const std::string &text);
   void set(const Assignment &assignment, const std::string &shown, bool is_override);
   void report(const std::string &place, const std::string &text);
@@ -260,9 +228,8 @@ private:
 };
 
 template <typename Enumeration, typename>
-Declaration &Parameters::add(const std::string &section, const std::string &name, Enumeration &member,
-                             const std::vector<std::pair<std::string, Enumeration>> &words,
-                             const std::string &documentation)
+void Parameters::add(const std::string &section, const std::string &name, Enumeration &member,
+                     const std::vector<std::pair<std::string, Enumeration>> &words, const std::string &documentation)
 {
   std::vector<std::string> names;
   std::vector<Enumeration> values;
@@ -271,7 +238,7 @@ Declaration &Parameters::add(const std::string &section, const std::string &name
     names.push_back(word);
     values.push_back(value);
   }
-  return add_words(
+  add_words(
     section, name, names, [&member, values](const std::size_t i) { member = values[i]; },
     [&member, values] { return std::find(values.begin(), values.end(), member) - values.begin(); }, documentation);
 }

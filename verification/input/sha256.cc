@@ -1,4 +1,4 @@
-#include "verification/input/sha256.h"
+#include "verification/input/files.h"
 
 #include <array>
 #include <fstream>

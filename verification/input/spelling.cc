@@ -1,4 +1,4 @@
-#include "verification/input/spelling.h"
+#include "verification/input/case_text.h"
 
 #include <algorithm>
 

@@ -20,6 +20,7 @@
 #include <string>
 #include <type_traits>
 #include <typeinfo>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -44,8 +45,7 @@ struct HasArchive<T, Archive, std::void_t<decltype(std::declval<T &>().archive(s
 template <class T>
 constexpr bool is_matrix = std::is_base_of_v<Eigen::MatrixBase<T>, T>;
 
-/// Archive that calls a function with each number of a record: which it is, a function that returns its name, its
-/// value.
+/// Archive that calls a function with each number of a record.
 template <bool loading, class Visit>
 class NumberArchive
 {
@@ -54,29 +54,18 @@ public:
   explicit NumberArchive(const Visit &visit) : visit_(visit) {}
 
   template <class T>
-  void operator()(const std::string &name, T &value)
+  void operator()(const std::string &, T &value)
   {
     if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::uint64_t>)
-      visit_(
-        number_++, [&] { return prefix_ + name; }, value);
+      visit_(value);
     else if constexpr (is_matrix<T>)
-      for (Eigen::Index i = 0; i < value.size(); ++i)
-        visit_(
-          number_++, [&] { return prefix_ + name + "_" + std::to_string(i); }, value.data()[i]);
+      std::for_each(value.data(), value.data() + value.size(), visit_);
     else
-    {
-      static_assert(HasArchive<T, NumberArchive>::value, "a record consists of numbers and of records");
-      const std::string outer = prefix_;
-      prefix_ += name + "_";
       value.archive(*this);
-      prefix_ = outer;
-    }
   }
 
 private:
   const Visit &visit_;
-  std::string prefix_;
-  std::size_t number_ = 0;
 };
 
 /// Common base of both archives, which decomposes objects into arrays and texts.
@@ -176,31 +165,31 @@ public:
     require(next == values.end(), name + "/sizes", "are less than the number of values");
   }
 
-  /// Archives many small objects as columns. Their archive() may contain only numbers and objects of numbers.
+  /// Archives many small objects as one list of real numbers. Their archive() may contain only numbers and objects of
+  /// numbers.
   template <class Record>
   void records(const std::string &name, std::vector<Record> &all)
   {
-    std::size_t n = all.size();
-    (*this)(name + "/n", n);
-    if constexpr (Archive::loads)
-      all.clear(); // grows as large as its first column is
-    if (n == 0)
-      return;
+    std::size_t per_record = 0;
     Record any{};
-    for_each_number(any,
-                    [&](std::size_t column, const auto &name_of, auto &number)
-                    {
-                      const std::string column_name = name + "/" + name_of();
-                      std::vector<std::decay_t<decltype(number)>> values;
-                      if constexpr (!Archive::loads)
-                        for_each_in_column(all, column, values, [&](auto &value) { values.push_back(value); });
-                      (*this)(column_name, values);
-                      require(values.size() == n, column_name, "has a length other than `n`");
-                      auto next = values.begin();
-                      all.resize(n);
-                      if constexpr (Archive::loads)
-                        for_each_in_column(all, column, values, [&](auto &value) { value = *next++; });
-                    });
+    for_each_number(any, [&](const auto &) { ++per_record; });
+    std::vector<double> values;
+    for (Record &record : all)
+      for_each_number(record, [&](const auto &number) { values.push_back(static_cast<double>(number)); });
+    (*this)(name, values);
+    require(values.size() % per_record == 0, name, "ends with an incomplete element");
+    all.resize(values.size() / per_record);
+    auto next = values.begin();
+    for (Record &record : all)
+      for_each_number(record,
+                      [&](auto &number)
+                      {
+                        using Number = std::decay_t<decltype(number)>;
+                        require(std::is_same_v<Number, double> ||
+                                  (*next >= 0. && *next <= 0x1p53 && std::floor(*next) == *next),
+                                name, "has a part where a whole number should be");
+                        number = static_cast<Number>(*next++);
+                      });
   }
 
 protected:
@@ -220,21 +209,6 @@ private:
   {
     NumberArchive<Archive::loads, Visit> archive(visit);
     record.archive(archive);
-  }
-
-  // Visits a number of each record, of the type of the values of its column.
-  template <class Record, class Number, class Visit>
-  static void for_each_in_column(std::vector<Record> &all, std::size_t column, const std::vector<Number> &,
-                                 const Visit &visit)
-  {
-    for (Record &record : all)
-      for_each_number(record,
-                      [&](std::size_t position, const auto &, auto &number)
-                      {
-                        if constexpr (std::is_same_v<std::decay_t<decltype(number)>, Number>)
-                          if (position == column)
-                            visit(number);
-                      });
   }
 
   template <class Range>

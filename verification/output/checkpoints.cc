@@ -12,9 +12,9 @@
 #include "support/ranks.h"
 #include "support/text_wrap.h"
 #include "verification/input/case.h"
+#include "verification/input/files.h"
 #include "verification/input/options.h"
 #include "verification/input/parameters.h"
-#include "verification/input/sha256.h"
 #include "verification/output/output_file.h"
 #include "verification/output/run_info.h"
 
@@ -25,7 +25,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-constexpr int schema = 4; // of the content of a file; other schemas cannot be read
+constexpr int schema = 5; // of the content of a file; other schemas cannot be read
 constexpr std::size_t n_kept = 2;
 constexpr std::size_t max_reported_differences = 3;
 const std::string first_words = "latcon checkpoint, SHA-256 of the bytes from 512 on: ";
@@ -75,15 +75,6 @@ std::string name_of(std::size_t step)
 }
 
 } // namespace
-
-void require_matching_time(const CheckpointPlace &place, std::size_t step, double time, double expected,
-                           double rounding)
-{
-  if (step != place.step || time != place.time)
-    throw std::invalid_argument("`step` or `time` differs from that in `run`");
-  if (!(std::abs(time - expected) <= rounding))
-    throw std::invalid_argument("`time` does not match the number of steps");
-}
 
 Checkpoints::Checkpoints(const input::Options &options, const input::Parameters &parameters, const input::Case &input,
                          std::string command)

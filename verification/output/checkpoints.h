@@ -37,11 +37,6 @@ public:
   using support::InputError::InputError;
 };
 
-/// Checks that `step` and `time` [s] match those of the checkpoint, and that the time equals `expected` within
-/// `rounding`. @throws std::invalid_argument otherwise
-void require_matching_time(const CheckpointPlace &place, std::size_t step, double time, double expected,
-                           double rounding);
-
 /// Checkpoints of a run: HDF5 files checkpoint-STEP.h5 in the folder `checkpoints` of its output directory, of which
 /// the last two are kept.
 ///

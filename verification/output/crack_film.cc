@@ -22,7 +22,7 @@ void CrackFilm::begin(bool resumed)
   if (!resumed)
   {
     add_frame();
-    next_frame_ = due_beyond(record_.tip().X(), next_frame_);
+    pass(record_.tip().X());
   }
   else if (is_enabled_ && simulation_.band().is_first())
     frames_->write_collection();
@@ -36,34 +36,30 @@ void CrackFilm::end()
 
 void CrackFilm::step()
 {
-  const double tip_X = record_.tip().X();
-  if (tip_X < next_frame_)
+  if (record_.tip().X() < next_frame_)
     return;
   add_frame();
-  next_frame_ = due_beyond(tip_X, next_frame_);
+  pass(record_.tip().X());
 }
 
-// Returns X at which the next frame is due after the tip has reached tip_X [m]. @param due X of a previous frame [m]
-double CrackFilm::due_beyond(double tip_X, double due) const
+// The next frame is due after the tip has passed tip_X [m].
+void CrackFilm::pass(double tip_X)
 {
-  while (tip_X >= due)
-    due += pitch_;
-  return due;
+  while (tip_X >= next_frame_)
+    next_frame_ += pitch_;
 }
 
-// @param first X of the tip of the first frame after the start [m]
-void CrackFilm::check_loaded(double first) const
+// Finds the frame that is next after those of a loaded record.
+void CrackFilm::follow_record()
 {
   std::vector<double> times{0.};
-  double next = first;
   for (const analysis::TipRecord &tip : record_.tip().records())
-    if (tip.X >= next)
+    if (tip.X >= next_frame_)
     {
       if (tip.t > 0.)
         times.push_back(tip.t);
-      next = due_beyond(tip.X, next);
+      pass(tip.X);
     }
-  lattice::require_archived(next_frame_ == next, "`next_frame` is not the next frame that is due");
   if (is_enabled_)
     lattice::require_archived(frames_->times() == times, "`times` of frames do not match the record of the tip");
 }

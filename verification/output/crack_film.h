@@ -37,16 +37,14 @@ public:
   template <class Archive>
   void archive(Archive &archive)
   {
-    const double first = next_frame_;
     archive("frames", *frames_);
-    archive("next_frame", next_frame_);
     if constexpr (Archive::loads)
-      check_loaded(first);
+      follow_record();
   }
 
 private:
-  void check_loaded(double first) const;
-  double due_beyond(double tip_X, double due) const;
+  void follow_record();
+  void pass(double tip_X);
   void add_frame();
 
   lattice::Simulation &simulation_;

@@ -111,7 +111,7 @@ void CrackRecord::record_tip()
     return;
   last_tip_ = tip;
   const Eigen::Vector2d X = simulation_.lattice().reference(*tip), x = simulation_.position(*tip);
-  tip_.add({simulation_.state().time, X.x(), X.y(), x.x(), x.y()}, simulation_.n_broken());
+  tip_.add({simulation_.state().time, X.x(), X.y(), x.x(), x.y(), simulation_.n_broken()});
 }
 
 void CrackRecord::energies()

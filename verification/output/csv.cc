@@ -1,5 +1,7 @@
 #include "verification/output/csv.h"
 
+#include <iomanip>
+#include <sstream>
 #include <stdexcept>
 
 #include "support/full_precision.h"
@@ -14,10 +16,9 @@ std::string csv_field(const std::string &text)
 {
   if (text.find_first_of(",\"\r\n") == std::string::npos)
     return text;
-  std::string quoted = "\"";
-  for (const char c : text)
-    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
+  std::ostringstream field;
+  field << std::quoted(text, '"', '"');
+  return field.str();
 }
 
 } // namespace

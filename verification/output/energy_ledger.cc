@@ -14,17 +14,6 @@ namespace
 // Of the energies of the sheet: sums of some 1e6 terms, over some 1e6 steps.
 constexpr double round_off = 1e-12;
 
-// @param lost steps of Runge-Kutta-Chebyshev whose energy the start of a motion may cost
-Tolerance allowed_imbalance(input::Case::Integrator integrator, double n_steps, double lost)
-{
-  const double n = support::largest_of({n_steps, 1.});
-  if (integrator == input::Case::Integrator::velocity_verlet)
-    return {support::largest_of({2e-4, 0.1 / n}),
-            "five times the largest of shipped cases at the automatic step; a tenth of a step of the start"};
-  return {support::largest_of({5e-3, lost / n}),
-          "three times the largest of shipped cases at the automatic step; twice what a start costs"};
-}
-
 } // namespace
 
 void LedgerCheck::add(const LedgerState &state)
@@ -64,14 +53,14 @@ double LedgerCheck::rate() const
   return largest_power_ > 0. ? largest_power_ / exchanged() : 0.;
 }
 
-Tolerance allowed_imbalance_of_crack(input::Case::Integrator integrator, double n_steps)
+Tolerance allowed_imbalance(input::Case::Integrator integrator, double n_steps, double lost)
 {
-  return allowed_imbalance(integrator, n_steps, 2.);
-}
-
-Tolerance allowed_imbalance_of_motion(input::Case::Integrator integrator, double n_steps)
-{
-  return allowed_imbalance(integrator, n_steps, 4.);
+  const double n = support::largest_of({n_steps, 1.});
+  if (integrator == input::Case::Integrator::velocity_verlet)
+    return {support::largest_of({2e-4, 0.1 / n}),
+            "five times the largest of shipped cases at the automatic step; a tenth of a step of the start"};
+  return {support::largest_of({5e-3, lost / n}),
+          "three times the largest of shipped cases at the automatic step; twice what a start costs"};
 }
 
 Tolerance allowed_imbalance_of_implicit_motion(double rate, double step)

@@ -78,12 +78,10 @@ private:
 // duration over the automatic step: steps do not resolve the start of a motion, the decay of its noise and the recoil
 // of its seed.
 
-/// Tolerance of a crack of the lattice [-].
-Tolerance allowed_imbalance_of_crack(input::Case::Integrator integrator, double n_steps);
-
-/// Tolerance of a motion of the lattice without a crack [-]. @param n_steps in which it exchanges its energy,
-/// theory.md, eq. (L.40)
-Tolerance allowed_imbalance_of_motion(input::Case::Integrator integrator, double n_steps);
+/// Tolerance of a motion of the lattice [-]. @param n_steps in which it exchanges its energy; without a crack,
+/// theory.md, eq. (L.40) @param lost steps of Runge-Kutta-Chebyshev whose energy its start may cost: 2 of a crack,
+/// otherwise 4
+Tolerance allowed_imbalance(input::Case::Integrator integrator, double n_steps, double lost);
 
 /// Tolerance of an implicit motion without a crack [-], theory.md, eq. (L.39).
 /// @param rate LedgerCheck::rate() [1/s] @param step [s]

@@ -22,15 +22,9 @@ void require(herr_t status, const std::string &what)
     throw Hdf5Error(what);
 }
 
-// Disables the error messages of HDF5; exceptions report errors.
-void disable_error_messages()
-{
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
-
 hid_t open_file(const std::string &path)
 {
-  disable_error_messages();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // no messages: exceptions report errors
   return H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
 }
 
@@ -103,7 +97,7 @@ Hdf5Handle::Hdf5Handle(std::int64_t id, int (*close)(std::int64_t), const std::s
 
 Hdf5Image::Hdf5Image()
 {
-  disable_error_messages();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const std::string what = "HDF5 cannot create a file in memory";
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, what);
   constexpr std::size_t increment = 1U << 20U;

@@ -24,14 +24,12 @@ public:
   /// @param spacing d of the lattice [m] @param length of the sheet [m]
   TipHistory(double spacing, double length) : spacing_(spacing), length_(length) {}
 
-  /// Adds a position. @param n_broken bonds broken so far
-  void add(const analysis::TipRecord &tip, std::size_t n_broken);
-
+  void add(const analysis::TipRecord &tip) { records_.push_back(tip); }
   const std::vector<analysis::TipRecord> &records() const { return records_; }
   /// Returns reference X of the tip [m]; 0 without a tip.
   double X() const { return records_.empty() ? 0. : records_.back().X; }
   /// Returns the Lagrangian speed over the last few spacings [m/s]; 0 if it is not yet known.
-  double speed() const { return speeds_.empty() ? 0. : speeds_.back(); }
+  double speed() const { return speed_after(records_.size()); }
 
   /// Returns crack.csv.
   std::string csv() const;
@@ -42,19 +40,16 @@ public:
   void archive(Archive &archive, double now)
   {
     archive.records("tip", records_);
-    archive("speeds", speeds_);
-    archive("broken_at_tip", broken_);
     if constexpr (Archive::loads)
       check_loaded(now);
   }
 
 private:
+  double speed_after(std::size_t n) const; // speed() after the first n records
   void check_loaded(double now) const;
 
   double spacing_, length_;
   std::vector<analysis::TipRecord> records_;
-  std::vector<double> speeds_;      // per record [m/s]
-  std::vector<std::size_t> broken_; // per record
 };
 
 /// Requires that the times of the elements of a loaded history increase up to the current time.

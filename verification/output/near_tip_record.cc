@@ -187,11 +187,10 @@ void NearTipRecord::check_loaded() const
   std::size_t samples = 0;
   for (const Block &block : blocks_)
   {
-    const std::size_t n = block.negative_zone_depth.samples;
+    const std::size_t n = block.backward_speeds.size();
     samples += n;
-    lattice::require_archived(block.vortices.size() == n && block.backward_speeds.size() == n &&
-                                block.following_speeds.size() == n && block.asymmetry.samples <= n &&
-                                block.wedge_angle.samples <= n,
+    lattice::require_archived(block.vortices.size() == n && block.following_speeds.size() == n &&
+                                block.asymmetry.size() <= n && block.wedge_angle.size() <= n,
                               "`blocks` have different numbers of samples");
   }
   lattice::require_archived(samples == sampler_.samples(),
@@ -220,10 +219,8 @@ void NearTipRecord::step()
   Block &block = blocks_[sample->block];
   const analysis::NearTipField field = sample->sums.mean();
   if (const auto asymmetry = analysis::velocity_asymmetry(field))
-    block.asymmetry.add(*asymmetry);
+    block.asymmetry.push_back(*asymmetry);
   block.backward_speeds.push_back(analysis::backward_speeds(field));
-  const std::vector<double> &backward = block.backward_speeds.back();
-  block.negative_zone_depth.add(backward.empty() ? 0. : *std::min_element(backward.begin(), backward.end()));
   block.following_speeds.push_back(analysis::speeds_behind_tip(field));
   block.vortices.emplace_back();
   for (const analysis::Vortex &vortex : analysis::vortices(field, 0., vortices_within * d))
@@ -233,7 +230,7 @@ void NearTipRecord::step()
   const double stretch = deformation_(0, 0);
   if (const auto angle =
         analysis::wedge_angle(sample->sites, pitch, flanks_from * d * stretch, flanks_to * d * stretch))
-    block.wedge_angle.add(*angle * 180. / M_PI);
+    block.wedge_angle.push_back(*angle * 180. / M_PI);
 }
 
 void NearTipRecord::write(const std::filesystem::path &directory, const analysis::CrackMeasurement &crack)
@@ -293,37 +290,40 @@ std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack)
         values.push_back(*block[n].second);
     put_measured(numbers[n].first, numbers[n].second, uncertainty(values));
   }
-  const auto put_sums = [&](const std::string &name, auto sum_of)
+  // Adds the mean over samples of the values of each block.
+  const auto put_means = [&](const std::string &name, const auto &values_of)
   {
-    Sum all;
+    double sum = 0.;
+    std::size_t n = 0;
     std::vector<double> means;
     for (const Block &block : blocks_)
-    {
-      const Sum sum = sum_of(block);
-      all.value += sum.value;
-      all.samples += sum.samples;
-      if (sum.samples > 0)
-        means.push_back(*sum.mean());
-    }
-    put_measured(name, all.mean(), uncertainty(means));
+      if (const std::vector<double> values = values_of(block); !values.empty())
+      {
+        const double of_block = std::accumulate(values.begin(), values.end(), 0.);
+        sum += of_block;
+        n += values.size();
+        means.push_back(of_block / static_cast<double>(values.size()));
+      }
+    put_measured(name, n > 0 ? std::optional<double>(sum / static_cast<double>(n)) : std::nullopt, uncertainty(means));
   };
-  put_sums("velocity_asymmetry_of_samples", [](const Block &block) { return block.asymmetry; });
-  put_sums("negative_zone_depth_of_samples", [](const Block &block) { return block.negative_zone_depth; });
-  // Adds the mean over samples of a function of the speeds stored per sample; no value without their threshold.
+  put_means("velocity_asymmetry_of_samples", [](const Block &block) { return block.asymmetry; });
+  // The same of a function of the speeds stored per sample; no value without their threshold.
   const auto put_speeds =
     [&](const std::string &name, auto speeds_of, const std::optional<double> &needed, auto value_of)
   {
-    put_sums(name,
-             [&](const Block &block)
-             {
-               Sum sum;
-               if (needed)
-                 for (const std::vector<double> &speeds : block.*speeds_of)
-                   if (const std::optional<double> value = value_of(speeds))
-                     sum.add(*value);
-               return sum;
-             });
+    put_means(name,
+              [&](const Block &block)
+              {
+                std::vector<double> values;
+                if (needed)
+                  for (const std::vector<double> &speeds : block.*speeds_of)
+                    if (const std::optional<double> value = value_of(speeds))
+                      values.push_back(*value);
+                return values;
+              });
   };
+  put_speeds("negative_zone_depth_of_samples", &Block::backward_speeds, 0.,
+             [](const auto &speeds) { return speeds.empty() ? 0. : *std::min_element(speeds.begin(), speeds.end()); });
   const auto turning = [&](const auto &speeds) { return number_above(speeds, vortex_limit * *laboratory_speed); };
   put_speeds("vortices_of_samples", &Block::vortices, laboratory_speed, turning);
   put_speeds("samples_with_vortex", &Block::vortices, laboratory_speed,
@@ -338,7 +338,7 @@ std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack)
              });
   put_speeds("process_zone_share_of_samples", &Block::following_speeds, process_zone_speed,
              [&](const auto &speeds) { return share_above(speeds, *process_zone_speed); });
-  put_sums("wedge_angle", [](const Block &block) { return block.wedge_angle; });
+  put_means("wedge_angle", [](const Block &block) { return block.wedge_angle; });
   put("process_zone_speed", process_zone_speed);
   put("far_opening_stress", far_opening_stress_);
   put("longitudinal_speed", wave_speeds_[0]);

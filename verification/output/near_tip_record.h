@@ -52,30 +52,9 @@ public:
   }
 
 private:
-  /// Sum of a measurement over the samples of a block.
-  struct Sum
-  {
-    double value = 0.;
-    std::size_t samples = 0;
-    void add(double number)
-    {
-      value += number;
-      ++samples;
-    }
-    std::optional<double> mean() const
-    {
-      return samples > 0 ? std::optional<double>(value / static_cast<double>(samples)) : std::nullopt;
-    }
-    template <class Archive>
-    void archive(Archive &archive)
-    {
-      archive("value", value);
-      archive("samples", samples);
-    }
-  };
   struct Block
   {
-    Sum asymmetry, negative_zone_depth, wedge_angle;
+    std::vector<double> asymmetry, wedge_angle; ///< of samples that have one
     // Per sample. The thresholds on these speeds are known at the end, with the speed of the crack.
     std::vector<std::vector<double>> vortices;         ///< speeds of vortices [m/s]
     std::vector<std::vector<double>> backward_speeds;  ///< see backward_speeds()
@@ -85,7 +64,6 @@ private:
     void archive(Archive &archive)
     {
       archive("asymmetry", asymmetry);
-      archive("negative_zone_depth", negative_zone_depth);
       archive("wedge_angle", wedge_angle);
       archive("vortices", vortices);
       archive("backward_speeds", backward_speeds);

@@ -1,10 +1,11 @@
 #include "verification/output/output_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <set>
 #include <system_error>
+
+#include <fnmatch.h>
 
 #include "support/atomic_file.h"
 #include "support/errors.h"
@@ -44,33 +45,16 @@ void write_names(const fs::path &folder, const Names &names)
   support::write_atomically(folder / output_list_name, text, support::Sync::yes);
 }
 
-bool fits(const std::string &file, const std::string &name)
-{
-  const std::size_t star = name.find('*');
-  if (star == std::string::npos)
-    return file == name;
-  const std::string begin = name.substr(0, star), end = name.substr(star + 1);
-  return file.size() > begin.size() + end.size() && file.compare(0, begin.size(), begin) == 0 &&
-         file.compare(file.size() - end.size(), end.size(), end) == 0 &&
-         std::all_of(file.begin() + static_cast<std::ptrdiff_t>(begin.size()),
-                     file.end() - static_cast<std::ptrdiff_t>(end.size()),
-                     [](const unsigned char c) { return std::isdigit(c) != 0 || c == '.'; });
-}
-
+// Whether a file has a name of the list, in which `*` stands for digits and dots.
 bool is_in(const Names &names, const fs::path &file)
 {
-  return std::any_of(names.begin(), names.end(),
-                     [&](const std::string &name) { return fits(file.filename().string(), name); });
-}
-
-// Returns the first name that is free.
-fs::path folder_for_earlier(const fs::path &folder)
-{
-  const fs::path plain = folder / "earlier-run";
-  fs::path aside = plain;
-  for (int i = 2; fs::exists(fs::symlink_status(aside)); ++i)
-    aside = plain.string() + "-" + std::to_string(i);
-  return aside;
+  const auto fits = [&file](std::string name)
+  {
+    if (const std::size_t star = name.find('*'); star != std::string::npos)
+      name.replace(star, 1, "+([0-9.])");
+    return fnmatch(name.c_str(), file.filename().c_str(), FNM_EXTMATCH) == 0;
+  };
+  return std::any_of(names.begin(), names.end(), fits);
 }
 
 } // namespace
@@ -118,7 +102,9 @@ fs::path archive_earlier_output(const fs::path &folder, const fs::path &keep)
         files.push_back(entry.path());
     if (files.empty())
       return {};
-    const fs::path aside = folder_for_earlier(folder);
+    fs::path aside = folder / "earlier-run"; // or the first name that is free
+    for (int i = 2; fs::exists(fs::symlink_status(aside)); ++i)
+      aside = folder / ("earlier-run-" + std::to_string(i));
     fs::create_directory(aside);
     for (const fs::path &file : files)
       fs::rename(file, aside / file.filename());

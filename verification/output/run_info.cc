@@ -3,7 +3,6 @@
 #include "support/full_precision.h"
 #include "support/ranks.h"
 #include "verification/input/files.h"
-#include "verification/input/sha256.h"
 #include "verification/output/output_file.h"
 
 #include <latcon_build_facts.h>
@@ -80,23 +79,11 @@ Json RunInfo::standard_facts(const std::optional<support::ExitCode> exit_code, c
           {"exit_code", exit_code ? Json(static_cast<int>(*exit_code)) : Json()}};
 }
 
-Stopwatch::Phase::Phase(Stopwatch &stopwatch, std::string name)
-  : stopwatch_(&stopwatch), name_(std::move(name)), start_(std::chrono::steady_clock::now())
+std::shared_ptr<void> Stopwatch::phase(const std::string &name)
 {
-}
-
-Stopwatch::Phase::~Phase()
-{
-  stop();
-}
-
-void Stopwatch::Phase::stop()
-{
-  if (stopwatch_ == nullptr)
-    return;
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-  stopwatch_->add(name_, elapsed.count());
-  stopwatch_ = nullptr;
+  const auto start = std::chrono::steady_clock::now();
+  return {this, [this, name, start](void *)
+          { add(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()); }};
 }
 
 void Stopwatch::add(const std::string &name, const double seconds)

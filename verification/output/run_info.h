@@ -21,26 +21,9 @@ namespace latcon::output
 class Stopwatch
 {
 public:
-  /// Phase from its construction until its destruction or stop(); the stopwatch must outlive it.
-  class Phase
-  {
-  public:
-    Phase(Stopwatch &stopwatch, std::string name);
-    ~Phase();
-    Phase(const Phase &) = delete;
-    Phase &operator=(const Phase &) = delete;
-
-    /// Ends the phase early; a second call does nothing.
-    void stop();
-
-  private:
-    Stopwatch *stopwatch_; // null once stopped
-    std::string name_;
-    std::chrono::steady_clock::time_point start_;
-  };
-
-  /// Starts a phase: `const auto phase = stopwatch.phase("assembly");`
-  [[nodiscard]] Phase phase(const std::string &name) { return Phase(*this, name); }
+  /// Starts a phase, which lasts as long as what is returned: `const auto phase = stopwatch.phase("assembly");`, ended
+  /// early by `phase.reset()`. The stopwatch must outlive it.
+  [[nodiscard]] std::shared_ptr<void> phase(const std::string &name);
 
   /// Adds a time [s] measured elsewhere.
   void add(const std::string &name, double seconds);

@@ -41,19 +41,6 @@ bool is_direct(const input::Case &input, const double unknowns)
          edges[2].condition == input::EdgeCase::Condition::periodic;
 }
 
-bool is_homogeneous(const input::Case &input)
-{
-  const input::ContinuumCase &c = input.continuum;
-  return !input.has_inner_edge() && c.mesh_file.empty() && c.body_force.is_zero() &&
-         std::all_of(c.edges.begin(), c.edges.begin() + 4,
-                     [](const input::EdgeCase &edge)
-                     {
-                       return edge.condition == input::EdgeCase::Condition::held && edge.displacement.x == "loading" &&
-                              edge.displacement.y == "loading" &&
-                              edge.normal_gradient != input::EdgeCase::NormalGradient::clamped;
-                     });
-}
-
 } // namespace
 
 ContinuumSize continuum_size(const input::Case &input)
@@ -129,10 +116,8 @@ double continuum_seconds(const input::Case &input, const ContinuumSize &size, co
   const input::ContinuumCase &c = input.continuum;
   const double entries = entries_per_row(c.degree, c.gradient != input::ContinuumGradient::none);
   constexpr double seconds_of_unknown = 8e-6, seconds_of_entry = 2e-7; // in a Newton iteration
-  // Newton iterations of the loading, of an adaptive cycle, and of a time step. For a homogeneous sheet the predictor
-  // is exact.
-  const double of_loading = is_homogeneous(input) ? 2. : 8.;
-  constexpr double of_cycle = 4., of_step = 2.;
+  // Newton iterations of the loading, of an adaptive cycle, and of a time step.
+  constexpr double of_loading = 8., of_cycle = 4., of_step = 2.;
   double work = c.solution == input::ContinuumCase::Solution::motion ? of_step * steps * size.unknowns : 0.;
   if (c.solution == input::ContinuumCase::Solution::equilibrium ||
       c.initial_base == input::ContinuumCase::Base::equilibrium)

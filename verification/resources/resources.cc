@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <sstream>
+
+#include <omp.h>
 
 #include "lattice/simulation.h"
 #include "support/errors.h"
@@ -13,7 +14,6 @@
 #include "support/ranks.h"
 #include "support/task_thread.h"
 #include "support/text_wrap.h"
-#include "verification/bridge/lattice_sheet.h"
 #include "verification/bridge/small_strain.h"
 #include "verification/output/near_tip_record.h"
 
@@ -72,47 +72,6 @@ double factors_per_place(const input::Case &input, bool breaks)
   const lattice::Disorder disorder = input.disorder.disorder();
   const double fields = (disorder.stiffness.is_none() ? 0. : 1.) + (breaks && !disorder.strength.is_none() ? 1. : 0.);
   return bytes_of_variable * fields * bonds_of_site(input);
-}
-
-// Returns the case of a small piece of the sheet, cheap to set up, with the same number of threads.
-input::Case small_piece(const input::Case &input)
-{
-  constexpr double rows = 120., sites = 28000.;
-  const double shortest = 8. * input.spacing, spacing = input.sheet().spacing();
-  input::Case piece = input;
-  piece.hole_radius = piece.notch_length = 0.;
-  piece.height = std::min(input.height, std::max(rows * spacing, shortest));
-  piece.length = std::min(input.length, std::max(sites * spacing * spacing / piece.height, shortest));
-  return piece;
-}
-
-// Measures the time of a step per site [s].
-double measured_seconds_per_site_step(const input::Case &input, const lattice::TimeStepping &stepping,
-                                      const bool breaks)
-{
-  using Clock = std::chrono::steady_clock;
-  constexpr double long_enough = 0.2; // [s]
-  const input::Case piece = small_piece(input);
-  const lattice::TriangularLattice sheet = piece.sheet();
-  const lattice::Material material = piece.material();
-  lattice::State state = bridge::lattice_state(piece, sheet);
-  lattice::add_noise(state, sheet, input.noise_amplitude * input.spacing, input.noise_seed);
-  std::optional<lattice::Fracture> fracture;
-  if (breaks)
-    fracture.emplace(sheet, material, *input.breaking_stretch, input.toughening_rule(), input.deformation());
-  lattice::Simulation simulation(sheet, material, std::move(state), stepping, std::move(fracture));
-  if (breaks && input.has_contact)
-    simulation.enable_contact(input.contact_law());
-  simulation.step();
-  const Clock::time_point start = Clock::now();
-  double elapsed = 0., steps = 0.;
-  do
-  {
-    simulation.step();
-    steps += 1.;
-    elapsed = std::chrono::duration<double>(Clock::now() - start).count();
-  } while (elapsed < long_enough);
-  return elapsed / steps / static_cast<double>(sheet.n_sites());
 }
 
 } // namespace
@@ -194,20 +153,15 @@ std::string memory_text(const MemoryNeed &need)
 double lattice_seconds(const input::Case &input, const lattice::TimeStepping &stepping, const RunKind run,
                        const double steps, const double frames)
 {
-  // Time one substep, because a whole step may take too long for an estimate.
-  const double parts = parts_of_first_step(input, stepping, run);
-  lattice::TimeStepping part = stepping;
-  part.step /= parts;
-  const double per_site_step = measured_seconds_per_site_step(input, part, run == RunKind::fracture);
   const lattice::TriangularLattice sheet = input.sheet();
-  const double sites = static_cast<double>(sheet.n_sites());
-  const double written = seconds_of_start + frames * sites * seconds_of_site_in_frame;
+  const double written = seconds_of_start + frames * static_cast<double>(sheet.n_sites()) * seconds_of_site_in_frame;
   if (run == RunKind::equilibrium)
-    return written + per_site_step * sites *
-                       std::max(evaluations_relaxed, evaluations_relaxed_per_column *
-                                                       static_cast<double>(std::max(sheet.columns(), sheet.rows())));
-  const double ranks = support::n_ranks();
-  return written + (run == RunKind::fracture ? beside_kernel : 1.) * per_site_step * sites * steps * parts / ranks;
+    return written + core_seconds(input, std::max(evaluations_relaxed,
+                                                  evaluations_relaxed_per_column *
+                                                    static_cast<double>(std::max(sheet.columns(), sheet.rows())))) /
+                       omp_get_max_threads();
+  return written + (run == RunKind::fracture ? beside_kernel : 1.) *
+                     core_seconds(input, steps * stepping.evaluations()) / (support::n_ranks() * omp_get_max_threads());
 }
 
 double expected_steps(const input::Case &input, const lattice::TimeStepping &stepping)

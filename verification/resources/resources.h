@@ -44,8 +44,7 @@ void require_memory(const MemoryNeed &need);
 /// included. Collective.
 [[nodiscard]] std::string memory_text(const MemoryNeed &need);
 
-/// Estimates the wall time of a lattice run [s] on this machine by timing the kernel on a small sheet of the same case
-/// for a fraction of a second. Collective.
+/// Estimates the wall time of a lattice run [s] from the number of its force evaluations.
 /// @param steps expected number of time steps
 /// @param frames number of frames written
 [[nodiscard]] double lattice_seconds(const input::Case &input, const lattice::TimeStepping &stepping, RunKind run,

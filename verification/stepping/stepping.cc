@@ -1,11 +1,9 @@
 // The lattice of a case, stepped from Python: the module latcon_stepping, which python/latcon/stepping.py wraps.
-#include <cstring>
 #include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <tuple>
-#include <type_traits>
 #include <vector>
 
 #include <pybind11/eigen.h>
@@ -13,9 +11,10 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include "lattice/simulation.h"
 #include "support/errors.h"
 #include "verification/bridge/lattice_sheet.h"
-#include "verification/input/cracked_sheet.h"
+#include "verification/output/archive.h"
 
 namespace py = pybind11;
 
@@ -23,68 +22,6 @@ namespace latcon::stepping
 {
 namespace
 {
-
-template <class T>
-struct IsVector : std::false_type
-{
-};
-template <class T, class Allocator>
-struct IsVector<std::vector<T, Allocator>> : std::true_type
-{
-};
-
-using Bytes = std::map<std::string, std::string>; // of what was archived, by name
-
-// Archive of the bytes of numbers, vectors and optional numbers, for the same program on the same machine.
-template <bool is_loading>
-class Archive
-{
-public:
-  static constexpr bool loads = is_loading;
-  explicit Archive(Bytes &bytes) : bytes_(bytes) {}
-
-  template <class T>
-  void operator()(const std::string &name, T &value)
-  {
-    if constexpr (IsVector<T>::value)
-    {
-      if constexpr (loads)
-        value.resize(of(name).size() / sizeof(value[0]));
-      exchange(name, value.data(), value.size() * sizeof(value[0]));
-    }
-    else if constexpr (std::is_trivially_copyable_v<T>)
-      exchange(name, &value, sizeof(T));
-    else
-    {
-      const std::string outer = prefix_;
-      prefix_ += name + "/";
-      value.archive(*this);
-      prefix_ = outer;
-    }
-  }
-
-private:
-  const std::string &of(const std::string &name) const
-  {
-    const auto found = bytes_.find(prefix_ + name);
-    lattice::require_archived(found != bytes_.end(), "`" + prefix_ + name + "` is missing");
-    return found->second;
-  }
-
-  void exchange(const std::string &name, void *value, std::size_t size)
-  {
-    if constexpr (loads)
-    {
-      lattice::require_archived(of(name).size() == size, "`" + prefix_ + name + "` is of another size");
-      std::memcpy(value, of(name).data(), size);
-    }
-    else
-      bytes_[prefix_ + name].assign(static_cast<const char *>(value), size);
-  }
-
-  Bytes &bytes_;
-  std::string prefix_;
-};
 
 // Sheet of a case with its seed crack. Arrays are views of its fields, over all places; sites() tells which are sites.
 class Sheet
@@ -182,16 +119,18 @@ public:
             {"imbalance", energies.imbalance()}};
   }
 
-  Bytes save()
+  // Returns the content of a checkpoint.
+  py::bytes save()
   {
-    Bytes bytes;
-    Archive<false> archive(bytes);
+    output::Hdf5Image image;
+    output::CheckpointWriter archive(&image);
     simulation_->archive(archive);
-    return bytes;
+    return image.take_bytes();
   }
-  void load(Bytes bytes)
+  void load(const std::string &file)
   {
-    Archive<true> archive(bytes);
+    const output::Hdf5File stored(file);
+    output::CheckpointReader archive(stored);
     simulation_->archive(archive);
   }
 
@@ -236,6 +175,10 @@ PYBIND11_MODULE(latcon_stepping, module)
       {
         PyErr_SetString(PyExc_ValueError, problem.what());
       }
+      catch (const output::Hdf5Error &problem)
+      {
+        PyErr_SetString(PyExc_ValueError, problem.what());
+      }
     });
   const py::call_guard<py::gil_scoped_release> without_lock;
   py::class_<Sheet>(module, "Sheet")
@@ -243,14 +186,7 @@ PYBIND11_MODULE(latcon_stepping, module)
     .def("step", &Sheet::step, without_lock)
     .def("kick", &Sheet::kick)
     .def("move_edges", &Sheet::move_edges)
-    .def("save",
-         [](Sheet &sheet)
-         {
-           py::dict bytes;
-           for (const auto &[name, content] : sheet.save())
-             bytes[py::str(name)] = py::bytes(content);
-           return bytes;
-         })
+    .def("save", &Sheet::save)
     .def("load", &Sheet::load)
     .def("sites", &Sheet::sites)
     .def("bonds", &Sheet::bonds)

@@ -1,4 +1,4 @@
-"""``latcon study``, ``latcon batch`` and ``latcon compare``, with the options that the program has parsed."""
+"""The commands of the program that are Python, with the options that the program has parsed."""
 from __future__ import annotations
 
 import dataclasses
@@ -15,19 +15,21 @@ from ..compare import compare
 from ..errors import BAD_INPUT, CLAIM_FAILED, DONE, INTERNAL_ERROR, INTERRUPTED, OUTPUT_FAILED, SOLVER_FAILED, LatconError
 from ..folder import FolderLock, prepare_run, remove, require_in_place, write_file
 from .batch import write_batch
+from .explain import explain, init
 from .outcome import RunOutcome, RunState, is_begun, read_outcome
 from .output import StudyResults, plan_table, result_table, study_csv, study_json
-from .plan import (PLAN_FILE, PlannedRun, Verification, base_text, parse_shard, plan_difference, plan_runs, plan_text,
+from .plan import (PLAN_FILE, PlannedRun, Verification, base_text, default_folder, parse_shard, plan_difference, plan_runs, plan_text,
                    read_requested_study, require_folder_of, require_no_refinement, runs_of_shard, verification_of)
 from .pool import run_processes
 from .program import Ended, InputError, Interrupted, Program, Signals, read_input
-from .record import Printed, Progress, Record, draw_page, output_is_lost, say_error
+from .record import Printed, Progress, Record, draw_page, output_is_lost, report, say_error
 from .study_file import Study, StudyRun
 from .sweep import MAX_NAME_LENGTH, combination_name, plain_number
 from .table import judge_study
 
 # Each shard holds the lock of the study for the time that writing its plan takes [s].
 _PATIENCE_WITH_SHARDS = 60.0
+_COMMANDS = {"batch": write_batch, "compare": compare, "entries": explain, "help": explain, "init": init, "report": report}
 
 
 def run(command: str, options: Mapping[str, Any]) -> int:
@@ -37,10 +39,12 @@ def run(command: str, options: Mapping[str, Any]) -> int:
     try:
         signals = Signals()
         program = Program(options)
+        if command in ("study", "batch"):
+            options = {**options, "output_dir": options["output_dir"] or default_folder(options["study"], bool(options["sweeps"]))}
         if command == "study":
             code = _StudyCommand(program, printed, signals, options).run()
         else:
-            code = (write_batch if command == "batch" else compare)(program, printed, options)
+            code = _COMMANDS[command](program, printed, options)
         message = ""
         if code == DONE and output_is_lost(printed):
             code, message = OUTPUT_FAILED, "cannot write standard output: it is closed or full"

@@ -4,9 +4,11 @@ All cases are checked before the first run starts.
 """
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import enum
 import json
+import math
 import os
 import pathlib
 import re
@@ -95,6 +97,18 @@ def base_text(program: Program, study: Study, overrides: Settings) -> str:
     return program.ask(changes=changes, seeds=[], checks_laws=True, wants_text=True)
 
 
+# Entries of zeta = (eta / a) / (d / sqrt(a / rho)), theory.md, eq. (L.5).
+_OF_ZETA = ("Nearest neighbours/law", "Nearest neighbours/a", "Nearest neighbours/viscosity", "Material/density", "Sheet/spacing")
+
+
+def _value(text: str) -> Any:
+    """Returns the value of an entry: a number or, if it is none, its text."""
+    with contextlib.suppress(ValueError):
+        if math.isfinite(number := float(text)):
+            return number
+    return text
+
+
 def plan_runs(program: Program, study: Study, overrides: Settings, verification: Verification) -> list[PlannedRun]:
     """Returns all runs of a study with all their seeds, in the order of the file, with the first and the last frame alone.
 
@@ -106,21 +120,25 @@ def plan_runs(program: Program, study: Study, overrides: Settings, verification:
             raise InputError(f"--set: {key} is also an entry of the sweep of {study.file}")
     keys = {key for run in study.runs for key in run.own} | set(study.swept)
     keys |= {row.against for claim in study.claims for row in claim.rows if row.against}
+    keys -= {"zeta"}
     frames = {"Output/frame interval": "0", "Output/motion frames": "0"}
     runs: list[PlannedRun] = []
     problems: list[str] = []
     for run in study.runs:
         changes = [f"{key}={value}" for key, value in (run.all | overrides | frames).items()]
         try:
-            reply = program.ask(changes=changes, seeds=run.seeds, on_continuum=run.on_continuum, keys=sorted(keys - {"zeta"}),
+            reply = program.ask(changes=changes, seeds=run.seeds, on_continuum=run.on_continuum, keys=sorted(keys | set(_OF_ZETA)),
                                 checks_laws=verification is Verification.EVERY_RUN, wants_text=False)
         except InputError as error:
             # A problem of the base case occurs in every run: report it once.
             problems += [f"{study.file}: runs/{run.name}: {problem}" for problem in error.args
                          if not any(known.endswith(": " + problem) for known in problems)]
         if not problems:
-            digests = reply.pop("sha256")
-            runs += [PlannedRun(run.name, seed, run.on_continuum, changes, case_sha256=digest, **reply)
+            digests, values = reply.pop("sha256"), {key: _value(text) for key, text in reply.pop("values").items()}
+            law, a, viscosity, density, spacing = (values[key] for key in _OF_ZETA)
+            zeta = viscosity / a * math.sqrt(a / density) / spacing if law == "mooney-rivlin" and a > 0 else None
+            values = {key: values[key] for key in sorted(keys)}
+            runs += [PlannedRun(run.name, seed, run.on_continuum, changes, values, digest, zeta=zeta, **reply)
                      for seed, digest in zip(run.seeds, digests)]
     if not problems:
         problems = [f"{row.place}/against: {row.against} is not a number in any of these runs"
@@ -136,6 +154,14 @@ def plan_runs(program: Program, study: Study, overrides: Settings, verification:
 
 SWEEP_FILE, PLAN_FILE = "sweep.json", "plan.json"
 """Study file that a sweep leaves in its output directory, and the plan there that the shards of a study share."""
+
+
+def default_folder(study: str, is_sweep: bool) -> str:
+    """Default output directory of a study; of the study file that a sweep wrote beside a copy of its case, its own folder."""
+    folder, name = os.path.split(study)
+    if name == SWEEP_FILE and any(os.path.exists(os.path.join(folder, base)) for base in ("base.prm", "base.json")):
+        return folder or os.getcwd()
+    return f"output/{os.path.splitext(name)[0]}{'-sweep' if is_sweep else ''}"
 
 
 @dataclasses.dataclass

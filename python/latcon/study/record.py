@@ -16,11 +16,11 @@ import time
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..errors import PACKAGES_MISSING, CLAIM_FAILED, DONE, INTERRUPTED
+from ..errors import BAD_INPUT, CLAIM_FAILED, DONE, INTERRUPTED, OUTPUT_FAILED, PACKAGES_MISSING
 from ..files import read_json, read_text
 from ..folder import FolderLock, add_to_list, archive, is_listed, write_atomically, write_file
 from ..program import page_command
-from .program import Ended, Program
+from .program import Ended, InputError, Program
 from .pool import start_child
 from .output import csv_text
 
@@ -203,6 +203,27 @@ def draw_page(kind: str, directory: str, page: str, repeat: str) -> bool:
     elif status:
         raise OSError(0, "the report script failed", f"{directory}/{page}")
     return status == 0
+
+
+def report(_: Program, __: Printed, options: Mapping[str, Any]) -> int:
+    """Draws pictures and page of a run, or of a folder of several."""
+    folder, out = options["word"], options["output_dir"]
+    if not os.path.isdir(folder):
+        raise InputError(f"{folder} is not a directory")
+    command = page_command("report", folder) + ["--animation"] * options["animation"]
+    if not options["quiet"]:
+        command.remove("--quiet")
+    if out:
+        os.makedirs(out, exist_ok=True)
+        command += ["--output-dir", out]
+    with FolderLock(out or folder):
+        status = subprocess.run(command, check=False).returncode
+    if status == PACKAGES_MISSING:
+        say_error(f"latcon: no report; every other file is complete. With these packages, draw it by: latcon report {folder}\n")
+        return OUTPUT_FAILED
+    if status not in (DONE, BAD_INPUT, CLAIM_FAILED, OUTPUT_FAILED):
+        raise OSError(0, "the report script failed", f"{folder}/report.html")
+    return status
 
 
 def output_is_lost(printed: Printed) -> bool:

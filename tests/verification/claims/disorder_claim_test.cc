@@ -10,7 +10,7 @@
 #include "lattice/bond_factors.h"
 #include "tests/verification/claims/faults.h"
 #include "verification/claims/disorder/disorder_claim.h"
-#include "verification/commands/claim_registry.h"
+#include "verification/commands/command.h"
 
 namespace disorder_claim_test
 {

@@ -14,7 +14,7 @@
 #include "verification/bridge/plane_waves.h"
 #include "verification/claims/relaxation/relaxation_claim.h"
 #include "verification/claims/viscoelastic_waves/viscoelastic_waves_claim.h"
-#include "verification/commands/claim_registry.h"
+#include "verification/commands/command.h"
 
 namespace memory_claims_test
 {

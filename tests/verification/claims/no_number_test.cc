@@ -15,9 +15,8 @@
 #include "tests/verification/claims/parts.h"
 #include "verification/claims/claim_inputs.h"
 #include "verification/claims/claim_list.h"
-#include "verification/claims/run_claims.h"
 #include "verification/claims/steady_crack/steady_crack_claim.h"
-#include "verification/commands/claim_registry.h"
+#include "verification/commands/command.h"
 
 namespace no_number_test
 {

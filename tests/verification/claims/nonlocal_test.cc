@@ -9,7 +9,7 @@
 #include "tests/verification/claims/faults.h"
 #include "verification/bridge/nonlocal_continuum.h"
 #include "verification/claims/nonlocal/nonlocal_claim.h"
-#include "verification/commands/claim_registry.h"
+#include "verification/commands/command.h"
 
 namespace nonlocal_test
 {

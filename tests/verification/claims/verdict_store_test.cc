@@ -4,7 +4,6 @@
 #include "support/errors.h"
 #include "verification/claims/verdict_store.h"
 #include "verification/input/files.h"
-#include "verification/input/sha256.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

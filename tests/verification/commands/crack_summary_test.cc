@@ -1,5 +1,6 @@
 // Summary of a crack for the terminal.
-#include "verification/commands/crack_summary.h"
+#include "verification/analysis/crack_measurement.h"
+#include "verification/commands/command.h"
 
 #include <algorithm>
 

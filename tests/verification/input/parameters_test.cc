@@ -201,8 +201,8 @@ TEST(Parameters, LinesDoNotDependOnHowTheCaseIsWritten)
   // Hashes of the lines are kept in files, so they must never change.
   double x = 0.5, y = 2.;
   Parameters p;
-  p.add("A", "x", x, Any(), "1", "x");
-  p.add("B", "y", y, Any(), "m", "y");
+  p.add("A", "x", x, any_number, "1", "x");
+  p.add("B", "y", y, any_number, "m", "y");
   EXPECT_EQ(p.lines(), "A/x = 0.5\nB/y = 2\n");
   EXPECT_EQ(p.lines("A"), "B/y = 2\n");
 }
@@ -212,11 +212,11 @@ TEST(Parameters, LinesDoNotDependOnTheOrderOfDeclaration)
   double x = 1.;
   double y = 2.;
   Parameters p;
-  p.add("A", "x", x, Any(), "1", "x");
-  p.add("A", "y", y, Any(), "1", "y");
+  p.add("A", "x", x, any_number, "1", "x");
+  p.add("A", "y", y, any_number, "1", "y");
   Parameters q;
-  q.add("A", "y", y, Any(), "1", "y");
-  q.add("A", "x", x, Any(), "1", "x");
+  q.add("A", "y", y, any_number, "1", "y");
+  q.add("A", "x", x, any_number, "1", "x");
   EXPECT_EQ(p.lines(), q.lines());
 }
 

@@ -57,8 +57,8 @@ struct Sample
   void declare(Parameters &p)
   {
     p.add("Lattice", "spacing", spacing, Above(0.), "m", "Distance d of nearest sites", Presence::required);
-    p.add("Lattice", "nearest neighbour area factor", area_factor, Between(0., 1.), "1", "Share s of the area");
-    p.add("Lattice", "rows", rows, AtLeast(2), "Rows of sites");
+    p.add("Lattice", "nearest neighbour area factor", area_factor, Range(0., 1.), "1", "Share s of the area");
+    p.add("Lattice", "rows", rows, Range(2), "Rows of sites");
     p.add("Lattice", "periodic", periodic, "Whether the ends are joined");
     p.add("Lattice", "law", law, {{"mooney-rivlin", Law::mooney_rivlin}, {"linear", Law::linear}}, "Law of the bonds");
     p.add("Lattice", "density", density, Above(0.), "kg/m^2", "Mass per area");
@@ -66,8 +66,8 @@ struct Sample
           {{"none", Rule::none}, {"behind-tip", Rule::behind_tip}, {"retraction", Rule::retraction}},
           "Toughening rule");
     p.add("Fracture", "stretches", stretches, Above(0.), "1", "Stretches to visit");
-    p.add("Run", "steps", steps, Any(), "Number of steps");
-    p.add("Run", "seed", seed, Any(), "Seed of the noise");
+    p.add("Run", "steps", steps, any_number, "Number of steps");
+    p.add("Run", "seed", seed, any_number, "Seed of the noise");
     p.add("Run", "title", title, "Title of the output");
     p.add("Run", "time step", time_step, Above(0.), "s", "Time step");
   }

@@ -1,5 +1,5 @@
 // Typing errors are counted as a typist would.
-#include "verification/input/spelling.h"
+#include "verification/input/case_text.h"
 
 #include <gtest/gtest.h>
 

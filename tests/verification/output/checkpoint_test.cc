@@ -225,12 +225,13 @@ TEST_F(HostileArchive, IsRefused)
   }
   put<std::uint64_t>("a/n", {many});
   expect_refused("a number of objects from the file", std::deque<Inner>(3));
-  put<std::uint64_t>("a/n", {many});
-  for (const char *column : {"time", "midpoint_0", "midpoint_1", "stretch", "energy"})
-    put<double>(std::string("a/") + column, {1.});
-  for (const char *column : {"near", "far", "kind"})
-    put<std::uint64_t>(std::string("a/") + column, {1});
-  expect_refused("more records than their columns are long", std::vector<lattice::BrokenBond>());
+  put<double>("a", std::vector<double>(9, 1.));
+  expect_refused("a part of a record", std::vector<lattice::BrokenBond>());
+  for (const double number : {-1., 0.5, 1e300})
+  {
+    put<double>("a", std::vector<double>(8, number));
+    expect_refused("no whole number", std::vector<lattice::BrokenBond>());
+  }
   image_->write_text("a", std::string("one\0two", 7));
   expect_refused("a text that ends early", std::string());
 }

@@ -79,13 +79,14 @@ TEST(AllowedImbalance, OfAnImplicitMotionIsOfSecondOrderUpToACeiling)
 TEST(AllowedImbalance, OfAMotionOfFewStepsIsThatOfItsStart)
 {
   using Integrator = latcon::input::Case::Integrator;
-  for (const auto allowed : {latcon::output::allowed_imbalance_of_crack, latcon::output::allowed_imbalance_of_motion})
+  for (const double lost : {2., 4.})
     for (const Integrator integrator : {Integrator::velocity_verlet, Integrator::runge_kutta_chebyshev})
     {
-      EXPECT_DOUBLE_EQ(*allowed(integrator, 5.), 10. * *allowed(integrator, 50.));
-      EXPECT_EQ(*allowed(integrator, 1e4), *allowed(integrator, 1e5));
-      EXPECT_TRUE(std::isnan(*allowed(integrator, std::numeric_limits<double>::quiet_NaN())));
-      EXPECT_FALSE(allowed(integrator, 5.).reason.empty());
+      const auto allowed = [&](double n) { return latcon::output::allowed_imbalance(integrator, n, lost); };
+      EXPECT_DOUBLE_EQ(*allowed(5.), 10. * *allowed(50.));
+      EXPECT_EQ(*allowed(1e4), *allowed(1e5));
+      EXPECT_TRUE(std::isnan(*allowed(std::numeric_limits<double>::quiet_NaN())));
+      EXPECT_FALSE(allowed(5.).reason.empty());
     }
 }
 

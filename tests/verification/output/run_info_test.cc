@@ -38,11 +38,11 @@ TEST(Stopwatch, AddsUpThePhases)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   auto phase = stopwatch.phase("nothing");
-  phase.stop();
+  phase.reset();
   ASSERT_EQ(stopwatch.times().size(), 2u);
   const double seconds = stopwatch.times()[1].second;
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  phase.stop();
+  phase.reset();
   ASSERT_EQ(stopwatch.times().size(), 2u);
   EXPECT_EQ(stopwatch.times()[0].first, "sleep");
   EXPECT_GE(stopwatch.times()[0].second, 0.04);

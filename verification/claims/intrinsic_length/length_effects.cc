@@ -146,7 +146,7 @@ Alpha running_alpha(double spacing, lattice::Orientation orientation, const Wave
     const WaveCell cell = wave_cell(spacing, orientation, direction, lengths[i]);
     const double x = std::pow(cell.K.norm() * spacing, 2);
     powers.row(i) << 1., x, x * x, x * x * x;
-    const std::array<Oscillation, 2> waves = lattice_waves(cell, material, F);
+    const std::vector<Oscillation> waves = lattice_waves(cell, material, F);
     for (int w = 0; w < 2; ++w)
       squares(i, w) = std::pow(waves[static_cast<std::size_t>(w)].frequency, 2) / x;
   }

@@ -23,8 +23,8 @@ constexpr double compared_kd = 0.25;
 constexpr double gradient_tolerance = 1e-4;
 
 // Frequency and decay of plane waves or of oscillations.
-template <class Wave>
-std::array<double, 2> frequencies(const std::array<Wave, 2> &waves)
+template <class Waves>
+std::array<double, 2> frequencies(const Waves &waves)
 {
   return {waves[0].frequency, waves[1].frequency};
 }
@@ -225,7 +225,7 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
     outcome.results, "wave-speeds",
     support::text_of(subject.name, ", ", state_name(F), ", kd = ", std::round(1e4 * k * subject.spacing) / 1e4, ": "));
   // If a wave does not oscillate, its rows fail.
-  std::array<Oscillation, 2> run{{{unknown, unknown, 0.}, {unknown, unknown, 0.}}}, elements = run;
+  std::vector<Oscillation> run(2, {unknown, unknown, 0.}), elements = run;
   rows.attempt("lattice run, damped waves",
                [&] { run = lattice_waves(cell, options.planted(material), F, options.integrator); });
   // Waves this long hardly feel the gradient energy: the error in space is below 1e-6.
