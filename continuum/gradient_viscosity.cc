@@ -150,4 +150,23 @@ void GradientViscosity::add_density(const FieldDerivatives &u, const FieldDeriva
     }
   }
 }
+
+double GradientViscosity::dissipation(const Tensor<2, 2> &F, const Tensor<3, 2> &G, const Tensor<2, 2> &Fdot,
+                                      const Tensor<3, 2> &Gdot) const
+{
+  const auto derivatives = [](const Tensor<2, 2> &first, const Tensor<3, 2> &second)
+  {
+    FieldDerivatives all;
+    for (unsigned int i = 0; i < 2; ++i)
+      all[i] = {first[i][0], first[i][1], second[i][0][0], second[i][1][1], second[i][0][1]};
+    return all;
+  };
+  FieldDerivatives u = derivatives(F, G);
+  for (unsigned int i = 0; i < 2; ++i)
+    u[i][i] -= 1.;
+  PointIntegrand density;
+  clear(density, Order::value);
+  add_density(u, derivatives(Fdot, Gdot), Order::value, 0., density);
+  return density.value;
+}
 } // namespace latcon::continuum

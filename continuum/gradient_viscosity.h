@@ -27,6 +27,10 @@ public:
   void add_density(const FieldDerivatives &u, const FieldDerivatives &v, Order order, double rate_by_displacement,
                    PointIntegrand &density) const;
 
+  /// Returns the dissipated power [W/m^3] in the state F, G = Grad F [1/m] with the rates Fdot [1/s] and Grad Fdot.
+  double dissipation(const dealii::Tensor<2, 2> &F, const dealii::Tensor<3, 2> &G, const dealii::Tensor<2, 2> &Fdot,
+                     const dealii::Tensor<3, 2> &Gdot) const;
+
 private:
   // A dashpot contributes two terms (1/2) factor (d/dt n_i G_iJK S_JK)^2.
   struct Term

@@ -152,7 +152,7 @@ Sheet::Vector Sheet::lift() const
   return nodal;
 }
 
-std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point<2>> &points) const
+std::vector<PointState> Sheet::gradients(const Vector &u, const std::vector<Point<2>> &points) const
 {
   // Each cell has one owner, so the mean over the cells that contain a point is independent of the partition.
   constexpr unsigned int n_sums = 15; // u (2), F (4), G (8), number of cells
@@ -218,6 +218,15 @@ std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point
           state.G[i][J][K] = sum[6 + 4 * i + 2 * J + K] / count;
       }
     }
+  }
+  return states;
+}
+
+std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point<2>> &points) const
+{
+  std::vector<PointState> states = gradients(u, points);
+  for (PointState &state : states)
+  {
     state.P = constitution_.first_piola_stress(state.X, state.F, state.G);
     state.Q = constitution_.double_stress(state.F, state.G);
     state.energy_density = constitution_.energy(state.X, state.F, state.G);

@@ -99,6 +99,9 @@ public:
   /// point is outside the mesh by more than 1e-8 of a cell, or not finite.
   std::vector<PointState> evaluate(const Vector &u, const std::vector<dealii::Point<2>> &points) const;
 
+  /// Returns the same without stresses and energy density, of any field with F = I + Grad u.
+  std::vector<PointState> gradients(const Vector &u, const std::vector<dealii::Point<2>> &points) const;
+
   /// Returns the range of det F over all quadrature points. Does not throw for det F <= 0.
   DeterminantRange determinant_range(const Vector &u) const;
 

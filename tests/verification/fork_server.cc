@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -62,7 +63,8 @@ void redirect(int descriptor, const std::string &path)
     argv.push_back(argument.data());
   argv.push_back(nullptr);
   // A fork cannot end MPI, as they do before they become Python.
-  if (arguments.size() > 1 && (arguments[1] == "study" || arguments[1] == "batch" || arguments[1] == "compare"))
+  const std::set<std::string> python{"study", "batch", "compare", "report", "entries", "help", "init"};
+  if (arguments.size() > 1 && python.count(arguments[1]) > 0)
   {
     execv("/proc/self/exe", argv.data());
     _exit(99);

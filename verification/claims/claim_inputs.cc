@@ -25,15 +25,6 @@ bool has_user_law(const input::Case &input)
 // Claims choose their own sheets; a subject needs one for its bonds alone.
 constexpr double sheet_size = 12.; // spacings
 
-// Entries that all claims read besides those of the shells, of which claims have no plastic ones.
-const std::set<std::string> read_by_all{"Continuum/ratio",  "Loading/shear", "Loading/strain x", "Loading/strain y",
-                                        "Material/density", "Sheet/spacing", "Sheet/orientation"};
-const std::set<std::string> plastic{"plastic modulus", "yield stress", "hardening modulus"};
-// The stretches up to which user-defined laws have values depend on these.
-const std::set<std::string> read_on_user_laws{
-  "Fracture/breaking stretch", "Fracture/factor",       "Fracture/rate factor",     "Fracture/shell factors",
-  "Fracture/toughening",       "Loading/history times", "Loading/history strain x", "Loading/history strain y"};
-
 // Lines `Section/Name=value` of the entries that claims may read.
 std::vector<std::string> assignments(const input::Case &input, const std::vector<std::string> &further)
 {
@@ -41,13 +32,10 @@ std::vector<std::string> assignments(const input::Case &input, const std::vector
   input::Parameters parameters;
   copy.declare(parameters);
   std::set<std::string> keys(further.begin(), further.end());
-  keys.insert(read_by_all.begin(), read_by_all.end());
-  const auto &shells = input::Case::shell_sections;
   for (const input::Declaration &entry : parameters.declarations())
-    if (std::count(shells.begin(), shells.end(), entry.section) > 0 && plastic.count(entry.name) == 0)
+    if (entry.read_by == input::ReadBy::claims ||
+        (entry.read_by == input::ReadBy::claims_on_user_laws && has_user_law(input)))
       keys.insert(entry.key());
-  if (has_user_law(input))
-    keys.insert(read_on_user_laws.begin(), read_on_user_laws.end());
   std::vector<std::string> lines;
   for (const std::string &key : keys)
     lines.push_back(key + "=" + parameters.value(key));

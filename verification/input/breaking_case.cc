@@ -20,8 +20,10 @@ void BreakingCase::declare(Parameters &p)
     "the stretch; or more energy in its spring, per reference volume, than a nearest-neighbour bond stores at lam_f");
   p.add("Fracture", "shell factors", shell_factors, Range{0.01, 100.}, "1",
         "critical-stretch: lam_f of the nearest, next-nearest and third-nearest neighbours over `breaking stretch`; "
-        "empty: 1");
-  p.add("Fracture", "rate factor", rate_factor, Range{1., 100.}, "1", "rate-stretch: k, factor of lam_f at high rates");
+        "empty: 1")
+    .read_by = ReadBy::claims_on_user_laws;
+  p.add("Fracture", "rate factor", rate_factor, Range{1., 100.}, "1", "rate-stretch: k, factor of lam_f at high rates")
+    .read_by = ReadBy::claims_on_user_laws;
   p.add("Fracture", "rate time", rate_time, magnitude, "s",
         "rate-stretch: tau; at the rate 1 / tau half of the increase is reached");
 }

@@ -15,7 +15,8 @@ namespace latcon::input
 void Case::declare(Parameters &p)
 {
   p.add("Sheet", "spacing", spacing, magnitude, "m", "lattice spacing d: undeformed distance between nearest sites",
-        Presence::required);
+        Presence::required)
+    .read_by = ReadBy::claims;
   p.add("Sheet", "length", length, magnitude, "m",
         "undeformed length along x, the direction of the crack; rounded to whole rows or columns of sites",
         Presence::required);
@@ -24,7 +25,8 @@ void Case::declare(Parameters &p)
   p.add("Sheet", "orientation", orientation,
         {{"rows-along-crack", lattice::Orientation::rows_along_crack},
          {"rows-across-crack", lattice::Orientation::rows_across_crack}},
-        "orientation of the lattice: close-packed rows along x, or along y (rotated by 30 degrees)");
+        "orientation of the lattice: close-packed rows along x, or along y (rotated by 30 degrees)")
+    .read_by = ReadBy::claims;
 
   p.add("Sheet", "hole radius", hole_radius, magnitude_or_zero, "m",
         "undeformed radius of a circular hole in the centre of the sheet; 0: no hole");
@@ -32,21 +34,27 @@ void Case::declare(Parameters &p)
         "undeformed length of a slit from the left edge along y = 0; 0: no slit");
 
   p.add("Material", "density", density, magnitude, "kg/m^3", "mass density rho of the rubber, undeformed",
-        Presence::required);
+        Presence::required)
+    .read_by = ReadBy::claims;
   nearest.declare(p, shell_sections[0]);
-  p.add(shell_sections[1], "present", has_next_nearest, "include bonds between next-nearest neighbours");
+  p.add(shell_sections[1], "present", has_next_nearest, "include bonds between next-nearest neighbours").read_by =
+    ReadBy::claims;
   next_nearest.declare(p, shell_sections[1]);
   p.add(shell_sections[2], "present", has_third_nearest,
-        "include bonds of length 2 d, in the directions of the nearest neighbours");
+        "include bonds of length 2 d, in the directions of the nearest neighbours")
+    .read_by = ReadBy::claims;
   third_nearest.declare(p, shell_sections[2]);
   disorder.declare(p);
 
   p.add("Loading", "strain x", strain_x, Range({-1., false}, {1000., true}), "1",
-        "eps_x: engineering strain along x; the stretch is 1 + eps_x", Presence::required);
+        "eps_x: engineering strain along x; the stretch is 1 + eps_x", Presence::required)
+    .read_by = ReadBy::claims;
   p.add("Loading", "strain y", strain_y, Range({-1., false}, {1000., true}), "1",
-        "eps_y: engineering strain along y; the stretch is 1 + eps_y", Presence::required);
+        "eps_y: engineering strain along y; the stretch is 1 + eps_y", Presence::required)
+    .read_by = ReadBy::claims;
 
-  p.add("Loading", "shear", shear, Range{-1000., 1000.}, "1", "F_xy: displacement along x over undeformed y");
+  p.add("Loading", "shear", shear, Range{-1000., 1000.}, "1", "F_xy: displacement along x over undeformed y").read_by =
+    ReadBy::claims;
   history.declare(p);
 
   p.add("Lattice", "solution", solution, {{"relaxed", Solution::relaxed}, {"motion", Solution::motion}},
@@ -56,17 +64,19 @@ void Case::declare(Parameters &p)
   p.add("Lattice", "noise seed", noise_seed, any_number, "seed of the random displacements");
 
   p.add("Fracture", "breaking stretch", breaking_stretch, Range({1., false}, {1e6, true}), "1",
-        "lam_f: bonds break irreversibly above this stretch; required by `latcon fracture`");
+        "lam_f: bonds break irreversibly above this stretch; required by `latcon fracture`")
+    .read_by = ReadBy::claims_on_user_laws;
   breaking.declare(p);
   p.add("Fracture", "toughening", toughening,
         {{"none", Toughening::none}, {"behind-tip", Toughening::behind_tip}, {"retraction", Toughening::retraction}},
-        "bonds whose lam_f is multiplied by the factor: none, bonds behind the tip, or bonds that have retracted");
+        "bonds whose lam_f is multiplied by the factor: none, bonds behind the tip, or bonds that have retracted")
+    .read_by = ReadBy::claims_on_user_laws;
   p.add("Fracture", "distance", toughening_distance, magnitude_or_zero, "m",
         "delta: behind-tip toughens bonds whose undeformed midpoint is more than this behind the tip");
   p.add("Fracture", "fraction", toughening_fraction, Range{0.01, 0.999}, "1",
         "retraction toughens bonds whose stretch falls below this fraction of that in the loaded sheet");
-  p.add("Fracture", "factor", toughening_factor, Range{1., 1e6}, "1",
-        "toughened bonds break at this multiple of lam_f");
+  p.add("Fracture", "factor", toughening_factor, Range{1., 1e6}, "1", "toughened bonds break at this multiple of lam_f")
+    .read_by = ReadBy::claims_on_user_laws;
   p.add("Fracture", "seed shape", seed_shape, {{"sites", SeedShape::sites}, {"slit", SeedShape::slit}},
         "shape of the seed crack: a line of removed sites along x, or a rectangle of removed sites");
   p.add("Fracture", "seed sites", seed_sites, Range{1., 1000.}, "number of sites removed by the shape sites");

@@ -148,7 +148,8 @@ void ContinuumCase::declare(Parameters &p)
         "or the "
         "plane-stress Mooney-Rivlin law calibrated along the loading path");
   p.add("Continuum", "ratio", mooney_rivlin_ratio, Range{-0.9, 0.9}, "1",
-        "r = C2 / (C1 + C2) of the law mooney-rivlin; auto: calibrated along the loading path");
+        "r = C2 / (C1 + C2) of the law mooney-rivlin; auto: calibrated along the loading path")
+    .read_by = ReadBy::claims;
   p.add("Continuum", "gradient", gradient,
         {{"none", ContinuumGradient::none},
          {"isotropic", ContinuumGradient::isotropic},

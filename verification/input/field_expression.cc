@@ -13,12 +13,6 @@ namespace latcon::input
 namespace
 {
 
-// Returns whether an expression uses random numbers: a sheet must be the same in every run and on every rank.
-bool draws_numbers(const std::string &expression)
-{
-  return std::regex_search(expression, std::regex("\\brand(_seed)?\\b"));
-}
-
 // Returns whether an expression assigns, as in `x = 1`, which muparser evaluates to 1. Comparisons are allowed.
 bool assigns(const std::string &expression)
 {
@@ -96,7 +90,7 @@ std::string problem_with_field(const std::string &expression, const std::vector<
   }
   if (assigns(expression))
     return context + "an assignment; to compare, write ==";
-  if (draws_numbers(expression))
+  if (std::regex_search(expression, std::regex("\\brand(_seed)?\\b"))) // a sheet is the same on every rank
     return context + "random numbers, which differ from run to run";
   try
   {

@@ -10,12 +10,14 @@ void LoadingHistory::declare(Parameters &p)
 {
   p.add("Loading", "history times", times, magnitude, "s",
         "increasing times after the start at which a motion of the lattice has the strains of the history; in between "
-        "the edges move at a constant rate, after the last they stand; empty: they stand always");
+        "the edges move at a constant rate, after the last they stand; empty: they stand always")
+    .read_by = ReadBy::claims_on_user_laws;
   for (std::vector<double> *strains : {&strain_x, &strain_y})
     p.add("Loading", strains == &strain_x ? "history strain x" : "history strain y", *strains,
           Range({-1., false}, {1000., true}), "1",
           std::string("engineering strain along ") + (strains == &strain_x ? "x" : "y") +
-            " at each of the history times; empty: that of the loading");
+            " at each of the history times; empty: that of the loading")
+      .read_by = ReadBy::claims_on_user_laws;
 }
 
 void LoadingHistory::check(Parameters &p) const

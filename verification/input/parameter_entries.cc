@@ -55,7 +55,7 @@ std::string Range::text() const
   return text;
 }
 
-void Parameters::declare(Entry entry)
+Declaration &Parameters::declare(Entry entry)
 {
   const std::string key = entry.key();
   for (const std::string &part : {entry.section, entry.name})
@@ -74,12 +74,12 @@ void Parameters::declare(Entry entry)
               unwritable(entry.default_text));
   }
   keys_[key] = entries_.size();
-  entries_.push_back(std::move(entry));
+  return entries_.emplace_back(std::move(entry));
 }
 
 template <typename Number>
-void Parameters::add(const std::string &section, const std::string &name, Number &member, const Range &range,
-                     const std::string &unit, const std::string &documentation, const Presence presence)
+Declaration &Parameters::add(const std::string &section, const std::string &name, Number &member, const Range &range,
+                             const std::string &unit, const std::string &documentation, const Presence presence)
 {
   constexpr bool may_be_auto = std::is_same_v<Number, std::optional<double>>;
   std::string rule = range.text();
@@ -105,16 +105,16 @@ void Parameters::add(const std::string &section, const std::string &name, Number
     const std::optional<double> value = member;
     return value ? support::full_precision(*value) : "auto";
   };
-  declare(std::move(entry));
+  return declare(std::move(entry));
 }
 
-template void Parameters::add(const std::string &, const std::string &, double &, const Range &, const std::string &,
-                              const std::string &, Presence);
-template void Parameters::add(const std::string &, const std::string &, std::optional<double> &, const Range &,
-                              const std::string &, const std::string &, Presence);
+template Declaration &Parameters::add(const std::string &, const std::string &, double &, const Range &,
+                                      const std::string &, const std::string &, Presence);
+template Declaration &Parameters::add(const std::string &, const std::string &, std::optional<double> &, const Range &,
+                                      const std::string &, const std::string &, Presence);
 
-void Parameters::add(const std::string &section, const std::string &name, std::vector<double> &member,
-                     const Range &range, const std::string &unit, const std::string &documentation)
+Declaration &Parameters::add(const std::string &section, const std::string &name, std::vector<double> &member,
+                             const Range &range, const std::string &unit, const std::string &documentation)
 {
   const std::string list = std::string("numbers separated by commas") + (range.text().empty() ? "" : ", each");
   const std::string rule = list + (range.text().empty() ? "" : " ") + range.text();
@@ -148,12 +148,12 @@ void Parameters::add(const std::string &section, const std::string &name, std::v
       texts.push_back(support::full_precision(value));
     return comma_separated(texts);
   };
-  declare(std::move(entry));
+  return declare(std::move(entry));
 }
 
 template <typename Integer, typename>
-void Parameters::add(const std::string &section, const std::string &name, Integer &member, const Range &range,
-                     const std::string &documentation)
+Declaration &Parameters::add(const std::string &section, const std::string &name, Integer &member, const Range &range,
+                             const std::string &documentation)
 {
   std::string rule = allowed_numbers("a whole number", range, "1");
   constexpr Integer largest = std::numeric_limits<Integer>::max();
@@ -185,18 +185,20 @@ void Parameters::add(const std::string &section, const std::string &name, Intege
     return "";
   };
   entry.write = [&member] { return std::to_string(member); };
-  declare(std::move(entry));
+  return declare(std::move(entry));
 }
 
-template void Parameters::add(const std::string &, const std::string &, int &, const Range &, const std::string &);
-template void Parameters::add(const std::string &, const std::string &, unsigned int &, const Range &,
-                              const std::string &);
-template void Parameters::add(const std::string &, const std::string &, std::uint64_t &, const Range &,
-                              const std::string &);
+template Declaration &Parameters::add(const std::string &, const std::string &, int &, const Range &,
+                                      const std::string &);
+template Declaration &Parameters::add(const std::string &, const std::string &, unsigned int &, const Range &,
+                                      const std::string &);
+template Declaration &Parameters::add(const std::string &, const std::string &, std::uint64_t &, const Range &,
+                                      const std::string &);
 
-void Parameters::add_words(const std::string &section, const std::string &name, const std::vector<std::string> &words,
-                           const std::function<void(std::size_t)> &set, const std::function<std::size_t()> &get,
-                           const std::string &documentation, const ValueType type)
+Declaration &Parameters::add_words(const std::string &section, const std::string &name,
+                                   const std::vector<std::string> &words, const std::function<void(std::size_t)> &set,
+                                   const std::function<std::size_t()> &get, const std::string &documentation,
+                                   const ValueType type)
 {
   const std::string rule = "one of " + comma_separated(words);
   Entry entry{{section, name, documentation, "", rule, Presence::optional, type}, rule};
@@ -217,19 +219,19 @@ void Parameters::add_words(const std::string &section, const std::string &name, 
     const std::size_t i = get();
     return i < words.size() ? words[i] : std::string();
   };
-  declare(std::move(entry));
+  return declare(std::move(entry));
 }
 
-void Parameters::add(const std::string &section, const std::string &name, bool &member,
-                     const std::string &documentation)
+Declaration &Parameters::add(const std::string &section, const std::string &name, bool &member,
+                             const std::string &documentation)
 {
-  add_words(
+  return add_words(
     section, name, {"false", "true"}, [&member](const std::size_t i) { member = i == 1; },
     [&member] { return std::size_t(member ? 1 : 0); }, documentation, ValueType::boolean);
 }
 
-void Parameters::add(const std::string &section, const std::string &name, std::string &member,
-                     const std::string &documentation)
+Declaration &Parameters::add(const std::string &section, const std::string &name, std::string &member,
+                             const std::string &documentation)
 {
   Entry entry{{section, name, documentation, "", "", Presence::optional, ValueType::text}, "a text on one line"};
   entry.read = [&member](const std::string &text) -> std::string
@@ -240,7 +242,7 @@ void Parameters::add(const std::string &section, const std::string &name, std::s
     return "";
   };
   entry.write = [&member] { return member; };
-  declare(std::move(entry));
+  return declare(std::move(entry));
 }
 
 } // namespace latcon::input

@@ -68,6 +68,14 @@ enum class ValueType
   text          ///< any text on one line
 };
 
+/// What reads an entry besides the runs of its case.
+enum class ReadBy
+{
+  runs,                ///< nothing
+  claims,              ///< every claim: verdicts depend on the entry
+  claims_on_user_laws, ///< every claim, if a shell has a law of the user
+};
+
 /// Declaration of one entry of a case.
 struct Declaration
 {
@@ -83,6 +91,7 @@ struct Declaration
   bool may_be_auto = false;                     ///< whether the word `auto` is allowed
   std::vector<std::string> words{};             ///< of ValueType::word
   std::string default_text{};                   ///< as a case file would hold it; meaningless if required
+  ReadBy read_by = ReadBy::runs;                ///< set where the entry is declared
 
   [[nodiscard]] std::string key() const { return section + "/" + name; }
 };
@@ -116,30 +125,32 @@ public:
   /// @param unit          SI unit, e.g. "m", "kg/m^3", "N s/m"; "1" for a pure number
   /// @param documentation what it is, in words and symbol
   /// @tparam Number       double or std::optional<double>
+  /// @return the declaration, valid until the next one, of which `read_by` may be set
   template <typename Number>
-  void add(const std::string &section, const std::string &name, Number &member, const Range &range,
-           const std::string &unit, const std::string &documentation, Presence presence = Presence::optional);
+  Declaration &add(const std::string &section, const std::string &name, Number &member, const Range &range,
+                   const std::string &unit, const std::string &documentation, Presence presence = Presence::optional);
 
   /// Real numbers, separated by commas, possibly none; `range` holds for each. All have a unit written, or none has.
-  void add(const std::string &section, const std::string &name, std::vector<double> &member, const Range &range,
-           const std::string &unit, const std::string &documentation);
+  Declaration &add(const std::string &section, const std::string &name, std::vector<double> &member, const Range &range,
+                   const std::string &unit, const std::string &documentation);
 
   /// Whole numbers. The range is compared in double precision, so bounds beyond 2^53 are blurred.
   /// @param member int, unsigned int or std::uint64_t
   template <typename Integer, typename = std::enable_if_t<std::is_integral_v<Integer>>>
-  void add(const std::string &section, const std::string &name, Integer &member, const Range &range,
-           const std::string &documentation);
+  Declaration &add(const std::string &section, const std::string &name, Integer &member, const Range &range,
+                   const std::string &documentation);
 
   /// `true` or `false`.
-  void add(const std::string &section, const std::string &name, bool &member, const std::string &documentation);
+  Declaration &add(const std::string &section, const std::string &name, bool &member, const std::string &documentation);
 
   /// A text on one line, without `#`, not ending in `\`; blanks around it are lost.
-  void add(const std::string &section, const std::string &name, std::string &member, const std::string &documentation);
+  Declaration &add(const std::string &section, const std::string &name, std::string &member,
+                   const std::string &documentation);
 
   /// One word out of several, each standing for a value of an enumeration.
   template <typename Enumeration, typename = std::enable_if_t<std::is_enum_v<Enumeration>>>
-  void add(const std::string &section, const std::string &name, Enumeration &member,
-           const std::vector<std::pair<std::string, Enumeration>> &words, const std::string &documentation);
+  Declaration &add(const std::string &section, const std::string &name, Enumeration &member,
+                   const std::vector<std::pair<std::string, Enumeration>> &words, const std::string &documentation);
 
   /// Reads a case file; problems are kept for finish().
   /// @param path name of the file; JSON if it ends in `.json`, deal.II's format otherwise
@@ -206,10 +217,10 @@ private:
     [[nodiscard]] std::string place() const; // where the value comes from
   };
 
-  void declare(Entry entry);
-  void add_words(const std::string &section, const std::string &name, const std::vector<std::string> &words,
-                 const std::function<void(std::size_t)> &set, const std::function<std::size_t()> &get,
-                 const std::string &documentation, ValueType type = ValueType::word);
+  Declaration &declare(Entry entry);
+  Declaration &add_words(const std::string &section, const std::string &name, const std::vector<std::string> &words,
+                         const std::function<void(std::size_t)> &set, const std::function<std::size_t()> &get,
+                         const std::string &documentation, ValueType type = ValueType::word);
   void take_override(const std::string &text);
   void set(const Assignment &assignment, const std::string &shown, bool is_override);
   void report(const std::string &place, const std::string &text);
@@ -228,8 +239,9 @@ private:
 };
 
 template <typename Enumeration, typename>
-void Parameters::add(const std::string &section, const std::string &name, Enumeration &member,
-                     const std::vector<std::pair<std::string, Enumeration>> &words, const std::string &documentation)
+Declaration &Parameters::add(const std::string &section, const std::string &name, Enumeration &member,
+                             const std::vector<std::pair<std::string, Enumeration>> &words,
+                             const std::string &documentation)
 {
   std::vector<std::string> names;
   std::vector<Enumeration> values;
@@ -238,7 +250,7 @@ void Parameters::add(const std::string &section, const std::string &name, Enumer
     names.push_back(word);
     values.push_back(value);
   }
-  add_words(
+  return add_words(
     section, name, names, [&member, values](const std::size_t i) { member = values[i]; },
     [&member, values] { return std::find(values.begin(), values.end(), member) - values.begin(); }, documentation);
 }

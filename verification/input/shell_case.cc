@@ -6,20 +6,24 @@ namespace latcon::input
 
 void ShellCase::declare(Parameters &parameters, const std::string &section)
 {
-  parameters.add(section, "law", law,
-                 {{"mooney-rivlin", Law::mooney_rivlin},
-                  {"linear", Law::linear},
-                  {"expression", Law::expression},
-                  {"library", Law::library}},
-                 "bond law: rod of incompressible Mooney-Rivlin rubber with constants a and b, linear spring, or your "
-                 "own by an expression or a shared library");
-  parameters.add(section, "a", a, magnitude_or_zero, "Pa", "a = 2 C1 of a Mooney-Rivlin bond");
-  parameters.add(section, "b", b, magnitude_or_zero, "Pa", "b = 2 C2 of a Mooney-Rivlin bond");
-  parameters.add(section, "modulus", modulus, magnitude, "Pa", "modulus e of a linear bond");
-  parameters.add(section, "area factor", area_factor, magnitude, "1",
-                 "s: cross-section of a bond over (sqrt3 / 2) d h, with the thickness h");
-  parameters.add(section, "viscosity", viscosity, magnitude_or_zero, "Pa s",
-                 "eta of the Kelvin dashpot along the bond");
+  parameters
+    .add(section, "law", law,
+         {{"mooney-rivlin", Law::mooney_rivlin},
+          {"linear", Law::linear},
+          {"expression", Law::expression},
+          {"library", Law::library}},
+         "bond law: rod of incompressible Mooney-Rivlin rubber with constants a and b, linear spring, or your "
+         "own by an expression or a shared library")
+    .read_by = ReadBy::claims;
+  parameters.add(section, "a", a, magnitude_or_zero, "Pa", "a = 2 C1 of a Mooney-Rivlin bond").read_by = ReadBy::claims;
+  parameters.add(section, "b", b, magnitude_or_zero, "Pa", "b = 2 C2 of a Mooney-Rivlin bond").read_by = ReadBy::claims;
+  parameters.add(section, "modulus", modulus, magnitude, "Pa", "modulus e of a linear bond").read_by = ReadBy::claims;
+  parameters
+    .add(section, "area factor", area_factor, magnitude, "1",
+         "s: cross-section of a bond over (sqrt3 / 2) d h, with the thickness h")
+    .read_by = ReadBy::claims;
+  parameters.add(section, "viscosity", viscosity, magnitude_or_zero, "Pa s", "eta of the Kelvin dashpot along the bond")
+    .read_by = ReadBy::claims;
   declare_memory(parameters, section);
   user_law.declare(parameters, section);
 }
@@ -45,11 +49,15 @@ lattice::Shell ShellCase::shell(const double longest) const
 
 void ShellCase::declare_memory(Parameters &parameters, const std::string &section)
 {
-  parameters.add(section, "branch moduli", branch_moduli, magnitude, "Pa",
-                 "moduli E_i of Maxwell branches parallel to the bond law, at most " +
-                   std::to_string(lattice::max_history_variables) + "; empty: no branches");
-  parameters.add(section, "relaxation times", relaxation_times, magnitude, "s",
-                 "relaxation times tau_i of the Maxwell branches, in the order of their moduli");
+  parameters
+    .add(section, "branch moduli", branch_moduli, magnitude, "Pa",
+         "moduli E_i of Maxwell branches parallel to the bond law, at most " +
+           std::to_string(lattice::max_history_variables) + "; empty: no branches")
+    .read_by = ReadBy::claims;
+  parameters
+    .add(section, "relaxation times", relaxation_times, magnitude, "s",
+         "relaxation times tau_i of the Maxwell branches, in the order of their moduli")
+    .read_by = ReadBy::claims;
   parameters.add(
     section, "plastic modulus", plastic_modulus, magnitude_or_zero, "Pa",
     "modulus E of a spring in series with a friction slider, parallel to the bond law; 0: no plastic stretch");

@@ -132,12 +132,16 @@ void UserLaw::declare(Parameters &p, const std::string &section)
 {
   p.add(section, "psi", psi,
         "law = expression: energy of a bond per reference volume in Pa, as a function of its stretch `lam`, of a, b, "
-        "modulus and the parameters, with + - * / ^ ( ) sqrt exp log");
+        "modulus and the parameters, with + - * / ^ ( ) sqrt exp log")
+    .read_by = ReadBy::claims;
   p.add(section, "parameters", parameters,
-        "laws expression and library: values of the parameters that they use, as in `mu = 0.1 MPa, k = 2`");
-  p.add(section, "library", library, "law = library: path of a shared library with the functions of a bond law");
+        "laws expression and library: values of the parameters that they use, as in `mu = 0.1 MPa, k = 2`")
+    .read_by = ReadBy::claims;
+  p.add(section, "library", library, "law = library: path of a shared library with the functions of a bond law")
+    .read_by = ReadBy::claims;
   p.add(section, "library sha256", sha256,
-        "SHA-256 that the library must have; if empty, that of the library found, in the resolved case");
+        "SHA-256 that the library must have; if empty, that of the library found, in the resolved case")
+    .read_by = ReadBy::claims;
 }
 
 void UserLaw::check(Parameters &p, const std::string &section, bool is_library, const Values &constants, double longest)

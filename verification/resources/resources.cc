@@ -66,14 +66,6 @@ double bonds_of_site(const input::Case &input)
   return 0.5 * input.material().coordination(input.sheet());
 }
 
-// Bytes of the factors of bonds per slot.
-double factors_per_place(const input::Case &input, bool breaks)
-{
-  const lattice::Disorder disorder = input.disorder.disorder();
-  const double fields = (disorder.stiffness.is_none() ? 0. : 1.) + (breaks && !disorder.strength.is_none() ? 1. : 0.);
-  return bytes_of_variable * fields * bonds_of_site(input);
-}
-
 } // namespace
 
 double bytes_of_history(const lattice::Material &material, const lattice::TriangularLattice &sheet)
@@ -96,7 +88,9 @@ MemoryNeed lattice_memory(const input::Case &input, const RunKind run, const boo
   const double frame = sites * (bytes_of_site_in_frame + bonds * bytes_of_bond_in_frame);
   const double history = run != RunKind::equilibrium ? bytes_of_history(input.material(), sheet) : 0.;
   const double checkpoint = run != RunKind::equilibrium ? sites * (bytes_of_site_in_checkpoint + history) : 0.;
-  const double factors = factors_per_place(input, run == RunKind::fracture);
+  const lattice::Disorder disorder = input.disorder.disorder();
+  const bool strengths = run == RunKind::fracture && !disorder.strength.is_none();
+  const double factors = bytes_of_variable * bonds * ((disorder.stiffness.is_none() ? 0. : 1.) + (strengths ? 1. : 0.));
   const double fields =
     places * (bytes_of_place + (is_chebyshev ? bytes_of_chebyshev_place : 0.) + 2. * history + factors);
   // The state is copied for each pending frame, and for the one that waits for them.

@@ -1,5 +1,4 @@
 // The claim on a running crack fails when either side is wrong.
-#include "verification/claims/running_crack/flank.h"
 #include "verification/claims/running_crack/running_crack_claim.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "continuum/flank.h"
 #include "support/fits.h"
 #include "tests/verification/claims/faults.h"
 #include "verification/bridge/homogeneous_response.h"
@@ -145,7 +145,8 @@ TEST(Flank, LacksTheBondsThatTheLatticeLacks)
 
     const auto viscosity = homogenised_viscosity(sheet, rubber().material);
     const continuum::CauchyBorn whole = cauchy_born(sheet, rubber().material);
-    Flank flank(drive.axis(), from, drive.pitch(), bond_families(sheet, rubber().material), whole, viscosity.get());
+    continuum::Flank flank(drive.axis(), from, drive.pitch(), bond_families(sheet, rubber().material), whole,
+                           viscosity.get());
     const auto E = to_continuum(F), Edot = to_continuum(rate);
     double missing_energy = 0., missing_power = 0.;
     const double area = 2. * (to - from) * drive.pitch(); // of a layer, on both flanks
@@ -230,8 +231,8 @@ TEST(Flank, HasTheEdgeEnergyOfALattice)
           height - 0.1 * drive.pitch(), height + 0.1 * drive.pitch(), 1e-9 * d);
     const double of_lattice = of_edge();
 
-    Flank flank(drive.axis(), 0., drive.pitch(), bond_families(sheet, rubber().material), rubber().cauchy_born,
-                nullptr);
+    continuum::Flank flank(drive.axis(), 0., drive.pitch(), bond_families(sheet, rubber().material),
+                           rubber().cauchy_born, nullptr);
     flank.cut_to(2. * d);
     double of_layers = 0.;
     for (int layer = 0; layer < 3; ++layer)

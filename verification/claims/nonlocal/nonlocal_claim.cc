@@ -100,11 +100,6 @@ double squared_length_of(const bridge::Subject &subject, const Stiffness &stiffn
   return (4. * at(k) - at(2. * k)) / 3.;
 }
 
-Eigen::Matrix2d of_lattice_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
-{
-  return bridge::bloch_matrices(subject.sheet(), lattice::without_dashpots(subject.material), F, K).stiffness;
-}
-
 // Rows of one stencil, and the largest errors of several.
 class StencilRows
 {
@@ -259,10 +254,11 @@ private:
   void length(const StencilSheet &sheet, const NonlocalStencil &stencil, const Rows &rows, bool is_known)
   {
     const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
-    const double on_lattice = squared_length_of(subject_, [&](const Eigen::Vector2d &K)
-                                                { return of_lattice_waves(subject_, I, K); }),
-                 found =
-                   squared_length_of(subject_, [&](const Eigen::Vector2d &K) { return sheet.wave_stiffness(I, K); }),
+    const lattice::Material elastic = lattice::without_dashpots(subject_.material);
+    const auto of_lattice = [&](const Eigen::Vector2d &K)
+    { return bridge::bloch_matrices(subject_.sheet(), elastic, I, K).stiffness; };
+    const auto of_stencil = [&](const Eigen::Vector2d &K) { return sheet.wave_stiffness(I, K); };
+    const double on_lattice = squared_length_of(subject_, of_lattice), found = squared_length_of(subject_, of_stencil),
                  gradient = 12. * std::pow(subject_.lengths.isotropic_inertia, 2);
     const bridge::RingValue rings = bridge::ring_squared_length(subject_.material, subject_.spacing, stencil.grid);
     rows.add("intrinsic length l in the dispersion of long waves at F = I; lattice, nonlocal continuum, gradient "

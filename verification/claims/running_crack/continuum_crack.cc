@@ -6,11 +6,11 @@
 #include <deal.II/grid/grid_generator.h>
 
 #include "continuum/field_writer.h"
+#include "continuum/flank.h"
 #include "continuum/gradient_viscosity.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/homogenisation.h"
-#include "verification/claims/running_crack/flank.h"
 
 namespace latcon::claims
 {
@@ -98,41 +98,23 @@ double anisotropy(const continuum::Material &bonds, const dealii::Tensor<2, 2> &
   return (mean - bonds.first_piola_stress(F)).norm();
 }
 
-continuum::FieldDerivatives derivatives(const continuum::PointState &state, double scale)
-{
-  continuum::FieldDerivatives u;
-  for (unsigned int i = 0; i < 2; ++i)
-    u[i] = {(state.F[i][0] - (i == 0 ? 1. : 0.)) / scale, (state.F[i][1] - (i == 1 ? 1. : 0.)) / scale,
-            state.G[i][0][0] / scale, state.G[i][1][1] / scale, state.G[i][0][1] / scale};
-  return u;
-}
-
-// Adds the fields of the continuum at the sites of a sample. @return power dissipated near the tip, of the whole sheet
-// [W/m]
-double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &sheet, const WaveContinuum &medium,
-                  const continuum::Material &bonds, const Eigen::Matrix2d &F, const continuum::DynamicSolver &solver,
-                  double X_tip, double reach, TipField &field)
+// Adds the fields of the continuum at the sites of a sample.
+void add_sample(const CrackDrive &drive, const lattice::TriangularLattice &sheet, const WaveContinuum &medium,
+                const continuum::Material &bonds, const Eigen::Matrix2d &F, const continuum::DynamicSolver &solver,
+                double X_tip, double reach, TipField &field)
 {
   const std::vector<TipSite> sites = tip_sites(drive, sheet, X_tip, reach);
   std::vector<dealii::Point<2>> points;
   for (const TipSite &site : sites)
     points.emplace_back(site.X, drive.axis() + site.eta);
   const std::vector<continuum::PointState> states = solver.evaluate(points);
-  // A velocity, as a displacement so small that it is one of the sheet.
-  const double scale = 1e-3 * drive.spacing / drive.speed;
-  continuum::Sheet::Vector small = solver.sheet().make_owned();
-  small = solver.velocity();
-  small *= scale;
-  continuum::Sheet::Vector ghosted = solver.sheet().make_ghosted();
-  ghosted = small;
-  const std::vector<continuum::PointState> rates = solver.sheet().evaluate(ghosted, points);
-  double power = 0.;
+  const std::vector<continuum::PointState> rates = solver.sheet().gradients(solver.velocity(), points);
   for (std::size_t n = 0; n < sites.size(); ++n)
   {
     TipValues values;
     for (unsigned int i = 0; i < 2; ++i)
     {
-      values.velocity(i) = rates[n].displacement[i] / scale;
+      values.velocity(i) = rates[n].displacement[i];
       values.excess(i) = points[n][i] + states[n].displacement[i] - F(i, 0) * points[n][0] - F(i, 1) * points[n][1];
     }
     values.opening_stress = states[n].P[1][1];
@@ -145,23 +127,13 @@ double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &she
       dealii::Tensor<2, 2> Fdot = rates[n].F;
       for (unsigned int i = 0; i < 2; ++i)
         Fdot[i][i] -= 1.;
-      Fdot /= scale;
       values.opening_stress += viscosity.stress(states[n].F, Fdot)[1][1];
       values.dissipation = viscosity.dissipation(states[n].F, Fdot);
       if (const continuum::GradientViscosity *gradient = medium.viscosity->gradient())
-      {
-        continuum::PointIntegrand density;
-        clear(density, continuum::Order::value);
-        gradient->add_density(derivatives(states[n], 1.), derivatives(rates[n], scale), continuum::Order::value, 0.,
-                              density);
-        values.dissipation += density.value;
-      }
+        values.dissipation += gradient->dissipation(states[n].F, states[n].G, Fdot, rates[n].G);
     }
-    if (std::hypot(sites[n].xi, sites[n].eta) <= near_tip * drive.spacing)
-      power += values.dissipation * sheet.site_area();
     field.add(sites[n], values);
   }
-  return power;
 }
 
 } // namespace
@@ -176,12 +148,9 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
   make_mesh(mesh, drive, half, resolution);
   const double cell = resolution.finest * drive.stride(), start = drive.start + half.tip;
   WaveContinuum medium = whole;
-  Flank flank(drive.axis(), start, drive.pitch(), cut, *whole.constitution.local, whole.viscosity.get());
-  if (!cut.empty())
-  {
-    medium.constitution.local = &flank.law();
-    medium.viscosity = flank.viscosity();
-  }
+  continuum::Flank flank(drive.axis(), start, drive.pitch(), cut, *whole.constitution.local, whole.viscosity.get());
+  medium.constitution.local = &flank.law();
+  medium.viscosity = flank.viscosity();
   continuum::DynamicSettings settings;
   settings.time_step = drive.stride_time();
   settings.degree = resolution.degree;
@@ -194,7 +163,7 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
 
   TipRun run{TipField(drive), {}};
   continuum::EnergyLedger middle;
-  double near = 0., cut_energy = 0.; // the latter of bonds, after the middle of the run [J/m]
+  double cut_energy = 0.; // of bonds, after the middle of the run [J/m]
   const unsigned int n_half = drive.n_strides / 2;
   unsigned int n_open = 0; // cells
   for (unsigned int stride = 1; stride <= drive.n_strides; ++stride)
@@ -210,16 +179,10 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
       solver.release(cell / drive.speed);
       ++n_open;
     }
-    if (!cut.empty())
-    {
-      cut_energy += solver.sheet().energy(solver.displacement());
-      flank.cut_to(start + stride * drive.stride());
-      cut_energy -= solver.sheet().energy(solver.displacement());
-    }
+    cut_energy += flank.cut_to(start + stride * drive.stride(), solver.sheet(), solver.displacement());
     solver.step();
     if (stride + CrackDrive::n_samples > drive.n_strides)
-      near +=
-        add_sample(drive, sheet, medium, bonds, F, solver, drive.tip(stride), reach, run.field) / CrackDrive::n_samples;
+      add_sample(drive, sheet, medium, bonds, F, solver, drive.tip(stride), reach, run.field);
   }
   if (frame)
   {
@@ -230,7 +193,7 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
   const double advance = 0.5 * (drive.n_strides - n_half) * drive.stride(); // of both halves
   run.energy = {(middle.stored + middle.kinetic - end.stored - end.kinetic) / advance,
                 (end.dissipated - middle.dissipated) / advance, (end.released - middle.released + cut_energy) / advance,
-                near / drive.speed};
+                run.field.near_power() / drive.speed};
   return run;
 }
 

@@ -63,18 +63,13 @@ public:
     return std::sqrt(sum / static_cast<double>(n)); // NaN without points
   }
 
-  double size(const TipField &field, const Quantity &quantity) const
-  {
-    return norm(field, quantity, [&](const TipField::Point &point) { return quantity.of(point.values); });
-  }
-
   // Distance of a second field from a first one, whose tip is taken to be `shift` [m] ahead, relative to the first.
   double distance(const TipField &first, const TipField &second, const Quantity &quantity, double shift = 0.) const
   {
     return norm(first, quantity,
                 [&](const TipField::Point &point) -> Eigen::Vector2d
                 { return quantity.of(point.values) - quantity.of(second.at(point.xi - shift, point.eta)); }) /
-           size(first, quantity);
+           norm(first, quantity, [&](const TipField::Point &point) { return quantity.of(point.values); });
   }
 
 private:
@@ -199,16 +194,14 @@ private:
     pair("backward motion ahead of the tip, r <= far field: area over d^2", "1", of_lattice.area / (d * d),
          zone.area / (d * d));
     pair("backward motion ahead of the tip: most negative velocity", "m/s", of_lattice.depth, zone.depth);
-    for (const double radius : {2., 3., 4.})
-    {
-      const StressLobes lattice = stress_lobes(lattice_.field, radius * d),
-                        continuum = stress_lobes(fine.field, radius * d);
-      const std::string at = support::text_of(" at r = ", radius, " d");
-      pair("opening stress straight ahead" + at, "Pa", lattice.ahead, continuum.ahead);
-      pair("lobes of the opening stress, largest over straight ahead" + at, "1", lattice.ratio, continuum.ratio);
-      rows.add("lobes of the opening stress, angle of the largest" + at + ", " + name + " continuum", "deg",
-               of_both(lattice.angle, continuum.angle), std::abs(lattice.angle - continuum.angle));
-    }
+    constexpr double radius = 3.;
+    const StressLobes lattice = stress_lobes(lattice_.field, radius * d),
+                      continuum = stress_lobes(fine.field, radius * d);
+    const std::string at = support::text_of(" at r = ", radius, " d");
+    pair("opening stress straight ahead" + at, "Pa", lattice.ahead, continuum.ahead);
+    pair("lobes of the opening stress, largest over straight ahead" + at, "1", lattice.ratio, continuum.ratio);
+    rows.add("lobes of the opening stress, angle of the largest" + at + ", " + name + " continuum", "deg",
+             of_both(lattice.angle, continuum.angle), std::abs(lattice.angle - continuum.angle));
     pair("energy lost by the sheet per length of crack", "J/m^2", lattice_.energy.lost, fine.energy.lost);
     pair("energy dissipated by viscosity per length of crack", "J/m^2", lattice_.energy.dissipated,
          fine.energy.dissipated);

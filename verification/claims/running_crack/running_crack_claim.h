@@ -31,8 +31,8 @@ struct HalfSheet
 /// plane of symmetry: no displacement across it, no shear, and with a gradient energy no normal gradient of the
 /// displacement along it. Behind the tip it is free. The edge is opened cell by cell: while the tip passes a cell, the
 /// forces that held that cell's nodes fall linearly to zero.
-/// @param cut bonds that, with their dashpots, are missing in part at the open edge, see Flank; empty: none. The energy
-/// that they held is CrackEnergy::taken as well.
+/// @param cut bonds that, with their dashpots, are missing in part at the open edge, see continuum::Flank; empty: none.
+/// The energy that they held is CrackEnergy::taken as well.
 /// @param bonds Cauchy-Born law of the lattice, for TipValues::anisotropy
 /// @param reach as for the lattice, at whose sites the fields are evaluated
 /// @param frame none is written if empty
@@ -61,7 +61,8 @@ struct NamedContinuum
 {
   std::string name;
   WaveContinuum medium;
-  std::vector<continuum::BondFamily> cut = {}; ///< bonds that the flank lacks in part, see Flank; empty: none
+  std::vector<continuum::BondFamily> cut =
+    {}; ///< bonds that the flank lacks in part, see continuum::Flank; empty: none
 };
 
 /// Both sides of the comparison: one lattice and several continua. The subject must outlive it.

@@ -112,6 +112,8 @@ void TipField::add(const TipSite &site, const TipValues &values)
                     std::lround(site.xi / drive_.stride() + CrackDrive::first_phase)}];
   sum.values += values;
   ++sum.n;
+  if (std::hypot(site.xi, site.eta) <= near_tip * drive_.spacing)
+    near_ += values.dissipation;
 }
 
 std::vector<TipField::Point> TipField::points() const
@@ -196,7 +198,6 @@ TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &mat
   TipRun run{TipField(drive), {}};
   auto next = schedule.begin();
   lattice::EnergyBalance middle{};
-  double near = 0.;
   const auto steps = static_cast<unsigned int>(std::lround(drive.stride_time() / stepping.step));
   const unsigned int n_half = drive.n_strides / 2;
   for (unsigned int stride = 1; stride <= drive.n_strides; ++stride)
@@ -217,7 +218,6 @@ TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &mat
     if (stride + CrackDrive::n_samples <= drive.n_strides)
       continue;
     const lattice::State &now = simulation.state();
-    double power = 0.;
     for (const TipSite &site : tip_sites(drive, sheet, drive.tip(stride), reach))
     {
       const Eigen::Vector2d X = sheet.reference(site.place);
@@ -228,11 +228,8 @@ TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &mat
       values.excess.y() *= sign;
       values.opening_stress = evaluator.at(now, site.place).first_piola_stress(1, 1);
       values.dissipation = dissipation(now, sheet, material, site.place);
-      if (std::hypot(site.xi, site.eta) <= near_tip * drive.spacing)
-        power += values.dissipation * sheet.site_area();
       run.field.add(site, values);
     }
-    near += power / CrackDrive::n_samples;
   }
   if (frame)
   {
@@ -242,7 +239,8 @@ TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &mat
   const lattice::EnergyBalance end = simulation.energies();
   const double advance = (drive.n_strides - n_half) * drive.stride();
   run.energy = {(middle.elastic + middle.kinetic - end.elastic - end.kinetic) / advance,
-                (end.viscous - middle.viscous) / advance, (end.broken - middle.broken) / advance, near / drive.speed};
+                (end.viscous - middle.viscous) / advance, (end.broken - middle.broken) / advance,
+                run.field.near_power() / drive.speed};
   return run;
 }
 

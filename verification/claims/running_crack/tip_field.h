@@ -86,6 +86,11 @@ public:
 
   void add(const TipSite &site, const TipValues &values);
 
+  /// Distance from the tip within which dissipation counts as near it [d].
+  static constexpr double near_tip = 5.;
+  /// Power dissipated within it by the whole sheet [W/m].
+  double near_power() const { return 2. * point_area() * near_ / CrackDrive::n_samples; }
+
   /// A point of the grid that has values.
   struct Point
   {
@@ -111,6 +116,7 @@ private:
 
   CrackDrive drive_;
   std::map<std::pair<long, long>, Sum> sums_; // by j, i
+  double near_ = 0.;                          // sum of the dissipation of sites near the tip
 };
 
 /// Material ahead of the tip that moves against the crack, v_x < -limit.
@@ -140,7 +146,7 @@ struct CrackEnergy
   double lost;       ///< of stored and kinetic energy
   double dissipated; ///< by viscosity anywhere
   double taken;      ///< at the crack: held by bonds when they were cut, or work against the forces that held it shut
-  double near;       ///< dissipated by viscosity within TipRun::near of the tip, by its rate at the samples
+  double near;       ///< dissipated by viscosity within TipField::near_tip, by its rate at the samples
 };
 
 /// A crack that was driven, on either side.
@@ -149,9 +155,6 @@ struct TipRun
   TipField field;     ///< mean over the samples
   CrackEnergy energy; ///< between the middle of the run and its end
 };
-
-/// Distance from the tip within which dissipation counts as near it [d].
-inline constexpr double near_tip = 5.;
 
 /// A series of frames, of one frame at the end of the drive: NAME.pvd in a folder.
 struct CrackFrame

@@ -1,15 +1,15 @@
 #pragma once
 
+#include "continuum/lattice_gradient.h"
+#include "continuum/material.h"
+#include "continuum/sheet.h"
+#include "continuum/viscosity.h"
+
 #include <memory>
 #include <vector>
 
-#include "continuum/lattice_gradient.h"
-#include "continuum/material.h"
-#include "continuum/viscosity.h"
-
-namespace latcon::claims
+namespace latcon::continuum
 {
-
 /// Laws of a half sheet along whose lower edge a crack opens, without the bonds and dashpots that the crack has cut. In
 /// the Voronoi cells of a lattice, half of the bonds of direction N and length l are missing to the depth |N_2| l below
 /// a free flank (theory-comparison.md, eq. (H.31)).
@@ -28,20 +28,23 @@ public:
 
   /// Creates the laws of a sheet that is not cut yet. The whole laws must outlive them.
   /// @param pitch distance of lines of sites along the crack [m]
-  /// @param viscosity nullptr: none @throws std::bad_cast unless it is a continuum::FibreViscosity
-  Flank(double axis, double start, double pitch, const std::vector<continuum::BondFamily> &bonds,
-        const continuum::Material &whole, const continuum::Viscosity *viscosity);
+  /// @param viscosity nullptr: none @throws std::bad_cast unless it is a FibreViscosity
+  Flank(double axis, double start, double pitch, const std::vector<BondFamily> &bonds, const Material &whole,
+        const Viscosity *viscosity);
 
-  /// Moves the tip to X [m]: between two steps of a motion, which uses the laws.
+  /// Moves the tip to X [m], between two steps of a motion that uses the laws.
   void cut_to(double X) { layers_->tip = X; }
 
-  const continuum::Material &law() const { return *law_; }
-  std::shared_ptr<const continuum::Viscosity> viscosity() const { return viscosity_; } ///< nullptr: none
+  /// The same for a motion of `sheet`, which uses the law and is displaced by u. Returns the energy of the bonds that
+  /// are cut [J/m].
+  double cut_to(double X, const Sheet &sheet, const Sheet::Vector &u);
+
+  const Material &law() const { return *law_; }
+  const std::shared_ptr<const Viscosity> &viscosity() const { return viscosity_; } ///< nullptr: none
 
 private:
   std::shared_ptr<Layers> layers_;
-  std::shared_ptr<const continuum::Material> law_;
-  std::shared_ptr<const continuum::Viscosity> viscosity_;
+  std::shared_ptr<const Material> law_;
+  std::shared_ptr<const Viscosity> viscosity_;
 };
-
-} // namespace latcon::claims
+} // namespace latcon::continuum

@@ -1,34 +1,33 @@
-#include "verification/claims/running_crack/flank.h"
+#include "continuum/flank.h"
+
+#include "continuum/cauchy_born.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "continuum/cauchy_born.h"
-
-namespace latcon::claims
+namespace latcon::continuum
 {
 namespace
 {
-
-using continuum::Order;
+using Order;
 using dealii::Point;
 using dealii::Tensor;
 
 // A law less half of the energy of some bonds.
-class LessBonds : public continuum::Material
+class LessBonds : public Material
 {
 public:
-  explicit LessBonds(const continuum::Material &whole, std::optional<continuum::CauchyBorn> bonds = {})
+  explicit LessBonds(const Material &whole, std::optional<CauchyBorn> bonds = {})
     : whole_(whole), bonds_(std::move(bonds))
   {
   }
-  continuum::Response evaluate(const Tensor<2, 2> &F, Order order) const override
+  Response evaluate(const Tensor<2, 2> &F, Order order) const override
   {
-    continuum::Response W = whole_.evaluate(F, order);
+    Response W = whole_.evaluate(F, order);
     if (!bonds_)
       return W;
-    const continuum::Response cut = bonds_->evaluate(F, order);
+    const Response cut = bonds_->evaluate(F, order);
     W.energy -= 0.5 * cut.energy;
     W.first_piola -= 0.5 * cut.first_piola;
     W.tangent -= 0.5 * cut.tangent;
@@ -37,8 +36,8 @@ public:
   double thickness_stretch(const Tensor<2, 2> &F) const override { return whole_.thickness_stretch(F); }
 
 private:
-  const continuum::Material &whole_;
-  std::optional<continuum::CauchyBorn> bonds_;
+  const Material &whole_;
+  std::optional<CauchyBorn> bonds_;
 };
 
 // The law of a whole sheet, with those of the layers of a flank.
@@ -57,9 +56,8 @@ public:
 private:
   std::shared_ptr<const Flank::Layers> layers_;
 };
-using LayeredMaterial = Layered<continuum::Material, LessBonds>;
-using LayeredViscosity = Layered<continuum::Viscosity, continuum::FibreViscosity>;
-
+using LayeredMaterial = Layered<Material, LessBonds>;
+using LayeredViscosity = Layered<Viscosity, FibreViscosity>;
 } // namespace
 
 std::size_t Flank::Layers::at(const Point<2> &X) const
@@ -69,33 +67,33 @@ std::size_t Flank::Layers::at(const Point<2> &X) const
   return std::upper_bound(depths.begin(), depths.end(), X[1] - axis) - depths.begin();
 }
 
-Flank::Flank(double axis, double start, double pitch, const std::vector<continuum::BondFamily> &bonds,
-             const continuum::Material &whole, const continuum::Viscosity *viscosity)
+Flank::Flank(double axis, double start, double pitch, const std::vector<BondFamily> &bonds, const Material &whole,
+             const Viscosity *viscosity)
   : layers_(std::make_shared<Layers>(Layers{axis, start, start, {}}))
 {
   // A bond reaches a whole number of lines of sites.
   const auto lines = [pitch](const Tensor<1, 2> &direction, double length)
   { return std::lround(std::abs(direction[1]) * length / pitch); };
   long reach = 0;
-  for (const continuum::BondFamily &bond : bonds)
+  for (const BondFamily &bond : bonds)
     reach = std::max(reach, lines(bond.fibre.direction, bond.length));
 
   const auto law = std::make_shared<LayeredMaterial>(LessBonds(whole), layers_);
   std::shared_ptr<LayeredViscosity> dashpots;
   if (viscosity != nullptr)
-    dashpots = std::make_shared<LayeredViscosity>(dynamic_cast<const continuum::FibreViscosity &>(*viscosity), layers_);
+    dashpots = std::make_shared<LayeredViscosity>(dynamic_cast<const FibreViscosity &>(*viscosity), layers_);
   for (long layer = 1; layer <= reach; ++layer)
   {
     layers_->depths.push_back(static_cast<double>(layer) * pitch);
-    std::vector<continuum::FibreFamily> cut;
-    for (const continuum::BondFamily &bond : bonds)
+    std::vector<FibreFamily> cut;
+    for (const BondFamily &bond : bonds)
       if (lines(bond.fibre.direction, bond.length) >= layer)
         cut.push_back(bond.fibre);
-    law->laws.emplace_back(whole, continuum::CauchyBorn(std::move(cut)));
+    law->laws.emplace_back(whole, CauchyBorn(std::move(cut)));
     if (dashpots == nullptr)
       continue;
-    std::vector<continuum::FibreDashpot> remaining = dashpots->dashpots();
-    for (continuum::FibreDashpot &dashpot : remaining)
+    std::vector<FibreDashpot> remaining = dashpots->dashpots();
+    for (FibreDashpot &dashpot : remaining)
       dashpot.weight *= lines(dashpot.direction, dashpot.length) >= layer ? 0.5 : 1.;
     dashpots->laws.emplace_back(std::move(remaining));
   }
@@ -103,4 +101,10 @@ Flank::Flank(double axis, double start, double pitch, const std::vector<continuu
   viscosity_ = dashpots;
 }
 
-} // namespace latcon::claims
+double Flank::cut_to(const double X, const Sheet &sheet, const Sheet::Vector &u)
+{
+  const double before = layers_->depths.empty() ? 0. : sheet.energy(u);
+  cut_to(X);
+  return layers_->depths.empty() ? 0. : before - sheet.energy(u);
+}
+} // namespace latcon::continuum
