@@ -6,14 +6,12 @@
 #include <cmath>
 #include <optional>
 
+using namespace dealii;
+
 namespace latcon::continuum
 {
 namespace
 {
-using Order;
-using dealii::Point;
-using dealii::Tensor;
-
 // A law less half of the energy of some bonds.
 class LessBonds : public Material
 {
