@@ -1,6 +1,7 @@
 #include "continuum/material.h"
 
 #include "continuum/errors.h"
+#include "support/fits.h"
 
 #include <cmath>
 #include <sstream>
@@ -60,18 +61,7 @@ double minimum_acoustic_eigenvalue(const Material &law, const Tensor<2, 2> &F)
       at = angle;
     }
   }
-  const double golden = 0.5 * (std::sqrt(5.) - 1.);
-  double low = at - pi / n_samples;
-  double high = at + pi / n_samples;
-  while (high - low > 1e-8)
-  {
-    const double left = high - golden * (high - low);
-    const double right = low + golden * (high - low);
-    if (smallest_eigenvalue(left) < smallest_eigenvalue(right))
-      high = right;
-    else
-      low = left;
-  }
-  return std::min(best, smallest_eigenvalue(0.5 * (low + high)));
+  const double angle = support::golden_section(smallest_eigenvalue, at - pi / n_samples, at + pi / n_samples, 1e-8);
+  return std::min(best, smallest_eigenvalue(angle));
 }
 } // namespace latcon::continuum

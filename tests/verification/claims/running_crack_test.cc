@@ -117,7 +117,8 @@ TEST(RunningCrack, IsHeldBackByWhatTheLatticeLacks)
     EXPECT_LT(gain(quantity), 0.8) << quantity; // 1 with whole flanks
 }
 
-// What a straight cut takes from a homogeneous sheet, exactly: energy of bonds and power of dashpots.
+// What a straight cut takes from a homogeneous sheet, exactly: energy of bonds and power of dashpots
+// (theory-comparison.md, eq. (H.31)).
 TEST(Flank, LacksTheBondsThatTheLatticeLacks)
 {
   const Eigen::Matrix2d F{{2.3, 0.4}, {-0.2, 2.8}}, rate{{20., -90.}, {30., 50.}};
