@@ -8,7 +8,7 @@ import pathlib
 import re
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-CODE = ("lattice", "continuum", "verification")
+CODE = ("lattice", "continuum", "verification", "python")
 KINDS = {".h", ".cc", ".inc", ".py", ".prm", ".json"}
 
 # Steps of a derivation, which the code does not compute; it computes the equation that they lead to.

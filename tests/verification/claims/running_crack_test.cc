@@ -113,8 +113,11 @@ TEST(RunningCrack, IsHeldBackByWhatTheLatticeLacks)
   EXPECT_GT(tip("viscous-gradient"), tip("gradient") + 0.2);
   const auto gain = [&](const std::string &what)
   { return *row(what, "local-flank").error / *row(what, "local").error; };
-  for (const char *quantity : {"velocity, 5 d", "velocity, 1.5 d", "opening profile, 5 d", "energy flux"})
-    EXPECT_LT(gain(quantity), 0.8) << quantity; // 1 with whole flanks
+  // All are 1 with whole flanks; the velocity is 0.78 and the flux 0.63 if dashpots alone are cut.
+  const std::pair<const char *, double> limits[] = {
+    {"velocity, 5 d", 0.7}, {"velocity, 1.5 d", 0.8}, {"opening profile, 5 d", 0.8}, {"energy flux", 0.6}};
+  for (const auto &[quantity, limit] : limits)
+    EXPECT_LT(gain(quantity), limit) << quantity;
 }
 
 // What a straight cut takes from a homogeneous sheet, exactly: energy of bonds and power of dashpots
