@@ -89,9 +89,10 @@ struct EnergyLedger
 ///
 /// Internal and viscous forces are evaluated once per residual, at the mid-state u_(n+1-alpha_f), v_(n+1-alpha_f),
 /// those of Maxwell branches with the overstresses at its time; the load factor is the same mean of its values at both
-/// ends of the step. Newton's method with the exact tangent solves each step for the displacement. It halves a Newton
-/// step that leads to det F <= 0 anywhere. The residual converges to relative_tolerance times the acting forces, or to
-/// the round-off of its own evaluation where that is larger (eq. (C.45)).
+/// ends of the step. Newton's method solves each step for the displacement, with a tangent that is exact where it is
+/// assembled and kept while the residual falls a hundredfold. It halves a Newton step that leads to det F <= 0
+/// anywhere. The residual converges to relative_tolerance times the acting forces, or to the round-off of its own
+/// evaluation where that is larger (eq. (C.45)).
 ///
 /// The velocity and acceleration of prescribed displacements follow from lambda(t) by differences over one time step:
 /// one-sided at the start, central afterwards. Newmark's formulas hold for the other unknowns; for prescribed ones they

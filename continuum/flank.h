@@ -11,8 +11,8 @@
 namespace latcon::continuum
 {
 /// Laws of a half sheet along whose lower edge a crack opens, without the bonds and dashpots that the crack has cut. In
-/// the Voronoi cells of a lattice, half of the bonds of direction N and length l are missing to the depth |N_2| l below
-/// a free flank (theory-comparison.md, eq. (H.31)).
+/// the Voronoi cells of a lattice, half of the bonds of direction N and length l [m] are missing to the depth |N_2| l
+/// from a free flank (theory-comparison.md, eq. (H.31)).
 class Flank
 {
 public:
@@ -26,7 +26,8 @@ public:
     std::size_t at(const dealii::Point<2> &X) const;
   };
 
-  /// Creates the laws of a sheet that is not cut yet. The whole laws must outlive them.
+  /// Creates the laws of a sheet that is not cut yet, whose crack starts at X = (start, axis) [m]. The whole laws must
+  /// outlive them.
   /// @param pitch distance of lines of sites along the crack [m]
   /// @param viscosity nullptr: none @throws std::bad_cast unless it is a FibreViscosity
   Flank(double axis, double start, double pitch, const std::vector<BondFamily> &bonds, const Material &whole,

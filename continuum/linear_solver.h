@@ -44,10 +44,9 @@ public:
                Symmetry symmetry = Symmetry::symmetric);
 
   /// Updates the preconditioner for a changed K; to be called before the next solve(), which otherwise uses the factors
-  /// or the multigrid that there are. Records the state `u` [m] (with
-  /// ghost entries) and sets up multigrid unless the existing one can be reused. `assemble` assembles the tangents of
-  /// coarser meshes and, for unsymmetric K, a symmetric one of the sheet itself; solve() may call it as well.
-  /// Collective.
+  /// or the multigrid that there are. Records the state `u` [m] (with ghost entries) and sets up multigrid unless the
+  /// existing one can be reused. `assemble` assembles the tangents of coarser meshes and, for unsymmetric K, a
+  /// symmetric one of the sheet itself; solve() may call it as well. Collective.
   void update(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble);
 
   /// Solves K x = b until the residual is at most `relative_tolerance` [-] times that of x = 0, or

@@ -13,6 +13,22 @@ namespace parameters_test
 
 using namespace sample_case;
 
+static Sample other_than_default()
+{
+  return {0.000625,
+          0.5,
+          -3,
+          12,
+          std::numeric_limits<std::uint64_t>::max(),
+          true,
+          "a = b, \xc3\xbc",
+          Law::linear,
+          Rule::behind_tip,
+          {1.5, 2.5},
+          5e-6,
+          12.};
+}
+
 TEST(Parameters, FillsEveryKindOfEntry)
 {
   const Sample sample = read("# a comment\n"
@@ -35,19 +51,7 @@ TEST(Parameters, FillsEveryKindOfEntry)
                              "  set title = a = b, \xc3\xbc\n"
                              "  set time step = 5 us\n"
                              "end\n");
-  const Sample expected{0.000625,
-                        0.5,
-                        -3,
-                        12,
-                        std::numeric_limits<std::uint64_t>::max(),
-                        true,
-                        "a = b, \xc3\xbc",
-                        Law::linear,
-                        Rule::behind_tip,
-                        {1.5, 2.5},
-                        5e-6,
-                        12.};
-  EXPECT_EQ(values(sample), values(expected));
+  EXPECT_EQ(values(sample), values(other_than_default()));
 }
 
 TEST(Parameters, MixedUnitsInAListAreRefused)
@@ -230,18 +234,11 @@ TEST(Parameters, JsonFillsEveryKindOfEntry)
     "Run": {"steps": -3, "seed": 18446744073709551615, "title": "x", "time step": "auto"}
   })",
                              {"Run/title=y"}, "a.json");
-  const Sample expected{0.000625,
-                        0.5,
-                        -3,
-                        12,
-                        std::numeric_limits<std::uint64_t>::max(),
-                        true,
-                        "y",
-                        Law::linear,
-                        Rule::behind_tip,
-                        {1.5, 0.30000000000000004, 7.},
-                        {},
-                        10.};
+  Sample expected = other_than_default();
+  expected.title = "y";
+  expected.stretches = {1.5, 0.30000000000000004, 7.};
+  expected.time_step = {};
+  expected.density = 10.;
   EXPECT_EQ(values(sample), values(expected));
 }
 
