@@ -285,8 +285,10 @@ def test_numbers_beyond_all_sense_are_2(out):
             ("continuum", "Top edge/displacement x=1/0", "Top edge/displacement x", "no finite number"),
             ("continuum", "Top edge/displacement y=0.01*sqrt(x-0.02)", "Top edge/displacement y", "no finite number"),
             ("continuum", "Body force/force x=1/(x*x+y*y)", "Body force/force x", "x = 0 m, y = 0 m"),
-            ("continuum", "Top edge/displacement x=rand()", "random"),
-            ("continuum", "Top edge/displacement x=y=1", "assignment")]:  # Numbers of steps: dry_run_test.py.
+            ("continuum", "Top edge/displacement x=rand()", "unknown 'rand' at column 1"),
+            ("continuum", "Top edge/displacement x=y=1", "assignment"),
+            ("continuum", "Top edge/displacement x=0,01*x", "a list"),
+            ("continuum", "Top edge/displacement x=0.01*sim(x)", "unknown 'sim' at column 6; nearest: sin")]:  # Numbers of steps: dry_run_test.py.
         run = latcon(command, CASES / "quick.prm", "--output-dir", out, "--set", entry)
         assert run.returncode == 2, run.stderr
         for part in ["--set", *parts]:

@@ -85,35 +85,44 @@ double slope_of(const std::vector<Eigen::Vector2d> &points)
 
 } // namespace
 
+NegativeZone negative_zone(const std::vector<PointVelocity> &points, const Eigen::Vector2d &pitch, double limit)
+{
+  NegativeZone zone{0., 0., std::nullopt, 0., Eigen::Vector2d::Zero()};
+  double last = 0.;
+  std::size_t n = 0;
+  for (const auto &[X, v] : points)
+  {
+    if (!std::isfinite(v))
+      return {v, v, std::nullopt, v, X};
+    if (X.x() <= 0.)
+      continue;
+    if (v < zone.depth)
+    {
+      zone.depth = v;
+      zone.deepest = X;
+    }
+    if (!(v < -limit))
+      continue;
+    ++n;
+    zone.distance = std::min(zone.distance.value_or(X.x()), X.x());
+    last = std::max(last, X.x());
+  }
+  if (n == 0)
+    return zone;
+  zone.area = static_cast<double>(n) * pitch.x() * pitch.y();
+  zone.length = (std::round((last - *zone.distance) / pitch.x()) + 1.) * pitch.x();
+  return zone;
+}
+
 NegativeZone negative_zone(const NearTipField &field, double laboratory_speed, double fraction)
 {
   const NearTipGrid &grid = field.grid;
-  NegativeZone zone{0., 0., std::nullopt, 0., Eigen::Vector2d::Zero()};
-  int first = grid.ahead + 1, last = 0;
-  std::size_t points = 0;
+  std::vector<PointVelocity> points;
   for (int j = -grid.half_height; j <= grid.half_height; ++j)
     for (int i = 1; i <= grid.ahead; ++i)
-    {
-      if (!field.holds(i, j))
-        continue;
-      const double v = field.velocity[grid.point(i, j)].x();
-      if (v < zone.depth)
-      {
-        zone.depth = v;
-        zone.deepest = grid.reference(i, j);
-      }
-      if (!(v < -fraction * laboratory_speed))
-        continue;
-      ++points;
-      first = std::min(first, i);
-      last = std::max(last, i);
-    }
-  if (points == 0)
-    return zone;
-  zone.area = static_cast<double>(points) * grid.pitch_X * grid.pitch_Y;
-  zone.length = (last - first + 1) * grid.pitch_X;
-  zone.distance = first * grid.pitch_X;
-  return zone;
+      if (field.holds(i, j))
+        points.push_back({grid.reference(i, j), field.velocity[grid.point(i, j)].x()});
+  return negative_zone(points, {grid.pitch_X, grid.pitch_Y}, fraction * laboratory_speed);
 }
 
 std::optional<double> velocity_asymmetry(const NearTipField &field)
@@ -282,28 +291,21 @@ std::vector<double> backward_speeds(const NearTipField &field)
   return speeds;
 }
 
-std::optional<OpeningStress> opening_stress(const NearTipField &field, double radius)
+std::optional<OpeningStress> opening_stress(const std::function<std::optional<double>(double)> &stress)
 {
   constexpr int largest_angle = 120; // [degrees]
-  const auto stress = [&](double angle)
-  {
-    return interpolate(field, on_circle(Eigen::Vector2d::Zero(), radius, angle),
-                       [&](int i, int j) { return field.cauchy_stress[field.grid.point(i, j)](1, 1); });
-  };
   double ahead = 0.;
   OpeningStress result{0., 1., -std::numeric_limits<double>::infinity()};
   for (int angle = 0; angle <= largest_angle; ++angle)
   {
-    const double theta = angle * M_PI / 180.;
-    const std::optional<double> above = stress(theta), below = stress(-theta);
-    if (!above || !below)
+    const std::optional<double> value = stress(angle * M_PI / 180.);
+    if (!value)
       return std::nullopt;
-    const double mean = 0.5 * (*above + *below);
     if (angle == 0)
-      ahead = mean;
-    if (mean > result.peak)
+      ahead = *value;
+    if (*value > result.peak)
     {
-      result.peak = mean;
+      result.peak = *value;
       result.angle = angle;
     }
   }
@@ -311,6 +313,23 @@ std::optional<OpeningStress> opening_stress(const NearTipField &field, double ra
     return std::nullopt;
   result.ratio = result.peak / ahead;
   return result;
+}
+
+std::optional<OpeningStress> opening_stress(const NearTipField &field, double radius)
+{
+  const auto stress = [&](double angle)
+  {
+    return interpolate(field, on_circle(Eigen::Vector2d::Zero(), radius, angle),
+                       [&](int i, int j) { return field.cauchy_stress[field.grid.point(i, j)](1, 1); });
+  };
+  return opening_stress(
+    [&](double angle) -> std::optional<double>
+    {
+      const std::optional<double> above = stress(angle), below = stress(-angle);
+      if (!above || !below)
+        return std::nullopt;
+      return 0.5 * (*above + *below);
+    });
 }
 
 std::optional<double> wedge_angle(const std::vector<Eigen::Vector2d> &sites, const Eigen::Vector2d &pitch, double from,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -23,8 +24,20 @@ struct NegativeZone
 /// Fraction of the crack's laboratory speed above which backward motion counts [-].
 inline constexpr double negative_zone_limit = 0.01;
 
-/// Measures the zone. @param laboratory_speed speed of the crack [m/s], > 0 @param fraction threshold as a fraction of
-/// this speed [-]
+/// v_x [m/s] of material at a reference position relative to the tip [m].
+struct PointVelocity
+{
+  Eigen::Vector2d X;
+  double v;
+};
+
+/// Measures the zone, v_x < -limit, from the points of a rectangular grid that have material; those behind the tip do
+/// not count. A velocity that is no number makes area and depth one that is none.
+/// @param pitch of the grid along X and Y [m] @param limit [m/s] >= 0
+NegativeZone negative_zone(const std::vector<PointVelocity> &points, const Eigen::Vector2d &pitch, double limit);
+
+/// Measures it in a field. @param laboratory_speed speed of the crack [m/s], > 0 @param fraction threshold as a
+/// fraction of this speed [-]
 NegativeZone negative_zone(const NearTipField &field, double laboratory_speed, double fraction = negative_zone_limit);
 
 /// Returns the asymmetry |v - M v| / |v| [-] of a velocity field (theory.md, eq. (N.3)), with its mirror image M v in
@@ -94,7 +107,11 @@ struct OpeningStress
 /// Measures the stress on a circle around the tip up to 120 degrees from the direction of the crack; beyond that the
 /// stress in the flanks is along the crack and does not open it. None if a part of this arc has no material or if the
 /// stress ahead is not tensile.
-/// @param radius reference [m]
+/// @param stress mean of both sides [Pa] at an angle [rad] to the direction of the crack; none where material is
+/// missing
+std::optional<OpeningStress> opening_stress(const std::function<std::optional<double>(double)> &stress);
+
+/// Measures it in a field. @param radius reference [m]
 std::optional<OpeningStress> opening_stress(const NearTipField &field, double radius);
 
 /// Returns the full angle between the flanks of a crack [rad] from current positions of sites relative to the tip [m].

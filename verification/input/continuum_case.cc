@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "verification/input/case.h"
-#include "verification/input/field_expression.h"
+#include "verification/input/expression_parser.h"
 
 namespace latcon::input
 {

@@ -4,12 +4,12 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <cstring>
+#include <regex>
 #include <system_error>
-#include <vector>
 
-#include <muParser.h>
-
+#include "support/full_precision.h"
 #include "verification/input/case_text.h"
 
 namespace latcon::input
@@ -21,6 +21,22 @@ using Operation = support::Expression::Operation;
 
 constexpr std::array functions{"sqrt", "exp", "log"};
 constexpr std::size_t longest_text = 2000;
+
+// Functions of dealii::FunctionParser that muParser lacks, and the natural logarithm.
+struct FunctionOfField
+{
+  const char *name;
+  double (*value)(double);
+};
+constexpr FunctionOfField functions_of_fields[] = {{"int", std::round},
+                                                   {"ceil", std::ceil},
+                                                   {"floor", std::floor},
+                                                   {"log", std::log},
+                                                   {"erf", std::erf},
+                                                   {"erfc", std::erfc},
+                                                   {"cot", [](double a) { return 1. / std::tan(a); }},
+                                                   {"csc", [](double a) { return 1. / std::sin(a); }},
+                                                   {"sec", [](double a) { return 1. / std::cos(a); }}};
 
 // muParser computes with doubles. Here each of them is the index of a node, and the operators and functions given to
 // muParser record their nodes in this list instead of computing, while parse_expression() runs. muParser passes no
@@ -91,8 +107,7 @@ void define_grammar(mu::Parser &parser)
   parser.AddValIdent(record_number);
 }
 
-std::string problem_with(const mu::Parser::exception_type &error, const std::string &text,
-                         const std::vector<std::string> &names)
+std::string problem_with(const mu::Parser::exception_type &error, const std::string &text, const mu::Parser &parser)
 {
   const auto position = static_cast<std::size_t>(std::max(0, error.GetPos()));
   const std::string at =
@@ -105,8 +120,13 @@ std::string problem_with(const mu::Parser::exception_type &error, const std::str
     while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) != 0 || text[end] == '_'))
       ++end;
     const std::string word = text.substr(position, std::max<std::size_t>(end - position, 1));
-    if (!word.empty() && std::find(functions.begin(), functions.end(), word) != functions.end())
+    if (parser.GetFunDef().count(word) != 0)
       return "a '(' is missing after '" + word + "'" + at;
+    std::vector<std::string> names;
+    for (const auto &[name, place] : parser.GetVar())
+      names.push_back(name);
+    for (const auto &[name, function] : parser.GetFunDef())
+      names.push_back(name);
     return "unknown '" + printable(word) + "'" + at + nearest_hint(word, names);
   }
   case mu::ecMISSING_PARENS:
@@ -117,9 +137,31 @@ std::string problem_with(const mu::Parser::exception_type &error, const std::str
     return "it ends too early";
   case mu::ecTOO_MANY_PARAMS:
   case mu::ecTOO_FEW_PARAMS:
-    return "a function takes one argument" + at;
+    return "wrong number of arguments of a function" + at;
   default:
-    return "'" + printable(error.GetToken()) + "' is not expected" + at;
+    return error.GetToken().empty() ? error.GetMsg() : "'" + printable(error.GetToken()) + "' is not expected" + at;
+  }
+}
+
+// Returns the value of an expression, or its node. Functions may be followed by blanks, which muParser does not accept.
+double evaluated(mu::Parser &parser, const std::string &text)
+{
+  if (text.find_first_not_of(' ') == std::string::npos)
+    throw InvalidExpression("an expression is required");
+  if (text.size() > longest_text)
+    throw InvalidExpression("it has more than " + std::to_string(longest_text) + " characters");
+  const std::string joined = std::regex_replace(text, std::regex("([A-Za-z]\\w*)( +)\\("), "$2$1(");
+  try
+  {
+    parser.SetExpr(joined);
+    const double value = parser.Eval();
+    if (parser.GetNumResults() != 1) // the user may have meant a decimal comma or both components
+      throw InvalidExpression("a list where one number is wanted");
+    return value;
+  }
+  catch (const mu::Parser::exception_type &error)
+  {
+    throw InvalidExpression(problem_with(error, joined, parser));
   }
 }
 
@@ -136,33 +178,15 @@ bool is_value_name(const std::string &word)
 support::Expression parse_expression(const std::string &text, const std::string &variable,
                                      const std::map<std::string, double> &values, std::set<std::string> *used)
 {
-  std::vector<std::string> names{variable};
-  for (const auto &[name, value] : values)
-    names.push_back(name);
-  std::string allowed = "; allowed: numbers, + - * / ^ ( ), ";
-  for (const char *function : functions)
-  {
-    allowed += std::string(function) + ", ";
-    names.emplace_back(function);
-  }
-  allowed += variable;
-  for (const auto &[name, value] : values)
-    allowed += ", " + name;
-  if (text.find_first_not_of(' ') == std::string::npos)
-    throw InvalidExpression("an expression is required" + allowed);
-  if (text.size() > longest_text)
-    throw InvalidExpression("it has more than " + std::to_string(longest_text) + " characters");
-  // muParser has further operators that cannot be switched off; a comma often is a decimal one.
-  for (std::size_t i = 0; i < text.size(); ++i)
-    if (std::isalnum(static_cast<unsigned char>(text[i])) == 0 &&
-        std::string("_.+-*/^() ").find(text[i]) == std::string::npos)
-      throw InvalidExpression("unknown '" + printable(text.substr(i, 1)) + "' at column " + std::to_string(i + 1) +
-                              allowed);
-
   support::Expression expression;
   recorded = &expression;
   try
   {
+    // muParser has further operators that cannot be switched off.
+    for (std::size_t i = 0; i < text.size(); ++i)
+      if (std::isalnum(static_cast<unsigned char>(text[i])) == 0 &&
+          std::string("_.+-*/^() ").find(text[i]) == std::string::npos)
+        throw InvalidExpression("unknown '" + printable(text.substr(i, 1)) + "' at column " + std::to_string(i + 1));
     mu::Parser parser;
     define_grammar(parser);
     auto node = static_cast<double>(expression.variable());
@@ -170,18 +194,19 @@ support::Expression parse_expression(const std::string &text, const std::string 
     std::map<std::string, double> nodes; // muParser refers to them
     for (const auto &[name, value] : values)
       parser.DefineVar(name, &(nodes[name] = static_cast<double>(expression.constant(value))));
-    parser.SetExpr(text);
-    expression.result = static_cast<std::size_t>(parser.Eval());
+    expression.result = static_cast<std::size_t>(evaluated(parser, text));
     if (used != nullptr)
       for (const auto &[name, place] : parser.GetUsedVar())
         used->insert(name);
   }
-  catch (const mu::Parser::exception_type &error)
-  {
-    throw InvalidExpression(problem_with(error, text, names) + allowed);
-  }
   catch (const InvalidExpression &error)
   {
+    std::string allowed = "; allowed: numbers, + - * / ^ ( ), ";
+    for (const char *function : functions)
+      allowed += std::string(function) + ", ";
+    allowed += variable;
+    for (const auto &[name, value] : values)
+      allowed += ", " + name;
     throw InvalidExpression(error.what() + allowed);
   }
   catch (const std::length_error &error)
@@ -189,6 +214,56 @@ support::Expression parse_expression(const std::string &text, const std::string 
     throw InvalidExpression(std::string("it is too long: ") + error.what());
   }
   return expression;
+}
+
+FieldExpression::FieldExpression(const std::string &text) : text_(text)
+{
+  parser_.DefineConst("pi", std::acos(-1.));
+  parser_.DefineVar("x", &x_);
+  parser_.DefineVar("y", &y_);
+  for (const auto &[name, function] : functions_of_fields)
+    parser_.DefineFun(name, function);
+  parser_.DefineFun("pow", static_cast<double (*)(double, double)>(std::pow));
+  parser_.DefineFun(
+    "if", +[](double is_true, double yes, double no) { return std::lround(is_true) != 0 ? yes : no; });
+  parser_.DefineOprt(
+    "|", +[](double a, double b) { return std::lround(a) != 0 || std::lround(b) != 0 ? 1. : 0.; }, mu::prLOR);
+  parser_.DefineOprt(
+    "&", +[](double a, double b) { return std::lround(a) != 0 && std::lround(b) != 0 ? 1. : 0.; }, mu::prLAND);
+  // muParser would evaluate `x = 1` to 1.
+  if (std::regex_search(std::regex_replace(text, std::regex("=="), "##"), std::regex("(^|[^<>!])=")))
+    throw InvalidExpression("an assignment; to compare, write ==");
+  (void)evaluated(parser_, text);
+}
+
+double FieldExpression::operator()(const double x, const double y)
+{
+  x_ = x;
+  y_ = y;
+  const double value = parser_.Eval();
+  if (!std::isfinite(value))
+    throw support::InputError("the expression '" + printable(text_) + "' is no finite number at x = " +
+                              support::full_precision(x) + " m, y = " + support::full_precision(y) + " m");
+  return value;
+}
+
+std::string problem_with_field(const std::string &expression, const std::vector<std::array<double, 2>> &points)
+{
+  try
+  {
+    FieldExpression field(expression);
+    for (const auto &[x, y] : points)
+      (void)field(x, y);
+    return "";
+  }
+  catch (const InvalidExpression &error)
+  {
+    return std::string("not an expression in x, y and pi: ") + error.what();
+  }
+  catch (const support::InputError &error)
+  {
+    return error.what();
+  }
 }
 
 } // namespace latcon::input

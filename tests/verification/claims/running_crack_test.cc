@@ -326,26 +326,29 @@ TEST(TipField, AveragesAndInterpolates)
     for (const TipSite &site : tip_sites(drive, sheet, drive.tip(stride), 6.))
     {
       TipValues values;
-      values.velocity = {2. * site.xi + 3. * site.eta, -site.eta};
+      values.velocity = {2. * site.xi + 3. * site.eta - 10., -site.eta};
       values.opening_stress = 1. + site.xi;
       field.add(site, values);
       ++n;
     }
   const double full_area =
-    0.5 * static_cast<double>(n) * field.point_area(); // a point has four sites, two of each half
+    0.5 * static_cast<double>(n) * field.pitch().prod(); // a point has four sites, two of each half
   EXPECT_NEAR(full_area, M_PI * 36., 0.05 * M_PI * 36.);
   for (const TipField::Point &point : field.points())
   {
-    EXPECT_NEAR(point.values.velocity.x(), 2. * point.xi + 3. * point.eta, 1e-12);
+    EXPECT_NEAR(point.values.velocity.x(), 2. * point.xi + 3. * point.eta - 10., 1e-12);
     EXPECT_NEAR(point.values.opening_stress, 1. + point.xi, 1e-12);
   }
   const TipValues between = field.at(1.3, 2.1);
-  EXPECT_NEAR(between.velocity.x(), 2. * 1.3 + 3. * 2.1, 1e-12);
+  EXPECT_NEAR(between.velocity.x(), 2. * 1.3 + 3. * 2.1 - 10., 1e-12);
   EXPECT_NEAR(field.at(-0.7, 0.).velocity.y(), 0., 1e-12);
   EXPECT_FALSE(std::isfinite(field.at(7., 0.).velocity.x()));
-  EXPECT_NEAR(stress_lobes(field, 3.).ratio, 1., 1e-12);
-  const BackwardZone zone = backward_zone(field, 1., 5.);
-  EXPECT_EQ(zone.area, 0.);
+  EXPECT_EQ(opening_stress(field, 3.).ratio, 1.);
+  EXPECT_FALSE(opening_stress(field, 7.).ratio >= 1.);
+  // Slower than -1: 2 xi + 3 eta < 9, points 7, 5 and 2 of the three lowest lines.
+  const analysis::NegativeZone zone = negative_zone(field, 1., 5.);
+  EXPECT_NEAR(zone.area, 14. * field.pitch().prod(), 1e-12);
+  EXPECT_NEAR(zone.depth, 2. * 0.375 + 3. * 0.5 * field.pitch().y() - 10., 1e-12);
 }
 
 } // namespace running_crack_test

@@ -47,7 +47,8 @@ TEST(ExpressionParser, HasTheUsualGrammar)
                                                                                 {"1e-3*lam + .5", 0.502},
                                                                                 {"sqrt(8*lam) - exp(0)", 3.},
                                                                                 {"log(lam*0.5)", 0.},
-                                                                                {" ( lam ) ", 2.}})
+                                                                                {" ( lam ) ", 2.},
+                                                                                {"log (lam*0.5)", 0.}})
     EXPECT_EQ(value(input::parse_expression(text, "lam", constants), 2.), at_two) << text;
   // exp(lam ln(lam))
   EXPECT_NEAR(value(input::parse_expression("lam^lam", "lam", constants), 2.), 4., 1e-14);
@@ -73,7 +74,7 @@ TEST(ExpressionParser, NamesTheColumnOfAMistakeAndWhatIsAllowed)
          {"lam \xc2\xb2", "at column 5"},
          {"sqrt(lam", "')' is missing at the end"},
          {"lam)", "parenthesis at column 4"},
-         {"sqrt()", "one argument at column 6"},
+         {"sqrt()", "wrong number of arguments of a function at column 6"},
          {"exp lam", "'(' is missing after 'exp' at column 1"},
          {"0x10*lam", "'x10' at column 2"},
          {"2lam", "'lam' is not expected at column 2"},

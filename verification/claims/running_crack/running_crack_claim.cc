@@ -189,16 +189,17 @@ private:
                support::relative_error(continuum, lattice));
     };
     const double limit = 0.01 * sides_.drive.speed * subject_.deformation(0, 0), reach = options_.far * d;
-    const BackwardZone of_lattice = backward_zone(lattice_.field, limit, reach);
-    const BackwardZone zone = backward_zone(fine.field, limit, reach);
-    pair("backward motion ahead of the tip, r <= far field: area over d^2", "1", of_lattice.area / (d * d),
-         zone.area / (d * d));
+    const analysis::NegativeZone of_lattice = negative_zone(lattice_.field, limit, reach);
+    const analysis::NegativeZone zone = negative_zone(fine.field, limit, reach);
+    pair("backward motion ahead of the tip, r <= far field: area over d^2", "1", 2. * of_lattice.area / (d * d),
+         2. * zone.area / (d * d));
     pair("backward motion ahead of the tip: most negative velocity", "m/s", of_lattice.depth, zone.depth);
     constexpr double radius = 3.;
-    const StressLobes lattice = stress_lobes(lattice_.field, radius * d),
-                      continuum = stress_lobes(fine.field, radius * d);
+    const analysis::OpeningStress lattice = opening_stress(lattice_.field, radius * d),
+                                  continuum = opening_stress(fine.field, radius * d);
     const std::string at = support::text_of(" at r = ", radius, " d");
-    pair("opening stress straight ahead" + at, "Pa", lattice.ahead, continuum.ahead);
+    pair("opening stress straight ahead" + at, "Pa", lattice_.field.at(radius * d, 0.).opening_stress,
+         fine.field.at(radius * d, 0.).opening_stress);
     pair("lobes of the opening stress, largest over straight ahead" + at, "1", lattice.ratio, continuum.ratio);
     rows.add("lobes of the opening stress, angle of the largest" + at + ", " + name + " continuum", "deg",
              of_both(lattice.angle, continuum.angle), std::abs(lattice.angle - continuum.angle));

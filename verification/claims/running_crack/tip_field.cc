@@ -150,38 +150,24 @@ TipValues TipField::at(double xi, double eta) const
   return mean;
 }
 
-BackwardZone backward_zone(const TipField &field, double limit, double reach)
+analysis::NegativeZone negative_zone(const TipField &field, double limit, double reach)
 {
-  BackwardZone zone{0., 0.};
+  std::vector<analysis::PointVelocity> points;
   for (const TipField::Point &point : field.points())
-  {
-    const double v = point.values.velocity.x();
-    if (!std::isfinite(v))
-      return {v, v};
-    if (point.xi < 0. || point.radius() > reach)
-      continue;
-    zone.depth = support::smallest_of({zone.depth, v});
-    if (v < -limit)
-      zone.area += 2. * field.point_area();
-  }
-  return zone;
+    if (point.radius() <= reach)
+      points.push_back({{point.xi, point.eta}, point.values.velocity.x()});
+  return analysis::negative_zone(points, field.pitch(), limit);
 }
 
-StressLobes stress_lobes(const TipField &field, double radius)
+analysis::OpeningStress opening_stress(const TipField &field, double radius)
 {
-  const auto stress = [&](double degrees) {
-    return field.at(radius * std::cos(degrees * M_PI / 180.), radius * std::sin(degrees * M_PI / 180.)).opening_stress;
+  const auto stress = [&](double angle) -> std::optional<double>
+  {
+    const double value = field.at(radius * std::cos(angle), radius * std::sin(angle)).opening_stress;
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
   };
-  StressLobes lobes{0., 1., stress(0.)};
-  double largest = lobes.ahead;
-  for (double degrees = 2.; degrees <= 120.; degrees += 2.)
-    if (const double value = stress(degrees); !(value <= largest))
-    {
-      largest = value;
-      lobes.angle = degrees;
-    }
-  lobes.ratio = largest / lobes.ahead;
-  return lobes;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  return analysis::opening_stress(stress).value_or(analysis::OpeningStress{none, none, none});
 }
 
 TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &material, const Eigen::Matrix2d &F,

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "lattice/material.h"
+#include "verification/analysis/near_tip_measurement.h"
 
 namespace latcon::claims
 {
@@ -89,7 +90,7 @@ public:
   /// Distance from the tip within which dissipation counts as near it [d].
   static constexpr double near_tip = 5.;
   /// Power dissipated within it by the whole sheet [W/m].
-  double near_power() const { return 2. * point_area() * near_ / CrackDrive::n_samples; }
+  double near_power() const { return 2. * pitch().prod() * near_ / CrackDrive::n_samples; }
 
   /// A point of the grid that has values.
   struct Point
@@ -105,7 +106,7 @@ public:
   /// point without values is needed.
   TipValues at(double xi, double eta) const;
 
-  double point_area() const { return drive_.stride() * drive_.pitch(); } ///< reference area per point [m^2]
+  Eigen::Vector2d pitch() const { return {drive_.stride(), drive_.pitch()}; } ///< of the points, reference [m]
 
 private:
   struct Sum
@@ -119,26 +120,13 @@ private:
   double near_ = 0.;                          // sum of the dissipation of sites near the tip
 };
 
-/// Material ahead of the tip that moves against the crack, v_x < -limit.
-struct BackwardZone
-{
-  double area;  ///< reference, both halves [m^2]
-  double depth; ///< most negative v_x ahead of the tip [m/s], <= 0
-};
+/// Zone of the upper half of the field that moves against the crack, of points at most `reach` [m] from the tip.
+/// @param limit [m/s] >= 0
+analysis::NegativeZone negative_zone(const TipField &field, double limit, double reach);
 
-/// @param limit [m/s] >= 0 @param reach points farther from the tip are left out [m]
-BackwardZone backward_zone(const TipField &field, double limit, double reach);
-
-/// Opening stress on a circle around the tip, up to 120 degrees off the crack's direction.
-struct StressLobes
-{
-  double angle; ///< of the largest value [degrees], >= 0
-  double ratio; ///< largest value over that straight ahead [-]
-  double ahead; ///< straight ahead [Pa]
-};
-
-/// The lobes on the circle of that radius [m], which must lie within the field.
-StressLobes stress_lobes(const TipField &field, double radius);
+/// Opening stress on a circle around the tip; no numbers where the field does not reach or is no number.
+/// @param radius [m]
+analysis::OpeningStress opening_stress(const TipField &field, double radius);
 
 /// Energies that a sheet lost while its tip advanced, per reference length of crack and thickness [J/m^2].
 struct CrackEnergy
