@@ -15,6 +15,7 @@ from .files import read_columns, read_json
 from .folder import write_file
 from .frames import Floats
 from .quantities import quantity_text
+from .rows import text_table
 from .study.outcome import measured_values, unfit_rows
 from .study.output import csv_text
 from .study.program import InputError, Program
@@ -172,13 +173,13 @@ def _text(cracks: Sequence[_Crack], quantities: Sequence[Mapping[str, Any]], ent
     for row in quantities:
         ratio = row["difference_over_uncertainty"]
         rows.append([row["name"], *(cell(row, part) for part in (*SIDES, "difference")), "" if ratio is None else f"{ratio:+.1f}"])
-    text = _table(rows) + "\n"
+    text = text_table(rows[0], rows[1:], ()) + "\n\n"
     text += "".join(f"{crack.name} failed its checks, and is no measurement: {crack.problem}\n"
                     for crack in cracks if crack.problem)
     if entries:
         units = ["" if entry["unit"] == "1" else entry["unit"] for entry in entries]
-        text += _table([["entry", *names, "unit"],
-                        *([entry["key"], entry["first"], entry["second"], unit] for entry, unit in zip(entries, units))])
+        text += text_table(["entry", *names, "unit"], [[entry["key"], entry["first"], entry["second"], unit]
+                                                       for entry, unit in zip(entries, units)], ()) + "\n"
     else:
         text += "The cases have the same entries.\n"
     if not paths:
@@ -187,9 +188,3 @@ def _text(cracks: Sequence[_Crack], quantities: Sequence[Mapping[str, Any]], ent
     rms, largest = (f"{quantity_text(paths[name], None, 'm')} ({paths[name] / cracks[0].spacing:.3g} d)"
                     for name in ("rms_distance", "largest_distance"))
     return text + f"\nDistance between the paths, X from {begin} to {end}: rms {rms}, largest {largest} at X = {at}"
-
-
-def _table(rows: Sequence[Sequence[str]]) -> str:
-    """Returns columns two blanks apart."""
-    widths = [max(map(len, column)) for column in zip(*rows)]
-    return "".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() + "\n" for row in rows)

@@ -17,8 +17,9 @@ from .errors import DONE
 from .folder import write_file
 from .frames import Floats, vtk_array
 from .interpolation import interpolate
+from .rows import judged_row
 from .side_frames import FIELDS, Field, SideFrame, find_frame, is_same_time, list_of_times, read_side
-from .study.output import finite_or_text, shortest
+from .study.output import shortest
 from .study.program import InputError, Program
 from .study.record import Printed, Record, table_of_rows
 
@@ -244,11 +245,7 @@ def norms(lattice: SideFrame, continuum: SideFrame, comparison: Comparison, tole
         values: list[Any] = [*numbers, None, None]
         here, there, difference = values[:3]
         error = difference and difference / float(np.max((here, there)))
-        holds = tolerance is None or all(map(math.isfinite, (here, there))) and error <= tolerance
-        rows.append({"claim": "compare", "quantity": quantity, "unit": unit, "lattice": finite_or_text(float(here)),
-                     "continuum": finite_or_text(there), "theory": None, "error": finite_or_text(error), "tolerance": tolerance,
-                     "verdict": "fails" if not holds else "reported" if tolerance is None else "holds", "reason": reason,
-                     "gate": False, "kind": "claim"})
+        rows.append(judged_row("compare", quantity, unit, float(here), there, error=error, tolerance=tolerance, reason=reason))
 
     free = comparison.free
     for what, sites in (("sites", np.ones_like(free)), ("sites outside the finite element sheet", comparison.outside),

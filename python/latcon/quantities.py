@@ -29,7 +29,7 @@ RECORDED: dict[str, str] = {name: unit for unit, words in _TABLE for word in wor
                             for name in ((word[:-1], word[:-1] + _UNCERTAINTY) if word[-1] == "+" else (word,))}
 """SI units of the quantities that a study records of a run, in the order of `study.csv`: numbers in `crack.json` and
 `near_tip.json`, and those that follow from these, the case and the tables: zeta, lengths over d, numbers of the path, energies per area."""
-UNITS: dict[str, str] = RECORDED | dict.fromkeys(("X", "Y", "sampled_from", "sampled_to"), "m")
+UNITS: dict[str, str] = RECORDED | dict.fromkeys(("X", "Y", "sampled_from", "sampled_to", "sinusoid_offset"), "m")
 """SI units of the numbers in `crack.json` and `near_tip.json`; all others are pure numbers."""
 
 SHOWN = {"m": (100.0, "cm"), "m^2": (1e6, "mm²"), "s": (1e3, "ms"), "degrees": (1.0, "°")}

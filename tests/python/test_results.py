@@ -49,7 +49,8 @@ def test_recorded_quantities_are_those_of_the_files(crack):
     written = {name for file in ("crack", "near_tip") for name in json.loads((crack.directory / f"{file}.json").read_text())}
     derived = {"zeta", *(name for name in RECORDED if "_over_d" in name or name.startswith("path_") or name.endswith("_per_area"))}
     assert set(RECORDED) - derived <= written and not derived & written
-    others = {"pattern", "reason", "thresholds", "nearest_to_breaking", "skip_verification", "units", "sampled_from", "sampled_to"}
+    others = {"pattern", "reason", "thresholds", "nearest_to_breaking", "skip_verification", "units", "sampled_from", "sampled_to",
+              "sinusoid_offset", "sinusoid_slope", "sinusoid_phase"}
     assert written - set(RECORDED) == others
 
 

@@ -7,6 +7,7 @@ import json
 import re
 from concurrent.futures import ThreadPoolExecutor
 
+import numpy as np
 import pytest
 
 from program import CASES, FULL, latcon
@@ -36,6 +37,11 @@ def test_fig1_is_one_of_the_ten_seeds_of_the_tutorial(out):
     code, crack = fig1(out, "runge-kutta-chebyshev", 6, report=True)
     assert (code, crack["pattern"]) == (0, "oscillating")
     assert crack["energy_imbalance"] < 5e-3
+    tip = np.loadtxt(out / "crack.csv", delimiter=",", skiprows=1, usecols=(1, 2))
+    X, Y = tip[(tip[:, 0] > crack["window_begin"]) & (tip[:, 0] < crack["window_end"])].T
+    curve = crack["sinusoid_offset"] + crack["sinusoid_slope"] * X + crack["amplitude"] * np.sin(
+        2 * np.pi * X / crack["wavelength"] + crack["sinusoid_phase"])
+    assert np.std(Y - curve) < 0.5 * np.std(Y)  # 0.3 for a zigzag with hops
     page = (CASES.parents[1] / "docs" / "tutorial.md").read_text(encoding="utf-8")
     for name, words, unit in (("wavelength", r"Over ten seeds the wavelength is (\S+) ± (\S+) cm", 1e-2),
                               ("crest_amplitude", r"from trough to crest\) is\s(\S+) ± (\S+) cm", 1e-2),

@@ -1,7 +1,8 @@
-"""Tests of parts of the report: animation, places where it is read and written, missing packages, the fit of a sinusoid, digits."""
+"""Tests of parts of the report: animation, places where it is read and written, missing packages, the curve of a path, digits."""
 import base64
 import functools
 import io
+import json
 import math
 import os
 import re
@@ -16,11 +17,12 @@ import pytest
 from PIL import Image
 
 from report_test import (
-    AMPLITUDE, BEGIN, END, FOLDER, HOLDS, MOTION_FRAMES, OFFSET, PHASE, PICTURES, SLOPE, WAVELENGTH, drawn, path_of_tip, read_page, write_fracture)
+    BEGIN, END, FOLDER, HOLDS, MOTION_FRAMES, PICTURES, drawn, path_of_tip, read_page, write_fracture)
 
 from latcon.quantities import number_text
 from latcon.report import animation, report
-from latcon.report.crack_path import fit_sinusoid
+from latcon.report.crack_path import measured_sinusoid
+from latcon.report.runs import read_run
 
 
 def refusal(error):
@@ -104,18 +106,14 @@ def test_a_name_that_is_no_text_is_shown_with_a_question_mark(runs):
     assert "latcon report: lat?1n" in read_page(folder)[1].text
 
 
-def test_recovers_the_sinusoid():
-    X = np.linspace(0.0, 0.12, 500)
-    Y = np.where((X < BEGIN) | (X > END), 1.0, path_of_tip(X))  # points outside must not count
-    fit = fit_sinusoid(X, Y, WAVELENGTH, BEGIN, END)
-    for value, truth in ((fit.amplitude, AMPLITUDE), (fit.phase, PHASE), (fit.offset, OFFSET), (fit.slope, SLOPE)):
-        assert value / truth == pytest.approx(1, abs=5e-10)
-    assert np.abs(fit(X) - path_of_tip(X)).max() < 1e-12
-
-
-def test_needs_more_points_than_coefficients():
-    X = np.linspace(BEGIN, END, 4)
-    assert fit_sinusoid(X, X, WAVELENGTH, BEGIN, END) is None
+def test_draws_the_sinusoid_that_was_measured(tmp_path):
+    run = tmp_path / "run"
+    write_fracture(run, [HOLDS], has_sheet=False)
+    X = np.linspace(BEGIN, END, 500)
+    assert np.array_equal(measured_sinusoid(read_run(run))(X), path_of_tip(X))
+    crack = json.loads((run / "crack.json").read_text())
+    (run / "crack.json").write_text(json.dumps({**crack, "sinusoid_phase": None}))
+    assert measured_sinusoid(read_run(run)) is None
 
 
 def test_gives_the_digits_that_the_uncertainty_leaves():

@@ -32,8 +32,7 @@ VOID = {"meta", "br", "hr", "img", "link", "input", "source"}
 
 def path_of_tip(X):
     """The sinusoid of the made-up run about the middle of the window."""
-    distance = X - (BEGIN + END) / 2
-    return OFFSET + SLOPE * distance + AMPLITUDE * np.sin(2 * np.pi * distance / WAVELENGTH + PHASE)
+    return OFFSET + SLOPE * X + AMPLITUDE * np.sin(2 * np.pi * X / WAVELENGTH + PHASE)
 
 
 def check_row(claim, quantity, verdict, **numbers):
@@ -75,7 +74,7 @@ def write_fracture(folder, rows, has_sheet=True):
     crack = {"pattern": "oscillating", "reason": "it winds", "window_begin": BEGIN,
              "window_end": END, "speed_lagrangian": 20.0, "speed_lagrangian_uncertainty": 0.2,
              "wavelength": WAVELENGTH, "wavelength_uncertainty": 1.5e-4, "amplitude": AMPLITUDE,
-             "amplitude_uncertainty": 1e-4}
+             "amplitude_uncertainty": 1e-4, "sinusoid_offset": OFFSET, "sinusoid_slope": SLOPE, "sinusoid_phase": PHASE}
     (folder / "crack.json").write_text(json.dumps(crack))
     near_tip = {"samples": 84, "reason": "", "negative_zone_area": 1.4546e-5, "negative_zone_area_uncertainty": 1.88e-6,
                 "samples_with_vortex": 0.25, "samples_with_vortex_uncertainty": 0.13,

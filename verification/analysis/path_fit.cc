@@ -71,6 +71,12 @@ double Sinusoid::operator()(double X) const
   return offset + slope * (X - origin) + sine * std::sin(phase) + cosine * std::cos(phase);
 }
 
+Sinusoid Sinusoid::about(double X) const
+{
+  const double turn = 2. * M_PI * (X - origin) / wavelength, c = std::cos(turn), s = std::sin(turn);
+  return {X, offset + slope * (X - origin), slope, sine * c - cosine * s, cosine * c + sine * s, wavelength};
+}
+
 std::optional<SinusoidFit> fit_sinusoid(const ColumnMeans &path, double shortest_wavelength, double resolution)
 {
   if (path.size() < min_columns_of_sinusoid)

@@ -68,6 +68,7 @@ struct Sinusoid
 
   double amplitude() const { return std::hypot(sine, cosine); } ///< half of peak to peak [m]
   double operator()(double X) const;                            ///< Y [m]
+  Sinusoid about(double X) const;                               ///< the same curve with this origin [m]
 };
 
 /// Smallest number of columns for a fit: one and a half times the five coefficients and the three parameters of the

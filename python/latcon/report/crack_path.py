@@ -1,6 +1,5 @@
 """The path of a crack through the undeformed sheet: its best-fitting sinusoid, and its picture."""
 import math
-from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,46 +10,14 @@ from .runs import has_rows
 LEFT, RIGHT, TOP = 1.0, 0.25, 0.45  # margins of the axes [in]
 
 
-@dataclass(frozen=True)
-class Sinusoid:
-    """Y(X) = offset + slope (X - origin) + amplitude sin(2 pi (X - origin) / wavelength + phase); lengths in m."""
-
-    origin: float
-    offset: float
-    slope: float
-    amplitude: float
-    phase: float
-    wavelength: float
-
-    def __call__(self, X):
-        turn = 2 * np.pi * (X - self.origin) / self.wavelength
-        return self.offset + self.slope * (X - self.origin) + self.amplitude * np.sin(turn + self.phase)
-
-
-def fit_sinusoid(X, Y, wavelength, begin, end):
-    """Least-squares sinusoid of a given wavelength through the part of a path between begin and end, all in m.
-
-    None if that part has too few points for the four coefficients.
-    """
-    inside = (X >= begin) & (X <= end)
-    if np.count_nonzero(inside) < 5:
-        return None
-    origin = (begin + end) / 2
-    distance = X[inside] - origin
-    turn = 2 * np.pi * distance / wavelength
-    columns = np.column_stack((np.ones_like(distance), distance, np.sin(turn), np.cos(turn)))
-    offset, slope, sine, cosine = np.linalg.lstsq(columns, Y[inside], rcond=None)[0]
-    return Sinusoid(origin, offset, slope, math.hypot(sine, cosine), math.atan2(cosine, sine), wavelength)
-
-
 def measured_sinusoid(run):
-    """The sinusoid of an oscillating crack, with the measured wavelength and amplitude; None if there is none."""
+    """Y(X) [m] of the measured sinusoid of an oscillating crack; None if there is none."""
     crack = run.crack
-    if crack is None or crack["pattern"] != "oscillating" or not crack["wavelength"]:
+    names = ("sinusoid_offset", "sinusoid_slope", "amplitude", "wavelength", "sinusoid_phase")
+    if crack is None or crack["pattern"] != "oscillating" or any(crack[name] is None for name in names):
         return None
-    window = measured_window(run)
-    curve = window and fit_sinusoid(run.tip["X"], run.tip["Y"], crack["wavelength"], *window)
-    return curve if curve is None or crack["amplitude"] is None else replace(curve, amplitude=crack["amplitude"])
+    offset, slope, amplitude, wavelength, phase = (crack[name] for name in names)
+    return lambda X: offset + slope * X + amplitude * np.sin(2 * np.pi * X / wavelength + phase)
 
 
 def measured_window(run):

@@ -1,5 +1,4 @@
 """Reader of the runs in a folder: their checks and measurements, the last frame of a sheet, and those of its motion."""
-import math
 from collections import namedtuple
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,6 +7,7 @@ from ..errors import INTERRUPTED, UnreadableFile
 from ..files import checked_number, if_present, read_columns, read_json, read_rows, read_series, read_text
 from ..folder import EARLIER
 from ..frames import Frame, read_frame
+from ..rows import ratio_to_tolerance, verdict
 from .claim_plots import read_claim_tables
 from .raster import Mesh
 
@@ -15,7 +15,8 @@ from .raster import Mesh
 SIGNS_OF_A_RUN = ("results.json", "run.json", "crack.json", "crack.csv", "lattice.pvd")
 # Numbers of crack.json that the page shows, None where they were not measured.
 CRACK_NUMBERS = (*(name + ending for name in ("speed_lagrangian", "speed_laboratory", "wavelength", "amplitude")
-                   for ending in ("", "_uncertainty")), "window_begin", "window_end")
+                   for ending in ("", "_uncertainty")), "window_begin", "window_end",
+                 "sinusoid_offset", "sinusoid_slope", "sinusoid_phase")
 # First columns of energy.csv of an equilibrium and of a motion of the continuum.
 CONTINUUM_ENERGIES = ("load_factor,", "t,elastic,kinetic,micro_inertia,")
 
@@ -47,16 +48,8 @@ class Check:
 
     @property
     def ratio(self):
-        """Error over tolerance, at most 1 if the row holds; None without a tolerance, infinite if a given number is not
-        finite."""
-        if self.tolerance is None:
-            return None
-        given = [x for x in (self.lattice, self.continuum, self.theory, self.error, self.tolerance) if x is not None]
-        if self.error is None or not all(map(math.isfinite, given)):
-            return math.inf
-        if self.tolerance == 0:
-            return 0.0 if self.error == 0 else math.inf
-        return self.error / self.tolerance
+        """Error over tolerance; None without a tolerance, infinite if a given number is not finite."""
+        return ratio_to_tolerance(self.error, self.tolerance, (self.lattice, self.continuum, self.theory))
 
 
 @dataclass(frozen=True)
@@ -147,7 +140,7 @@ def read_run(folder):
     rows, info = if_present(read_rows, results), if_present(read_json, folder / "run.json")
     checks = [Check(**row, verified=not (info or {}).get("skip_verification")) for row in rows or []]
     for number, check in enumerate(checks, start=1):
-        if check.verdict != ("reported" if check.tolerance is None else "holds" if check.ratio <= 1 else "fails"):
+        if check.verdict != verdict(check.ratio):
             raise UnreadableFile(results, f"row {number} of \"claims\": the verdict {check.verdict!r} contradicts its numbers")
     return Run(
         name=folder.resolve().name,

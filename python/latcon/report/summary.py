@@ -1,8 +1,8 @@
 """Summary of all runs: counts, worst errors, comparison with published values, and the table on stdout."""
-import textwrap
 from dataclasses import dataclass
 
 from ..quantities import UNITS, number_text, shown_unit
+from ..rows import text_table
 from .runs import Check, Run
 
 VERDICTS = ("fails", "holds", "reported")
@@ -90,22 +90,6 @@ def percent(fraction):
 def ratio_text(ratio):
     """Error over tolerance; a dash if there is none."""
     return "-" if ratio is None else f"{ratio:.2g}"
-
-
-def text_table(header, rows, numbers, width=120):
-    """Aligned text of at most `width` columns; the second column is wrapped if need be. `numbers`: right-aligned."""
-    sizes = [max(len(row[i]) for row in [header, *rows]) for i in range(len(header))]
-    sizes[1] = max(8, min(sizes[1], width - sum(sizes) + sizes[1] - 2 * (len(sizes) - 1)))
-    lines = []
-    for row in [header, *rows]:
-        wrapped = textwrap.wrap(row[1], sizes[1]) or [""]
-        for i, part in enumerate(wrapped):
-            cells = [row[0] if i == 0 else "", part] + [cell if i == 0 else "" for cell in row[2:]]
-            padded = [cell.rjust(size) if column in numbers else cell.ljust(size)
-                      for column, (cell, size) in enumerate(zip(cells, sizes))]
-            lines.append("  ".join(padded).rstrip()[:width])
-    lines.insert(1, "-" * min(width, sum(sizes) + 2 * (len(sizes) - 1)))
-    return "\n".join(lines)
 
 
 def text_summary(runs, unreadable):

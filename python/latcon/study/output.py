@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from ..rows import finite_or_text
 from .outcome import RunOutcome, RunState, group_by_run, statistics
 from .plan import PlannedRun, Verification
 from .program import Program
@@ -54,11 +55,6 @@ def study_json(program: Program, results: StudyResults) -> str:
         "claims": [{"claim": claim.claim.claim, "paper": claim.claim.paper, "note": claim.claim.note,
                     "verdict": claim.verdict.value, "rows": [_row(row) for row in claim.rows]} for claim in results.claims]}
     return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
-
-
-def finite_or_text(value: float | None) -> float | str | None:
-    """JSON has no number that is not finite, and null means that there is no value."""
-    return value if value is None or math.isfinite(value) else str(value)
 
 
 def _row(outcome: RowOutcome) -> dict[str, Any]:

@@ -11,7 +11,6 @@ import select
 import shutil
 import signal
 import subprocess
-import textwrap
 import time
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -20,6 +19,7 @@ from ..errors import BAD_INPUT, CLAIM_FAILED, DONE, INTERRUPTED, OUTPUT_FAILED, 
 from ..files import read_json, read_text
 from ..folder import FolderLock, add_to_list, archive, is_listed, write_atomically, write_file
 from ..program import page_command
+from ..rows import text_table
 from .program import Ended, InputError, Program
 from .pool import start_child
 from .output import csv_text
@@ -165,17 +165,10 @@ def table_of_rows(rows: Sequence[Mapping[str, Any]]) -> str:
     def number(row: Mapping[str, Any], key: str, digits: int) -> str:
         return "" if row[key] is None else f"{float(row[key]):.{digits}g}"
 
-    table = [["claim", "quantity [unit]", "lattice", "continuum", "theory", "error", "tolerance", "verdict"]]
-    table += [[row["claim"], f"{row['quantity']} [{row['unit']}]", *(number(row, key, 7) for key in table[0][2:5]),
-               *(number(row, key, 3) for key in table[0][5:7]), row["verdict"]] for row in rows]
-    widths = [max(map(len, column)) for column in zip(*table)]
-    widths[1] = min(widths[1], 120 - sum(widths) - 2 * (len(widths) - 1) + widths[1])  # numbers are never truncated
-    lines = []
-    for claim, quantity, *numbers, verdict in table:
-        first, *more = textwrap.wrap(quantity, widths[1], break_on_hyphens=False)
-        cells = [claim.ljust(widths[0]), first.ljust(widths[1]), *(cell.rjust(width) for cell, width in zip(numbers, widths[2:])), verdict]
-        lines += ["  ".join(cells), *(" " * (widths[0] + 2) + line for line in more)]
-    lines.insert(1, "-" * (sum(widths) + 2 * (len(widths) - 1)))
+    header = ["claim", "quantity [unit]", "lattice", "continuum", "theory", "error", "tolerance", "verdict"]
+    cells = [[row["claim"], f"{row['quantity']} [{row['unit']}]", *(number(row, key, 7) for key in header[2:5]),
+              *(number(row, key, 3) for key in header[5:7]), row["verdict"]] for row in rows]
+    lines = [text_table(header, cells, range(2, 7))]
     failing, judged = [row for row in rows if row["verdict"] == "fails"], sum(row["verdict"] != "reported" for row in rows)
     if failing:
         lines += ["", f"{len(failing)} of {judged} check{'s' * (judged > 1)} fail{'s' * (len(failing) == 1)}:"]

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..quantities import quantity_text
+from ..rows import judged_row
 from .outcome import RunOutcome, SeedStatistics, group_by_run, statistics
 from .plan import PlannedRun
 from .statistical_tests import SIGNIFICANCE, Interval, OnsetFit, adjust_by_holm, fit_onset, isotonic_test, welch_p_value
@@ -95,26 +96,21 @@ class RowOutcome:
         if self.number is None and self.verdict is Verdict.REPORTED:
             return None
         row = self.row
-        result: dict[str, Any] = {
-            "claim": claim, "quantity": ", ".join(row.runs) + ": " + row.quantity, "unit": row.unit, "lattice": self.number,
-            "continuum": None, "theory": 1.0 if row.rule is Rule.IS else self.bound, "error": None, "tolerance": None,
-            "verdict": {Verdict.HOLDS: "holds", Verdict.REPORTED: "reported"}.get(self.verdict, "fails"), "reason": "",
-            "gate": False, "kind": "claim"}
+        quantity, unit = ", ".join(row.runs) + ": " + row.quantity, row.unit
         if row.rule.is_along:
-            result["quantity"] += ", " + self.expected
-            result["unit"] = "1"
-        if self.verdict is not Verdict.REPORTED:
-            # Excess beyond the bound; 0 inside.
-            result["error"] = math.nan if self.misfit is None else self.misfit if not self.misfit < 0 else 0.0
-            result["tolerance"] = self.allowed
-            result["reason"] = "error: " + (
-                "p of the test, 1 if means contradict the rule" if self.is_test else
-                {Rule.IS: "share of seeds with another pattern", Rule.IS_NEAR: "relative difference",
-                 Rule.ONSET_EXPONENT: "distance of the interval from the expected exponent",
-                 Rule.BRACKET: "number of contradictions to one critical value"}.get(
-                     row.rule, "excess beyond the bound, in the unit of the quantity"))
-        return {key: str(value) if isinstance(value, float) and not math.isfinite(value) else value
-                for key, value in result.items()}
+            quantity, unit = quantity + ", " + self.expected, "1"
+        theory = 1.0 if row.rule is Rule.IS else self.bound
+        if self.verdict is Verdict.REPORTED:
+            return judged_row(claim, quantity, unit, self.number, theory=theory)
+        # Excess beyond the bound; 0 inside.
+        error = math.nan if self.misfit is None else self.misfit if not self.misfit < 0 else 0.0
+        reason = "error: " + (
+            "p of the test, 1 if means contradict the rule" if self.is_test else
+            {Rule.IS: "share of seeds with another pattern", Rule.IS_NEAR: "relative difference",
+             Rule.ONSET_EXPONENT: "distance of the interval from the expected exponent",
+             Rule.BRACKET: "number of contradictions to one critical value"}.get(
+                 row.rule, "excess beyond the bound, in the unit of the quantity"))
+        return judged_row(claim, quantity, unit, self.number, theory=theory, error=error, tolerance=self.allowed, reason=reason)
 
 
 @dataclasses.dataclass

@@ -89,6 +89,7 @@ TEST(CrackMeasurement, PureSinusoidIsExact)
     EXPECT_NEAR(m.periods, 0.7 * length / lambda, 6. * d / lambda);
     EXPECT_NEAR(m.sinusoid->curve.slope, 0.045, 1e-7);
     EXPECT_NEAR(m.sinusoid->curve(0.05), crack.path(0.05), 1e-5 * amplitude);
+    EXPECT_NEAR(m.sinusoid->curve.about(0.)(0.05), m.sinusoid->curve(0.05), 1e-13 * length);
   }
 }
 
