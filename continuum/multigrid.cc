@@ -9,8 +9,6 @@
 #include <deal.II/lac/precondition.h>
 #include <deal.II/multigrid/mg_transfer_global_coarsening.h>
 
-#include <Eigen/Dense>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -33,8 +31,6 @@ struct Multigrid::Level
   MGTwoLevelTransfer<2, Vector> to_coarser; // members from here on are unused on the coarsest level
   std::shared_ptr<VertexPatches> patches;
   Smoother smoother;
-  Vector start; // of the eigenvalue estimate
-  double largest_eigenvalue = 0.;
   double state_factor = 1.;
   mutable Vector residual;
   mutable Vector coarse_residual; // and the next: vectors of the next coarser level
@@ -43,75 +39,8 @@ struct Multigrid::Level
 
 namespace
 {
-// Fills the start vector with waves in all directions, short and long compared with the cells, so that it has a
-// component along every eigenvector. It is a function of position, so it does not depend on the partition of the mesh.
-void fill_start(const Sheet &sheet, const AffineConstraints<double> &constraints, Multigrid::Vector &start)
-{
-  double own_size = std::numeric_limits<double>::max();
-  for (const auto &cell : sheet.mesh().active_cell_iterators())
-    if (cell->is_locally_owned())
-      own_size = std::min(own_size, cell->diameter());
-  const double size = dealii::Utilities::MPI::min(own_size, sheet.communicator());
-
-  sheet.for_each_owned_dof(
-    [&](const auto dof, const unsigned int i, const Point<2> &position)
-    {
-      if (constraints.is_constrained(dof))
-        return;
-      const Point<2> X = position / size;
-      start(dof) = std::sin(11.3 * X[0] + 3.1 * i) * std::cos(9.7 * X[1]) + std::sin(4.9 * X[1] - 0.7 * i) +
-                   std::cos(5.3 * X[0] + 0.2 * X[1]);
-    });
-}
-
-// Estimates the largest eigenvalue of B A from below, by `n_steps` steps of the Lanczos process implied by conjugate
-// gradients from B `start`. If A turns out not to be positive definite, returns the bound for positive cell energies.
-double largest_eigenvalue(const SinglePrecisionMatrix &A, const VertexPatches &B, const Multigrid::Vector &start,
-                          const unsigned int n_steps)
-{
-  std::vector<double> diagonal;
-  std::vector<double> off_diagonal;
-  Multigrid::Vector r = start;
-  Multigrid::Vector z(start.get_partitioner());
-  Multigrid::Vector Ap(start.get_partitioner());
-  B.vmult(z, r);
-  Multigrid::Vector p = z;
-  double rz = r * z;
-  const double rz_start = rz;
-  double from_last_step = 0.;
-  bool is_definite = true;
-  for (unsigned int step = 0; step < n_steps && rz > 1e-20 * rz_start; ++step)
-  {
-    A.vmult(Ap, p);
-    const double curvature = p * Ap;
-    is_definite = curvature > 0.;
-    if (!is_definite)
-      break;
-    const double alpha = rz / curvature;
-    diagonal.push_back(1. / alpha + from_last_step);
-    r.add(-alpha, Ap);
-    B.vmult(z, r);
-    const double rz_next = r * z;
-    const double beta = rz_next / rz;
-    if (!(beta > 0.))
-      break;
-    from_last_step = beta / alpha;
-    off_diagonal.push_back(std::sqrt(beta) / alpha);
-    p.sadd(beta, 1., z);
-    rz = rz_next;
-  }
-  constexpr double max_patch_overlap = 4.;
-  if (!is_definite || diagonal.empty())
-    return max_patch_overlap;
-  const Eigen::Index n = diagonal.size();
-  off_diagonal.resize(n);
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigenvalues;
-  eigenvalues.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(diagonal.data(), n),
-                                     Eigen::Map<const Eigen::VectorXd>(off_diagonal.data(), n - 1),
-                                     Eigen::EigenvaluesOnly);
-  const double largest = eigenvalues.eigenvalues().maxCoeff();
-  return std::isfinite(largest) && largest > 0. ? largest : max_patch_overlap;
-}
+// Bound of the eigenvalues of patches times tangent, theory-continuum.md, "Linear solver".
+constexpr double largest_eigenvalue = 6.;
 } // namespace
 
 Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const MatrixFactory &make_matrix,
@@ -122,8 +51,6 @@ Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const Ma
     throw InvalidInput("the smoothing degree must be at least 1");
   if (!(settings.smoothing_range > 1. && std::isfinite(settings.smoothing_range)))
     throw InvalidInput("the smoothing range must be finite and greater than 1");
-  if (settings.eigenvalue_iterations < 2)
-    throw InvalidInput("the eigenvalue estimate needs at least 2 iterations");
 
   // From the finest level down to the first level that is small enough.
   const auto meshes = MGTransferGlobalCoarseningTools::create_geometric_coarsening_sequence(
@@ -168,8 +95,6 @@ Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const Ma
     level.to_coarser.reinit_geometric_transfer(level.sheet->dof_handler(), coarser.sheet->dof_handler(),
                                                level.constraints, coarser.constraints);
     level.to_coarser.enable_inplace_operations_if_possible(coarser.layout, level.layout);
-    level.start.reinit(level.layout);
-    fill_start(*level.sheet, level.constraints, level.start);
     level.residual.reinit(level.layout);
     level.coarse_residual.reinit(coarser.layout);
     level.coarse_correction.reinit(coarser.layout);
@@ -224,14 +149,11 @@ void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix,
       const Sheet::Matrix &tangent = level.own_sheet ? level.tangent : fine_matrix;
       level.patches->factorise(tangent);
       level.matrix.copy_from(tangent);
-      level.largest_eigenvalue =
-        largest_eigenvalue(level.matrix, *level.patches, level.start, settings_.eigenvalue_iterations);
-      constexpr double safety = 1.1; // the estimate is from below
       // Double the degree on each coarser level, at a small part of the total cost: see theory-continuum.md, "Linear
       // solver". More doublings do not reduce the iterations.
       const unsigned int doublings = std::min<unsigned int>(levels_.size() - 1 - l, 4);
       Level::Smoother::AdditionalData data(settings_.smoothing_degree << doublings, settings_.smoothing_range, 0, 0.,
-                                           safety * level.largest_eigenvalue);
+                                           largest_eigenvalue);
       data.preconditioner = level.patches;
       level.smoother.initialize(level.matrix, data);
     }
@@ -287,8 +209,8 @@ std::vector<Multigrid::LevelFacts> Multigrid::levels() const
 {
   std::vector<LevelFacts> facts;
   for (const auto &level : levels_)
-    facts.push_back({level->sheet->dof_handler().n_dofs(), level->largest_eigenvalue, level->state_factor,
-                     level->patches ? level->patches->n_replaced() : 0});
+    facts.push_back(
+      {level->sheet->dof_handler().n_dofs(), level->state_factor, level->patches ? level->patches->n_replaced() : 0});
   return facts;
 }
 } // namespace latcon::continuum

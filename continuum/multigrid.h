@@ -19,8 +19,7 @@ struct MultigridSettings
   /// Degree >= 1 of the Chebyshev smoother on the finest level, before and after the coarse-grid correction. The degree
   /// doubles on each coarser level, up to 16 times this value.
   unsigned int smoothing_degree = 2;
-  double smoothing_range = 6.;             ///< largest over smallest eigenvalue of the smoothed range [-], > 1
-  unsigned int eigenvalue_iterations = 10; ///< Lanczos iterations for the estimate of the largest eigenvalue, >= 2
+  double smoothing_range = 6.; ///< largest over smallest eigenvalue of the smoothed range [-], > 1
   /// Number of unknowns below which a level is solved directly. A mesh that cannot be coarsened further is solved
   /// directly as well.
   dealii::types::global_dof_index coarsest_size = 2000;
@@ -80,7 +79,6 @@ public:
   struct LevelFacts
   {
     dealii::types::global_dof_index n_unknowns;
-    double largest_eigenvalue;       ///< estimate for patches times tangent [-]; 0 on the coarsest level
     double state_factor;             ///< fraction of the interpolated state at which the tangent was assembled [-]
     unsigned int n_replaced_patches; ///< patches whose block was not positive definite
   };
