@@ -256,7 +256,7 @@ def test_conditions_that_contradict_each_other(out):
 
 
 def test_expression_that_cannot_be_read(out):
-    run = refused(out, "continuum", LAYER, ["Top edge/displacement x", "sin(z)", "position 4"], "Top edge/displacement x=sin(z)")
+    run = refused(out, "continuum", LAYER, ["Top edge/displacement x", "sin(z)", "column 5"], "Top edge/displacement x=sin(z)")
     assert len(run.stderr.splitlines()) == 1
 
 
