@@ -1,9 +1,11 @@
 #include "verification/claims/steady_crack/steady_crack_claim.h"
 
+#include <cstdint>
 #include <stdexcept>
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
+#include <boost/math/tools/roots.hpp>
 
 namespace latcon::claims
 {
@@ -88,7 +90,7 @@ HalfStrip::HalfStrip(const CrackStrip &strip, double speed) : strip_(strip), spe
 
 // From the displacements of the rows under the forces of the bonds across the crack, by elimination from the held row
 // up.
-std::vector<HalfStrip::Layer> HalfStrip::elongations(double omega) const
+std::vector<HalfStrip::Layer> HalfStrip::elongations(double omega, std::size_t n_layers) const
 {
   const Complex half_step = std::polar(1., -0.5 * omega / speed_);
   const Complex kappa = stiffness(omega);
@@ -101,16 +103,17 @@ std::vector<HalfStrip::Layer> HalfStrip::elongations(double omega) const
   const Matrix2cd row =
     kappa * (2. - 2. * cosine) * (along * along.transpose()).cast<Complex>() - omega * omega * Matrix2cd::Identity();
 
-  // pivots[j] is the stiffness of row j with all rows below it free to follow.
+  // compliances[j] is that of row j with all rows below it free to follow.
   const std::size_t n = strip_.free_rows;
-  std::vector<Matrix2cd> pivots(n);
+  std::vector<Matrix2cd> compliances(n);
   for (std::size_t j = n; j-- > 0;)
   {
-    pivots[j] = row + one_side;
+    Matrix2cd pivot = row + one_side;
     if (j > 0)
-      pivots[j] += one_side; // the crack leaves row 0 without bonds above
+      pivot += one_side; // the crack leaves row 0 without bonds above
     if (j + 1 < n)
-      pivots[j] -= from_below * pivots[j + 1].inverse() * from_above;
+      pivot -= from_below * compliances[j + 1] * from_above;
+    compliances[j] = pivot.inverse();
   }
 
   // The upper crack face is the mirror image (u_x, -u_y) of the lower one. A bond that goes up and to the left has the
@@ -118,22 +121,20 @@ std::vector<HalfStrip::Layer> HalfStrip::elongations(double omega) const
   const Vector2cd mirrored(right.x(), -right.y());
   const Vector2cd of_row_0 = half_step * mirrored - right.cast<Complex>();
   const Vector2cd force = right.cast<Complex>() + left.cast<Complex>() * std::conj(half_step);
-  std::vector<Vector2cd> moved(n); // rows 0 ... N - 1
-  moved[0] = pivots[0].inverse() * force;
-  for (std::size_t j = 1; j < n; ++j)
-    moved[j] = pivots[j].inverse() * (from_above * moved[j - 1]);
-
+  Vector2cd above = compliances[0] * force; // displacement of the row above the gap
   const Complex step = half_step * half_step - 1.;
   const auto component = [](const Vector2d &direction, const Vector2cd &w)
   { return direction.x() * w.x() + direction.y() * w.y(); };
-  std::vector<Layer> layers(n + 1);
-  const Complex across = (of_row_0.transpose() * moved[0])(0);
-  layers[0] = {across, across * std::conj(half_step), step * moved[0].x()};
-  for (std::size_t j = 1; j <= n; ++j)
+  const Complex across = (of_row_0.transpose() * above)(0);
+  std::vector<Layer> layers{{across, across * std::conj(half_step), step * above.x()}};
+  for (std::size_t j = 1; j < n_layers; ++j)
   {
-    const Vector2cd below = j < n ? moved[j] : Vector2cd(Vector2cd::Zero());
-    layers[j] = {component(right, half_step * moved[j - 1] - below),
-                 component(left, std::conj(half_step) * moved[j - 1] - below), step * below.x()};
+    Vector2cd below = Vector2cd::Zero();
+    if (j < n)
+      below = compliances[j] * (from_above * above);
+    layers.push_back({component(right, half_step * above - below),
+                      component(left, std::conj(half_step) * above - below), step * below.x()});
+    above = below;
   }
   return layers;
 }
@@ -170,12 +171,10 @@ double steady_speed(const CrackStrip &strip, double driving, double fastest)
   }
   if (low <= 0.5 * step)
     throw std::runtime_error("no steady crack runs under so weak a driving");
-  for (int i = 0; i < 50 && high - low > 1e-10; ++i)
-  {
-    const double middle = 0.5 * (low + high);
-    (excess(middle) > 0. ? high : low) = middle;
-  }
-  return 0.5 * (low + high);
+  std::uintmax_t most = 50;
+  const auto is_close = [](double a, double b) { return std::abs(b - a) < 1e-10; };
+  const auto [below, above] = boost::math::tools::toms748_solve(excess, low, high, is_close, most);
+  return 0.5 * (below + above);
 }
 
 TrappingWindow trapping_window(const CrackStrip &strip, std::size_t columns)

@@ -50,7 +50,7 @@ public:
 
   /// L(omega): the elongation that bonds across the crack lose if each of them pulls its ends together with a force of
   /// transform 1 and nothing else holds the crack together (theory-comparison.md, eqs. (S.3), (S.4)).
-  Complex compliance(double omega) const { return -elongations(omega).front().right; }
+  Complex compliance(double omega) const { return -elongations(omega, 1).front().right; }
 
   /// Phi(omega) = 1 + kappa L (theory-comparison.md, eq. (S.5)).
   Complex phi(double omega) const { return 1. + stiffness(omega) * compliance(omega); }
@@ -63,8 +63,8 @@ public:
     Complex along; ///< bonds of the row below the gap; 0 for the held row
   };
 
-  /// Elongations of all bonds of the half strip: layer 0 is the gap of the crack, layer N that above the held row.
-  std::vector<Layer> elongations(double omega) const;
+  /// Elongations of the bonds of the first of N + 1 layers: 0 is the gap of the crack, N that above the held row.
+  std::vector<Layer> elongations(double omega, std::size_t n_layers) const;
 
 private:
   CrackStrip strip_;

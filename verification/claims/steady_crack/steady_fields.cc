@@ -129,7 +129,7 @@ SteadyFields steady_fields(const CrackStrip &strip, double speed, double duratio
   for (std::size_t i = 0; i < n_frequencies; ++i)
   {
     const Complex force = -ahead * factor[0] / factor[i];
-    rates[i] = half.elongations(std::abs(record.omega(i)));
+    rates[i] = half.elongations(std::abs(record.omega(i)), strip.free_rows + 1);
     for (HalfStrip::Layer &layer : rates[i])
       layer = {layer.right * force, layer.left * force, layer.along * force};
   }
