@@ -211,7 +211,7 @@ private:
     {
       work_.resize(n_derivatives * stride_);
       for (unsigned int block = 0; block < n_blocks(); ++block)
-        second_[block].assign(n * stride_, 0.);
+        second_[block].assign(stride_ * stride_, 0.);
     }
   }
 
@@ -235,7 +235,7 @@ private:
       {
         const auto &[i, k] = components[block];
         add_second(basis[i], basis[k], stride_, n_rows, density_.second[i][k][0], weight, i == k && is_symmetric(),
-                   nodes_.size(), work_.data(), second_[block].data());
+                   work_.data(), second_[block].data());
       }
   }
 

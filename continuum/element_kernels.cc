@@ -47,7 +47,7 @@ LATCON_CLONES void add_first(const double *basis, const unsigned int stride, con
 
 LATCON_CLONES void add_second(const double *basis, const double *columns, const unsigned int stride,
                               const unsigned int n_rows, const double *second, const double weight,
-                              const bool is_symmetric, const unsigned int n_nodes, double *work, double *K)
+                              const bool is_symmetric, double *work, double *K)
 {
   // Products of `second` and columns, without the zeros of `second`, of which laws have many.
   unsigned int n_products = 0;
@@ -81,22 +81,33 @@ LATCON_CLONES void add_second(const double *basis, const double *columns, const 
   }
   if (n_products == 0)
     return;
-  for (unsigned int a = 0; a < n_nodes; ++a)
+  // Four rows of K at a time, which share the products. Sums in an array would not stay in registers.
+  for (unsigned int a = 0; a < stride; a += n_lanes)
   {
-    double shapes[n_derivatives];
+    double shapes[n_derivatives][n_lanes];
     for (unsigned int k = 0; k < n_products; ++k)
-      shapes[k] = basis[row_of[k] * stride + a];
-    for (unsigned int b = is_symmetric ? a / n_lanes * n_lanes : 0; b < stride; b += n_lanes)
+      std::memcpy(shapes[k], basis + row_of[k] * stride + a, sizeof(shapes[k]));
+    for (unsigned int b = is_symmetric ? a : 0; b < stride; b += n_lanes)
     {
-      Lanes sum;
-      std::memcpy(&sum, K + a * stride + b, sizeof(sum));
+      double *rows = K + a * stride + b;
+      Lanes s0, s1, s2, s3;
+      std::memcpy(&s0, rows, sizeof(s0));
+      std::memcpy(&s1, rows + stride, sizeof(s1));
+      std::memcpy(&s2, rows + 2 * stride, sizeof(s2));
+      std::memcpy(&s3, rows + 3 * stride, sizeof(s3));
       for (unsigned int k = 0; k < n_products; ++k)
       {
         Lanes product;
         std::memcpy(&product, work + k * stride + b, sizeof(product));
-        sum += shapes[k] * product;
+        s0 += shapes[k][0] * product;
+        s1 += shapes[k][1] * product;
+        s2 += shapes[k][2] * product;
+        s3 += shapes[k][3] * product;
       }
-      std::memcpy(K + a * stride + b, &sum, sizeof(sum));
+      std::memcpy(rows, &s0, sizeof(s0));
+      std::memcpy(rows + stride, &s1, sizeof(s1));
+      std::memcpy(rows + 2 * stride, &s2, sizeof(s2));
+      std::memcpy(rows + 3 * stride, &s3, sizeof(s3));
     }
   }
 }

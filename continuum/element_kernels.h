@@ -18,8 +18,9 @@ void add_first(const double *basis, unsigned int stride, unsigned int n_rows, co
                double *r, double *magnitude);
 
 /// Adds weight * sum over rows and columns of basis[row][a] second[row][column] columns[column][b] to K[a][b], where
-/// `second` is square with n_derivatives rows, and `basis` and `columns` belong to either component. If `is_symmetric`,
-/// entries of K below the diagonal are undefined. `work` is scratch space for n_derivatives * stride numbers.
+/// `second` is square with n_derivatives rows, K with `stride` rows, and `basis` and `columns` belong to either
+/// component. If `is_symmetric`, entries of K below the diagonal are undefined. `work` is scratch space for
+/// n_derivatives * stride numbers.
 void add_second(const double *basis, const double *columns, unsigned int stride, unsigned int n_rows,
-                const double *second, double weight, bool is_symmetric, unsigned int n_nodes, double *work, double *K);
+                const double *second, double weight, bool is_symmetric, double *work, double *K);
 } // namespace latcon::continuum
