@@ -203,7 +203,7 @@ private:
 };
 
 // A sheet that is strained suddenly and held: closed form of theory.md, eq. (L.31). The energies balance to round-off.
-TEST(MemoryForces, RelaxInAHeldSheet)
+TEST(RateForces, RelaxInAHeldSheet)
 {
   constexpr double h = 1e-4;
   constexpr int n_steps = 30;
@@ -262,7 +262,7 @@ TEST(MemoryForces, RelaxInAHeldSheet)
 }
 
 // The derivative of the nodal forces, between updates and after them. theory-viscoelastic.md, eqs. (V.1) and (V.3).
-TEST(MemoryForces, HaveAConsistentTangent)
+TEST(RateForces, HaveAConsistentTangent)
 {
   HeldSheet held(1e-4, DynamicSolver::LoadFactor());
   const continuum::Sheet &sheet = held.solver().sheet();
@@ -310,7 +310,7 @@ TEST(MemoryForces, HaveAConsistentTangent)
 }
 
 // The ledger of a sheet that is strained through its boundary: of second order in the time step.
-TEST(MemoryForces, BalanceTheWorkOfAMovingBoundary)
+TEST(RateForces, BalanceTheWorkOfAMovingBoundary)
 {
   const auto imbalance = [](const double time_step)
   {
@@ -329,7 +329,7 @@ TEST(MemoryForces, BalanceTheWorkOfAMovingBoundary)
 }
 
 // A step that fails leaves the history as it was.
-TEST(MemoryForces, StayAsTheyWereAfterAStepThatFails)
+TEST(RateForces, StayAsTheyWereAfterAStepThatFails)
 {
   HeldSheet held(1e-4, [](const double t) { return t < 4.5e-4 ? 0. : -2.5; });
   DynamicSolver &solver = held.solver();
