@@ -38,36 +38,40 @@ EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, cons
   Vector rate = rise;
   rate *= 1. / step.dt;
   const Vector middle_velocity = with_ghosts(rate);
-  const double dissipated = step.dt * viscous_forces_.dissipation(middle, middle_velocity, step.load_rate());
+  const GradientLoad load = {0.5 * (step.first_load_factor + step.last_load_factor), step.load_rate()};
+  const double factor = load.factor;
+  const double dissipated = step.dt * rate_forces_.dissipation(middle, middle_velocity, load);
+  double on_branches = 0.; // work
   ledger.dissipated += dissipated;
   for (std::size_t i = 0; i < branches.size(); ++i)
-    ledger.dissipated += branches[i].dissipated - branch_energies_[i].dissipated;
+  {
+    const double of_branch = branches[i].dissipated - branch_energies_[i].dissipated;
+    ledger.dissipated += of_branch;
+    on_branches += of_branch + branches[i].stored - branch_energies_[i].stored;
+  }
 
-  const double factor = 0.5 * (step.first_load_factor + step.last_load_factor);
   const double released = -0.5 * (step.first_release_share + step.last_release_share) * (release_forces_ * rise);
   ledger.released += released;
   ledger.work += factor * (loads_ * rise) - released;
   if (step.first_load_factor != step.last_load_factor)
   {
+    Vector forces = sheet_.make_owned();
+    rate_forces_.add_forces(0.5 * step.dt, middle, middle_velocity, load, forces, nullptr);
     if (!sheet_.conditions().normal_gradients.empty())
     {
       ledger.work += sheet_.energy(middle, step.last_load_factor) - sheet_.energy(middle, step.first_load_factor);
-      if (viscosity_ != nullptr && viscosity_->gradient() != nullptr)
-      {
-        Vector viscous = sheet_.make_owned();
-        viscous_forces_.add_forces(middle, middle_velocity, step.load_rate(), viscous, nullptr);
-        ledger.work += dissipated - viscous * rise;
-      }
+      // Prescribed normal gradients do what the nodal forces of gradient parts leave.
+      if (rate_forces_.has_gradient())
+        ledger.work += dissipated + on_branches - forces * rise;
     }
     if (!sheet_.conditions().displacements.empty())
     {
       // Reactions at the middle of the step; the accelerations of the time integrator are not of second order there.
-      Vector forces = sheet_.make_owned();
       Vector inertial = sheet_.make_owned();
       Vector magnitude = sheet_.make_owned();
-      sheet_.residual(middle, forces, magnitude, factor);
-      viscous_forces_.add_forces(middle, middle_velocity, step.load_rate(), forces, nullptr);
-      memory_forces_.add_forces(0.5 * step.dt, middle, forces, nullptr);
+      Vector elastic = sheet_.make_owned();
+      sheet_.residual(middle, elastic, magnitude, factor);
+      forces += elastic;
       Vector change = v;
       change -= step.v;
       change *= 1. / step.dt;

@@ -34,8 +34,7 @@ DynamicSolver::DynamicSolver(const Sheet::Mesh &mesh, const Constitution &consti
                              const Inertia &inertia, const DynamicSettings &settings, const Viscosity *viscosity,
                              LoadFactor load_factor, const FibreMemory *memory)
   : sheet_(mesh, constitution, settings.degree, std::move(conditions)), inertia_(inertia), settings_(settings),
-    duration_(settings.time_step), viscosity_(viscosity), viscous_forces_(sheet_, viscosity), memory_(memory),
-    memory_forces_(sheet_, memory), given_load_factor_(std::move(load_factor))
+    duration_(settings.time_step), rate_forces_(sheet_, viscosity, memory), given_load_factor_(std::move(load_factor))
 {
   check_input();
   set_up();
@@ -102,9 +101,8 @@ void DynamicSolver::apply_conditions()
   sheet_.mass(inertia_.density, inertia_.length, homogeneous_, mass_);
   // Viscosity at finite strain makes the matrix unsymmetric. The matrix of multigrid, which a restart rebuilds, must
   // not depend on the history of branches.
-  const bool is_symmetric = viscosity_ == nullptr && memory_ == nullptr;
-  linear_solver_ = std::make_unique<LinearSolver>(sheet_, held, settings_.linear,
-                                                  is_symmetric ? Symmetry::symmetric : Symmetry::unsymmetric);
+  linear_solver_ = std::make_unique<LinearSolver>(
+    sheet_, held, settings_.linear, rate_forces_.is_present() ? Symmetry::unsymmetric : Symmetry::symmetric);
 }
 
 // Returns the fraction of the release forces that acts at `time` [-].
@@ -124,8 +122,7 @@ DynamicSolver::Vector DynamicSolver::reactions() const
   a = acceleration_;
   multiply_by_mass(full_mass_, a, inertial);
   sheet_.residual(displacement_, forces, magnitude, load_factor_);
-  viscous_forces_.add_forces(displacement_, velocity_, load_rate(), forces, nullptr);
-  memory_forces_.add_forces(0., displacement_, forces, nullptr);
+  rate_forces_.add_forces(0., displacement_, velocity_, load(), forces, nullptr);
   forces += inertial;
   forces.add(-load_factor_, loads_, -release_share(time_), release_forces_);
   return forces;
@@ -141,6 +138,8 @@ void DynamicSolver::release(const double duration)
     throw InvalidInput("release() while the reactions of an earlier release still act is not supported");
   if (!linear_solver_->is_direct())
     throw InvalidInput("release() is supported with the direct solver only");
+  if (rate_forces_.has_gradient_memory()) // whose history depends on the conditions of faces
+    throw InvalidInput("release() with the gradient part of Maxwell branches is not supported");
   const Vector forces = reactions();
   AffineConstraints<double> before;
   before.copy_from(homogeneous_);
@@ -189,15 +188,16 @@ DynamicSolver::LoadFactorRates DynamicSolver::load_factor_rates(const double tim
             (duration * duration)};
 }
 
-// Returns the first one at the present time [1/s]; a load factor need not be defined before the start.
-double DynamicSolver::load_rate() const
+// Returns it and its first rate at the present time; a load factor need not be defined before the start.
+GradientLoad DynamicSolver::load() const
 {
   if (!given_load_factor_)
-    return 0.;
+    return {load_factor_};
   const double dt = settings_.time_step;
   if (n_steps_ > 0)
-    return load_factor_rates(time_, dt).first;
-  return (-3. * load_factor_ + 4. * load_factor_at(time_ + dt) - load_factor_at(time_ + 2. * dt)) / (2. * dt);
+    return {load_factor_, load_factor_rates(time_, dt).first};
+  return {load_factor_,
+          (-3. * load_factor_ + 4. * load_factor_at(time_ + dt) - load_factor_at(time_ + 2. * dt)) / (2. * dt)};
 }
 
 // Sets x to `factor` times the prescribed displacement where the displacement is prescribed.
@@ -286,7 +286,7 @@ void DynamicSolver::step()
     throw InvalidInput("step() needs a state: call start() first");
   const double target = start_time_ + (n_steps_ + 1) * settings_.time_step;
   const auto restore = [this, time = time_, load_factor = load_factor_, u = displacement_, v = velocity_,
-                        a = acceleration_, ledger = ledger_, history = memory_forces_.history(),
+                        a = acceleration_, ledger = ledger_, history = rate_forces_.history(),
                         branch_energies = branch_energies_]
   {
     time_ = time;
@@ -295,7 +295,7 @@ void DynamicSolver::step()
     velocity_ = v;
     acceleration_ = a;
     ledger_ = ledger;
-    memory_forces_.set_history(history);
+    rate_forces_.set_history(history);
     branch_energies_ = branch_energies;
     linear_solver_->invalidate(); // multigrid may belong to a distant state
   };
@@ -361,14 +361,14 @@ std::string DynamicSolver::advance(const double duration, const double end)
   Vector v;
   Vector a;
   EnergyLedger ledger;
-  MemoryForces::History history;
+  RateForces::History history;
   std::vector<BranchEnergy> branch_energies = branch_energies_;
   std::string failure = attempt(step, u);
   if (failure.empty())
     try
     {
       end_rates(step, u, v, a);
-      history = memory_forces_.advanced(duration, with_ghosts(u), branch_energies);
+      history = rate_forces_.advanced(duration, with_ghosts(u), step.last_load_factor, branch_energies);
       ledger = ledger_after(step, u, v, branch_energies);
       if (!std::isfinite(ledger.imbalance) || !std::isfinite(a.l2_norm()))
         failure = "the energy or the acceleration is not finite";
@@ -387,7 +387,7 @@ std::string DynamicSolver::advance(const double duration, const double end)
   load_factor_ = step.last_load_factor;
   time_ = end;
   ledger_ = ledger;
-  memory_forces_.set_history(std::move(history));
+  rate_forces_.set_history(std::move(history));
   branch_energies_ = branch_energies;
   return "";
 }
@@ -408,11 +408,10 @@ void DynamicSolver::run_until(const double end, const Observer &observer)
 std::vector<Tensor<2, 2>> DynamicSolver::rate_stresses() const
 {
   std::vector<Tensor<2, 2>> stresses;
-  if (viscosity_ == nullptr && memory_ == nullptr)
+  if (!rate_forces_.is_present())
     return stresses;
   stresses.resize(sheet_.mesh().n_locally_owned_active_cells() * QGauss<2>(sheet_.degree() + 1).size());
-  viscous_forces_.add_stresses(displacement_, velocity_, stresses);
-  memory_forces_.add_stresses(displacement_, stresses);
+  rate_forces_.add_stresses(displacement_, velocity_, load(), stresses);
   return stresses;
 }
 

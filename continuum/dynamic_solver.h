@@ -2,11 +2,10 @@
 
 #include "continuum/errors.h"
 #include "continuum/linear_solver.h"
-#include "continuum/memory_forces.h"
 #include "continuum/nodal_order.h"
+#include "continuum/rate_forces.h"
 #include "continuum/sheet.h"
 #include "continuum/solver_report.h"
-#include "continuum/viscous_forces.h"
 
 #include <functional>
 #include <map>
@@ -153,7 +152,8 @@ public:
   /// energy that it extracts is EnergyLedger::released. Weak normal gradients and loads change immediately. Collective.
   ///
   /// Throws InvalidInput before start(), while reactions of an earlier release still act, if a free component would
-  /// become prescribed, or if there are more unknowns than LinearSettings::direct_limit.
+  /// become prescribed, if there are more unknowns than LinearSettings::direct_limit, or with the gradient part of
+  /// Maxwell branches.
   void release(double duration);
 
   /// Saves the state to an archive, or loads it in place of start() into a solver made with the same arguments on an
@@ -214,7 +214,7 @@ private:
   double release_share(double time) const;
   double load_factor_at(double time) const;
   LoadFactorRates load_factor_rates(double time, double duration) const;
-  double load_rate() const;
+  GradientLoad load() const;
   void prescribe(Vector &x, double factor) const;
   void end_rates(const Step &step, const Vector &u, Vector &v, Vector &a) const;
   Vector interpolate(const VectorField &field) const;
@@ -226,8 +226,8 @@ private:
   Residual best_residual(const Step &step, const Vector &first, const Vector &second, Vector &u) const;
   const Sheet::Matrix &level_mass(const Sheet &level, const dealii::AffineConstraints<double> &constraints);
   Multigrid::Assembler level_assembler(double load_factor);
-  void assemble_matrix(const Vector &u, const Vector &v, double load_factor, double load_rate);
-  void assemble(const Vector &u, const Vector &v, double load_factor, double load_rate);
+  void assemble_matrix(const Vector &u, const Vector &v, const GradientLoad &load);
+  void assemble(const Vector &u, const Vector &v, const GradientLoad &load);
   void record_multigrid_state(unsigned int before, const Vector &u, double load_factor);
   void restore_multigrid();
   std::string location_of_largest(const Vector &residual) const;
@@ -246,10 +246,7 @@ private:
   Inertia inertia_;
   DynamicSettings settings_;
   double duration_; // of the current step or part of a step [s]
-  const Viscosity *viscosity_;
-  ViscousForces viscous_forces_;
-  const FibreMemory *memory_;
-  MemoryForces memory_forces_; // with the history at the present time
+  RateForces rate_forces_; // with the history at the present time
   LoadFactor given_load_factor_;
   std::unique_ptr<LinearSolver> linear_solver_;
   dealii::AffineConstraints<double> homogeneous_;       // conformity constraints, and prescribed unknowns at zero
@@ -307,11 +304,11 @@ void DynamicSolver::archive(Archive &archive)
   order.archive(archive, "displacement", displacement_);
   order.archive(archive, "velocity", velocity_);
   order.archive(archive, "acceleration", acceleration_);
-  if (memory_forces_.is_present())
+  if (rate_forces_.n_branches() > 0)
   {
-    memory_forces_.archive(archive, displacement_);
+    rate_forces_.archive(archive, displacement_, load_factor_);
     archive.records("branch_energies", branch_energies_);
-    if (branch_energies_.size() != memory_forces_.n_branches())
+    if (branch_energies_.size() != rate_forces_.n_branches())
       throw InvalidInput("the stored energies of branches are not those of the material");
   }
   // A reused multigrid preconditioner affects the round-off of every iteration.

@@ -96,12 +96,11 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time, const std::ve
   Vector magnitude = sheet_.make_owned();
   multiply_by_mass(full_mass_, a, rhs);
   sheet_.residual(u_ghosted, forces, magnitude, factors[0]);
-  viscous_forces_.add_forces(u_ghosted, v_ghosted, rate, forces, nullptr);
   std::vector<Vector> relaxed_ghosted;
   for (const Vector &displacement : relaxed)
     relaxed_ghosted.push_back(with_ghosts(displacement));
-  memory_forces_.start(u_ghosted, relaxed_ghosted);
-  memory_forces_.add_forces(0., u_ghosted, forces, nullptr);
+  rate_forces_.start(u_ghosted, factors[0], relaxed_ghosted);
+  rate_forces_.add_forces(0., u_ghosted, v_ghosted, {factors[0], rate}, forces, nullptr);
   rhs += forces;
   rhs.add(-factors[0], loads_);
   rhs *= -1.;
@@ -121,7 +120,7 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time, const std::ve
 
   // Diagonals for the round-off of the residual, needed before the first Newton step.
   const unsigned int set_ups = linear_solver_->n_set_ups();
-  assemble(u_ghosted, v_ghosted, factors[0], rate);
+  assemble(u_ghosted, v_ghosted, {factors[0], rate});
   record_multigrid_state(set_ups, u_ghosted, factors[0]);
 
   displacement_ = u_ghosted;
@@ -133,7 +132,7 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time, const std::ve
   load_factor_ = factors[0];
   ledger_ = EnergyLedger();
   report_ = SolverReport();
-  branch_energies_ = memory_forces_.stored(u_ghosted);
+  branch_energies_ = rate_forces_.stored(u_ghosted, load_factor_);
   update_energies(ledger_, u, v, load_factor_, branch_energies_);
   initial_energy_ = ledger_.stored + ledger_.kinetic;
   has_started_ = true;

@@ -34,8 +34,7 @@ DynamicSolver::Residual DynamicSolver::evaluate(const Step &step, const Vector &
   Vector forces = sheet_.make_owned();
   multiply_by_mass(full_mass_, Step::mean(step.rule.alpha_m, step.a, a_1), inertial);
   state.energy = sheet_.residual(state.u_mean, forces, state.magnitude, factor);
-  viscous_forces_.add_forces(state.u_mean, state.v_mean, step.mean_load_rate(), forces, &state.magnitude);
-  memory_forces_.add_forces(mean_duration(), state.u_mean, forces, &state.magnitude);
+  rate_forces_.add_forces(mean_duration(), state.u_mean, state.v_mean, step.mean_load(), forces, &state.magnitude);
   state.residual = inertial;
   state.residual += forces;
   state.residual.add(-factor, loads_, -step.mean_release_share(), release_forces_);
@@ -130,16 +129,16 @@ Multigrid::Assembler DynamicSolver::level_assembler(const double load_factor)
   return [=](const Sheet &level, const Vector &u, const AffineConstraints<double> &constraints, Sheet::Matrix &K)
   {
     level.tangent(u, constraints, K, load_factor);
-    ViscousForces(level, viscosity_)
-      .add_tangent(u, level.make_ghosted(), 0., rule.gamma / (rule.beta * dt), constraints, K);
-    MemoryForces::add_relaxed_tangent(level, memory_, mean, u, constraints, K);
+    RateForces relaxed = rate_forces_.on(level);
+    relaxed.start(u, load_factor, {});
+    relaxed.add_tangent(mean, u, level.make_ghosted(), {load_factor}, rule.gamma / (rule.beta * dt), constraints, K);
     K *= 1. - rule.alpha_f;
     K.add((1. - rule.alpha_m) / (rule.beta * dt * dt), level_mass(level, constraints));
   };
 }
 
 // Assembles this derivative and its diagonals on the mesh of the sheet, at a mean state.
-void DynamicSolver::assemble_matrix(const Vector &u, const Vector &v, const double load_factor, const double load_rate)
+void DynamicSolver::assemble_matrix(const Vector &u, const Vector &v, const GradientLoad &load)
 {
   const auto take_diagonal = [&](Vector &diagonal)
   {
@@ -149,19 +148,18 @@ void DynamicSolver::assemble_matrix(const Vector &u, const Vector &v, const doub
   };
   const NewmarkParameters &rule = settings_.rule;
   const double dt = duration_;
-  sheet_.tangent(u, homogeneous_, matrix_, load_factor);
+  sheet_.tangent(u, homogeneous_, matrix_, load.factor);
   take_diagonal(elastic_diagonal_);
-  viscous_forces_.add_tangent(u, v, load_rate, rule.gamma / (rule.beta * dt), homogeneous_, matrix_);
-  memory_forces_.add_tangent(mean_duration(), u, homogeneous_, matrix_);
+  rate_forces_.add_tangent(mean_duration(), u, v, load, rule.gamma / (rule.beta * dt), homogeneous_, matrix_);
   matrix_ *= 1. - rule.alpha_f;
   matrix_.add((1. - rule.alpha_m) / (rule.beta * dt * dt), mass_);
   take_diagonal(effective_diagonal_);
 }
 
-void DynamicSolver::assemble(const Vector &u, const Vector &v, const double load_factor, const double load_rate)
+void DynamicSolver::assemble(const Vector &u, const Vector &v, const GradientLoad &load)
 {
-  assemble_matrix(u, v, load_factor, load_rate);
-  linear_solver_->update(u, matrix_, level_assembler(load_factor));
+  assemble_matrix(u, v, load);
+  linear_solver_->update(u, matrix_, level_assembler(load.factor));
 }
 
 // Records the state at which the linear solver set up multigrid, if it has done so since the count `before`.
@@ -175,7 +173,7 @@ void DynamicSolver::record_multigrid_state(const unsigned int before, const Vect
 
 void DynamicSolver::restore_multigrid()
 {
-  assemble_matrix(multigrid_displacement_, sheet_.make_ghosted(), multigrid_load_factor_, 0.);
+  assemble_matrix(multigrid_displacement_, sheet_.make_ghosted(), {multigrid_load_factor_});
   linear_solver_->restore(multigrid_displacement_, matrix_, level_assembler(multigrid_load_factor_));
 }
 
@@ -226,10 +224,10 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
     const auto solve = [&](const Residual &at, const Vector &, const double forcing, Vector &change)
     {
       const unsigned int set_ups = linear_solver_->n_set_ups();
-      const double load_factor = step.mean_load_factor();
+      const GradientLoad load = step.mean_load();
       if (!(at.free <= kept_reduction * last_free))
       {
-        assemble(at.u_mean, at.v_mean, load_factor, step.mean_load_rate());
+        assemble(at.u_mean, at.v_mean, load);
         tangent_at = at.u_mean;
       }
       last_free = at.free;
@@ -240,7 +238,7 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
           rhs(i) = 0.;
       rhs.compress(VectorOperation::insert);
       const unsigned int iterations = linear_solver_->solve(matrix_, change, rhs, forcing);
-      record_multigrid_state(set_ups, tangent_at, load_factor);
+      record_multigrid_state(set_ups, tangent_at, load.factor);
       homogeneous_.distribute(change);
       return NewtonStep{iterations, 0.};
     };

@@ -23,10 +23,10 @@ struct DynamicSolver::Step
   double mean_load_factor() const { return rule.alpha_f * first_load_factor + (1. - rule.alpha_f) * last_load_factor; }
   /// Rate of the load factor in the middle of the step [1/s].
   double load_rate() const { return (last_load_factor - first_load_factor) / dt; }
-  double mean_load_rate() const
+  GradientLoad mean_load() const
   {
     const double first = 2. * load_rate() - last_rates.first; // to second order
-    return rule.alpha_f * first + (1. - rule.alpha_f) * last_rates.first;
+    return {mean_load_factor(), rule.alpha_f * first + (1. - rule.alpha_f) * last_rates.first};
   }
   double mean_release_share() const
   {

@@ -8,6 +8,8 @@
 #include "continuum/shape_tables.h"
 #include "continuum/vector_kernels.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <Epetra_MultiVector.h>
 
 #include <algorithm>
@@ -57,7 +59,7 @@ public:
     if (forces && forces->velocity)
     {
       fields_.emplace_back(*forces->velocity, sheet.owned());
-      load_factors_.push_back(forces->load_rate);
+      load_factors_.push_back(forces->load.rate);
     }
     for (unsigned int n = 0; n < sheet.element().n_dofs_per_cell() / 2; ++n)
       for (unsigned int i = 0; i < 2; ++i)
@@ -67,7 +69,7 @@ public:
   void cell(const Iterator &cell, const Add &add)
   {
     const ShapeTable &table = tables_.cell(MeshIterator(cell));
-    const bool lifts = forces_ ? forces_->gradient != nullptr : sheet_.has_gradient();
+    const bool lifts = forces_ ? static_cast<bool>(forces_->gradient) : sheet_.has_gradient();
     const std::vector<LiftedFace> faces = lifts ? lifted_faces(sheet_, cell) : std::vector<LiftedFace>();
     const bool has_gradient = lifts && faces.empty();
     begin();
@@ -77,18 +79,19 @@ public:
     {
       const Basis basis = {table.row(q, 0), table.row(q, 0)};
       evaluate(basis, sheet_.has_gradient() ? n_derivatives : n_first);
-      const Point<2> X = cell->vertex(0) + table.offsets[q];
+      const CellPoint point = cell_point(cell, table, q, 1);
       if (forces_)
-        forces_->density({n_points_++, X, table.JxW[q], derivatives_[0], derivatives_.back()}, density_);
+        forces_->local(point, density_);
       else
-        add_energy(sheet_.constitution().local->at(X), derivatives_[0], order_, density_);
+        add_energy(sheet_.constitution().local->at(point.X), derivatives_[0], order_, density_);
       if (has_gradient)
-        add_gradient_density();
+        add_gradient_density(point);
       add_point(basis, has_gradient ? n_derivatives : n_first, table.JxW[q]);
     }
     end(add);
     for (const LiftedFace &face : faces)
       lifted_face(cell, table, face, faces.size(), add);
+    n_points_ += table.n_points;
   }
 
 private:
@@ -133,8 +136,9 @@ private:
           for (unsigned int c = n_first; c < n_derivatives; ++c)
             derivatives_[field][i][c] -= load_factors_[field] * of_prescribed[c];
       }
-      add_gradient_density();
-      add_point(basis, n_derivatives, table.JxW[q] / static_cast<double>(n_faces));
+      const CellPoint point = cell_point(cell, table, q, n_faces);
+      add_gradient_density(point);
+      add_point(basis, n_derivatives, point.JxW);
     }
 
     const double sigma = sheet_.penalty(cell->measure() / cell->face(at.face)->measure());
@@ -155,11 +159,17 @@ private:
     end(add);
   }
 
-  void add_gradient_density()
+  CellPoint cell_point(const Iterator &cell, const ShapeTable &table, const unsigned int q, const double n_times) const
   {
+    return {n_points_ + q,          n_points_ + q,   1. / n_times,       cell->vertex(0) + table.offsets[q],
+            table.JxW[q] / n_times, derivatives_[0], derivatives_.back()};
+  }
+
+  void add_gradient_density(CellPoint point)
+  {
+    point.number = n_gradient_points_++;
     if (forces_)
-      forces_->gradient->add_density(derivatives_[0], derivatives_.back(), order_, forces_->rate_by_displacement,
-                                     density_);
+      forces_->gradient(point, density_);
     else
       add_energy(*sheet_.constitution().gradient, derivatives_[0], order_, density_);
   }
@@ -293,7 +303,8 @@ private:
   std::vector<double> load_factors_; // of prescribed normal gradients, per field
   Order order_;
   const PointForces *forces_; // nullptr: those of the energy
-  std::size_t n_points_ = 0;  // visited
+  std::size_t n_points_ = 0;  // in the cells before
+  std::size_t n_gradient_points_ = 0; // evaluated
   ShapeTables tables_;
   LiftedShapes lifted_;
   std::array<std::vector<unsigned int>, 2> system_index_; // of the scalar shape functions, per component
@@ -339,7 +350,7 @@ void integrate(const Sheet &sheet, const Sheet::Vector &u, const double load_fac
 void integrate(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, const Order order,
                const std::function<void(const Contribution &)> &add)
 {
-  Integrator integrator(sheet, u, 0., order, &forces);
+  Integrator integrator(sheet, u, forces.load.factor, order, &forces);
   integrate_with(integrator, sheet, add);
 }
 
@@ -379,25 +390,27 @@ void add_tangent(const Sheet &sheet, const Sheet::Vector &u, const PointForces &
   guarded.rethrow_collectively(sheet.communicator());
 }
 
-void for_each_point(const Sheet &sheet, const Sheet::Vector &u, const std::function<void(const CellPoint &)> &visit)
+double integral(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces)
 {
-  PointForces none;
-  none.density = [&](const CellPoint &point, PointIntegrand &) { visit(point); };
-  run_collectively(sheet.communicator(), [&] { integrate(sheet, u, none, Order::value, [](const Contribution &) {}); });
+  double own = 0.;
+  run_collectively(
+    sheet.communicator(),
+    [&] { integrate(sheet, u, forces, Order::value, [&](const Contribution &part) { own += part.energy; }); });
+  return dealii::Utilities::MPI::sum(own, sheet.communicator());
 }
 
 void add_stresses(const Sheet &sheet, const Sheet::Vector &u, PointForces forces, std::vector<Tensor<2, 2>> &stresses)
 {
-  forces.density = [&, density = forces.density, gradient = forces.gradient](const CellPoint &point, PointIntegrand &d)
-  {
-    density(point, d);
-    if (gradient != nullptr)
-      gradient->add_density(point.u, point.v, Order::first, 0., d);
-    for (unsigned int i = 0; i < 2; ++i)
-      for (unsigned int J = 0; J < 2; ++J)
-        stresses[point.number][i][J] += d.first[i][J];
-  };
-  forces.gradient = nullptr;
+  for (PointForces::Density *density : {&forces.local, &forces.gradient})
+    if (*density)
+      *density = [&stresses, stress = *density](const CellPoint &point, PointIntegrand &d)
+      {
+        clear(d, Order::first);
+        stress(point, d);
+        for (unsigned int i = 0; i < 2; ++i)
+          for (unsigned int J = 0; J < 2; ++J)
+            stresses[point.number_in_cell][i][J] += point.share * d.first[i][J];
+      };
   run_collectively(sheet.communicator(),
                    [&] { integrate(sheet, u, forces, Order::first, [](const Contribution &) {}); });
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "continuum/gradient_viscosity.h"
 #include "continuum/point_integrand.h"
 #include "continuum/sheet.h"
 
@@ -29,31 +28,42 @@ struct Contribution
 void integrate(const Sheet &sheet, const Sheet::Vector &u, double load_factor, Order order,
                const std::function<void(const Contribution &)> &add);
 
-/// Quadrature point of a cell.
+/// Quadrature point of a cell, at which the derivatives of the fields are those in the cell or, once for each lifted
+/// face of the cell, those lifted from there, eq. (C.63).
 struct CellPoint
 {
-  std::size_t number; ///< among the points of the cells on this rank, in their order
-  dealii::Point<2> X; ///< reference position [m]
-  double JxW;         ///< weight [m^2]
-  const FieldDerivatives &u; ///< of the displacement, by reference position
-  const FieldDerivatives &v; ///< of the velocity, likewise; undefined without one
+  std::size_t number;         ///< among the points at which a density is evaluated on this rank, in their order
+  std::size_t number_in_cell; ///< among the quadrature points of the cells on this rank, in their order
+  double share;               ///< one over the number of times that the density is evaluated here
+  dealii::Point<2> X;         ///< reference position [m]
+  double JxW;                 ///< weight, times `share` [m^2]
+  const FieldDerivatives &u;  ///< of the displacement, by reference position
+  const FieldDerivatives &v;  ///< of the velocity, likewise; undefined without one
+};
+
+/// Load factor of prescribed normal gradients.
+struct GradientLoad
+{
+  double factor = 0.; ///< [-]
+  double rate = 0.;   ///< [1/s]
 };
 
 /// Forces that no energy of u gives, those of viscosity and memory.
 struct PointForces
 {
   /// Adds the density at a point: dissipated power [W/m^3] as `value`, stresses as `first`, their derivatives by u as
-  /// `second`. The density has been cleared.
-  std::function<void(const CellPoint &, PointIntegrand &)> density;
-  bool is_symmetric = false;                   ///< whether that derivative is symmetric
-  const Sheet::Vector *velocity = nullptr;     ///< [m/s], with ghost entries; nullptr: none
-  const GradientViscosity *gradient = nullptr; ///< law of the lifted gradients of u and v; nullptr: none
-  double load_rate = 0.;                       ///< rate of the load factor [1/s], for prescribed normal gradients
-  double rate_by_displacement = 0.;            ///< dv/du [1/s], for `gradient` and Order::second
+  /// `second`.
+  using Density = std::function<void(const CellPoint &, PointIntegrand &)>;
+
+  Density local;                           ///< of the first derivatives
+  Density gradient;                        ///< of the lifted second ones, for a sheet with a gradient law; empty: none
+  bool is_symmetric = false;               ///< whether the derivative of the stresses is symmetric
+  const Sheet::Vector *velocity = nullptr; ///< [m/s], with ghost entries; nullptr: none
+  GradientLoad load;
 };
 
 /// Calls add(contribution) likewise for `forces` at the state `u`: dissipated power as energy, forces as residual,
-/// their derivative by u as tangent. With `gradient` the sheet must have a gradient law.
+/// their derivative by u as tangent.
 void integrate(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, Order order,
                const std::function<void(const Contribution &)> &add);
 
@@ -66,10 +76,11 @@ void add_forces(const Sheet &sheet, const Sheet::Vector &u, const PointForces &f
 void add_tangent(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces,
                  const dealii::AffineConstraints<double> &constraints, Sheet::Matrix &matrix);
 
-/// Calls visit(point) for every quadrature point of the cells on this rank.
-void for_each_point(const Sheet &sheet, const Sheet::Vector &u, const std::function<void(const CellPoint &)> &visit);
+/// Returns the integral of the value of the densities over the sheet [W/m], which calls them at all points.
+double integral(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces);
 
-/// Adds the first Piola stresses [Pa] at the quadrature points of the cells on this rank, in their order.
+/// Adds the first Piola stresses [Pa] at the quadrature points of the cells on this rank, in their order; those of
+/// lifted gradients are means over the faces of a cell.
 void add_stresses(const Sheet &sheet, const Sheet::Vector &u, PointForces forces,
                   std::vector<dealii::Tensor<2, 2>> &stresses);
 } // namespace latcon::continuum

@@ -1,6 +1,7 @@
 #include "continuum/fibre_memory.h"
 
 #include "continuum/errors.h"
+#include "continuum/fibres.h"
 #include "continuum/material.h"
 
 #include <deal.II/base/quadrature_lib.h>
@@ -33,23 +34,12 @@ double mean_squared_rise(const double x)
     sum += points.weight(q) * std::pow(std::expm1(-x * points.point(q)[0]), 2);
   return sum;
 }
-
-double sum_of(const double *q, const std::size_t n)
-{
-  double sum = 0.;
-  for (std::size_t i = 0; i < n; ++i)
-    sum += q[i];
-  return sum;
-}
 } // namespace
 
 void check(const MaxwellFibres &fibres)
 {
   const auto is_positive = [](const double x) { return x > 0. && std::isfinite(x); };
-  if (!(std::abs(fibres.direction.norm() - 1.) <= 1e-12))
-    throw InvalidMaterial("the direction of Maxwell branches must be a unit vector");
-  if (!is_positive(fibres.weight))
-    throw InvalidMaterial("the weight of Maxwell branches must be positive and finite");
+  check_fibre(fibres.direction, fibres.weight, "Maxwell branches");
   if (fibres.branches.empty())
     throw InvalidMaterial("a family of Maxwell branches needs at least one branch");
   for (const MaxwellBranch &branch : fibres.branches)
@@ -57,109 +47,110 @@ void check(const MaxwellFibres &fibres)
       throw InvalidMaterial("the modulus and the relaxation time of a Maxwell branch must be positive and finite");
 }
 
-FibreMemory::FibreMemory(std::vector<MaxwellFibres> families) : families_(std::move(families))
+FibreMemory::FibreMemory(std::vector<MaxwellFibres> families, const double gradient_length)
+  : families_(std::move(families)), gradient_length_(gradient_length)
 {
   if (families_.empty())
     throw InvalidMaterial("fibre memory needs at least one family");
   for (const MaxwellFibres &fibres : families_)
   {
     check(fibres);
-    n_variables_ += fibres.branches.size();
-    n_numbers_ = std::max(n_numbers_, fibres.first_number + fibres.branches.size());
+    add(stretch_measure(fibres.direction, fibres.weight), fibres);
   }
+  if (gradient_length == 0.)
+    return;
+  const auto gradient = std::make_shared<FibreMemory>(*this);
+  gradient->strains_.clear();
+  gradient->variables_.clear();
+  for (const MaxwellFibres &fibres : families_)
+    for (const StrainMeasure &strain :
+         gradient_measures(fibres.direction, fibres.weight, fibres.length, gradient_length))
+      gradient->add(strain, fibres);
+  gradient_ = gradient;
+}
+
+void FibreMemory::add(const StrainMeasure &strain, const MaxwellFibres &fibres)
+{
+  for (std::size_t i = 0; i < fibres.branches.size(); ++i)
+    variables_.push_back({strains_.size(), strain.weight, fibres.branches[i], fibres.first_number + i});
+  strains_.push_back(strain);
+  n_numbers_ = std::max(n_numbers_, fibres.first_number + fibres.branches.size());
 }
 
 FibreMemory::Step FibreMemory::step(const double duration) const
 {
   Step step;
-  for (const MaxwellFibres &fibres : families_)
-    for (const auto &[modulus, time] : fibres.branches)
-    {
-      const double x = duration / time;
-      const double rise = -std::expm1(-x);
-      const double mean = mean_decay(x);
-      const double of_change = x > 0. ? modulus * mean_squared_rise(x) / x : 0.;
-      step.coefficients.push_back(
-        {std::exp(-x), modulus * mean, -0.5 * std::expm1(-2. * x) / modulus, rise * mean, of_change});
-    }
+  for (const Variable &variable : variables_)
+  {
+    const auto &[modulus, time] = variable.branch;
+    const double x = duration / time;
+    const double rise = -std::expm1(-x);
+    const double mean = mean_decay(x);
+    const double of_change = x > 0. ? modulus * mean_squared_rise(x) / x : 0.;
+    step.coefficients.push_back(
+      {std::exp(-x), modulus * mean, -0.5 * std::expm1(-2. * x) / modulus, rise * mean, of_change});
+  }
   return step;
 }
 
-void FibreMemory::stretches(const Tensor<2, 2> &F, double *l) const
+void FibreMemory::strains(const FieldDerivatives &u, double *e) const
 {
-  checked_determinant(F);
-  for (const MaxwellFibres &fibres : families_)
-    *l++ = (F * fibres.direction).norm();
+  checked_determinant(deformation_gradient(u));
+  for (const StrainMeasure &strain : strains_)
+    *e++ = FibreStrain(strain, u).value();
 }
 
 void FibreMemory::advance(const Step &step, const double *before, const double *now, double *q) const
 {
-  auto of_branch = step.coefficients.begin();
-  for (const MaxwellFibres &fibres : families_)
+  for (std::size_t v = 0; v < variables_.size(); ++v)
   {
-    const double change = *now++ - *before++;
-    for (std::size_t i = 0; i < fibres.branches.size(); ++i, ++q, ++of_branch)
-      *q = of_branch->decay * *q + of_branch->gain * change;
+    const std::size_t e = variables_[v].strain;
+    q[v] = step.coefficients[v].decay * q[v] + step.coefficients[v].gain * (now[e] - before[e]);
   }
+}
+
+void FibreMemory::set_sudden(const std::size_t number, const double *relaxed, const double *now, double *q) const
+{
+  for (std::size_t v = 0; v < variables_.size(); ++v)
+    if (variables_[v].number == number)
+      q[v] = variables_[v].branch.modulus * (now[variables_[v].strain] - relaxed[variables_[v].strain]);
 }
 
 void FibreMemory::add_stored(const double *q, double *by_number) const
 {
-  for (const MaxwellFibres &fibres : families_)
-    for (std::size_t i = 0; i < fibres.branches.size(); ++i, ++q)
-      by_number[fibres.first_number + i] += fibres.weight * 0.5 * *q * *q / fibres.branches[i].modulus;
+  for (std::size_t v = 0; v < variables_.size(); ++v)
+    by_number[variables_[v].number] += variables_[v].weight * 0.5 * q[v] * q[v] / variables_[v].branch.modulus;
 }
 
 void FibreMemory::add_dissipated(const Step &step, const double *before, const double *now, const double *q,
                                  double *by_number) const
 {
-  auto of_branch = step.coefficients.begin();
-  for (const MaxwellFibres &fibres : families_)
+  for (std::size_t v = 0; v < variables_.size(); ++v)
   {
-    const double change = *now++ - *before++;
-    for (std::size_t i = 0; i < fibres.branches.size(); ++i, ++q, ++of_branch)
-      by_number[fibres.first_number + i] +=
-        fibres.weight * (of_branch->of_squares * *q * *q + of_branch->of_product * *q * change +
-                         of_branch->of_change * change * change);
+    const auto &of_branch = step.coefficients[v];
+    const double change = now[variables_[v].strain] - before[variables_[v].strain];
+    by_number[variables_[v].number] +=
+      variables_[v].weight * (of_branch.of_squares * q[v] * q[v] + of_branch.of_product * q[v] * change +
+                              of_branch.of_change * change * change);
   }
 }
 
-Tensor<2, 2> FibreMemory::stress(const Tensor<2, 2> &F, const double *q) const
+void FibreMemory::add_density(const Step &step, const FieldDerivatives &u, const double *q, const Order order,
+                              PointIntegrand &density) const
 {
-  Tensor<2, 2> P;
-  for (const MaxwellFibres &fibres : families_)
+  std::size_t v = 0;
+  for (std::size_t e = 0; e < strains_.size(); ++e)
   {
-    const Tensor<1, 2> f = F * fibres.direction;
-    P += fibres.weight * sum_of(q, fibres.branches.size()) / f.norm() * outer_product(f, fibres.direction);
-    q += fibres.branches.size();
+    double force = 0., gain = 0.;
+    for (; v < variables_.size() && variables_[v].strain == e; ++v)
+    {
+      force += strains_[e].weight * q[v];
+      gain += order == Order::second ? strains_[e].weight * step.coefficients[v].gain : 0.;
+    }
+    const FibreStrain strain(strains_[e], u);
+    strain.add_force(force, density);
+    if (order == Order::second)
+      strain.add_stiffness(force, gain * strain.first(), density);
   }
-  return P;
-}
-
-Tensor<4, 2> FibreMemory::tangent(const Step &step, const Tensor<2, 2> &F, const double *q) const
-{
-  Tensor<4, 2> T;
-  auto of_branch = step.coefficients.begin();
-  for (const MaxwellFibres &fibres : families_)
-  {
-    const Tensor<1, 2> &N = fibres.direction;
-    const Tensor<1, 2> f = F * N;
-    const double l = f.norm();
-    const Tensor<1, 2> n = f / l;
-    const double overstress = sum_of(q, fibres.branches.size());
-    double gain = 0.;
-    for (std::size_t i = 0; i < fibres.branches.size(); ++i)
-      gain += of_branch++->gain;
-    for (unsigned int i = 0; i < 2; ++i)
-      for (unsigned int k = 0; k < 2; ++k)
-      {
-        const double by_f = fibres.weight * (gain * n[i] * n[k] + overstress / l * ((i == k ? 1. : 0.) - n[i] * n[k]));
-        for (unsigned int J = 0; J < 2; ++J)
-          for (unsigned int L = 0; L < 2; ++L)
-            T[i][J][k][L] += by_f * N[J] * N[L];
-      }
-    q += fibres.branches.size();
-  }
-  return T;
 }
 } // namespace latcon::continuum

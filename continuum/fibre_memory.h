@@ -1,7 +1,8 @@
 #pragma once
 
-#include <deal.II/base/tensor.h>
+#include "continuum/fibre_strain.h"
 
+#include <memory>
 #include <vector>
 
 namespace latcon::continuum
@@ -21,6 +22,7 @@ struct MaxwellFibres
   std::vector<MaxwellBranch> branches; ///< one or more
   /// Number of the first branch in energy ledgers, from 0; branches with the same number are recorded together.
   std::size_t first_number;
+  double length = 0.; ///< l [m] > 0, undeformed; needed for the gradient part alone
 };
 
 /// Checks a family. Throws InvalidMaterial unless the direction is a unit vector to 1e-12, there is a branch, weight,
@@ -31,16 +33,26 @@ void check(const MaxwellFibres &fibres);
 /// (V.1)):
 ///   P = sum over families k and branches i of  c_k q_ki n_k (x) N_k,   q_ki' = E_i l_k' - q_ki / tau_i,   l_k = |F
 ///   N_k|
-/// The overstresses q [Pa] are the history of a material point: n_variables() numbers, families in their order, the
-/// branches of each in turn. Const and stateless; the caller stores the history.
+/// The gradient part is a law of the same kind, with the gradient of the stretch along N and its normal T in place of
+/// the stretch and weights c_k (l_d^2 - l_k^2/12) and c_k l_d^2 (eq. (V.9)), as that of FibreViscosity.
+///
+/// The overstresses q [Pa], of a gradient [Pa/m], are the history of a material point: n_variables() numbers, strains
+/// in their order, the branches of each in turn. Const and stateless; the caller stores the history.
 class FibreMemory
 {
 public:
-  /// Creates the law. Throws InvalidMaterial if there is no family or one is not valid.
-  explicit FibreMemory(std::vector<MaxwellFibres> families);
+  /// Creates the law, with the gradient part of the micro-inertia length `gradient_length` l_d [m] unless that is 0.
+  /// Throws InvalidMaterial if there is no family or one is not valid, and as gradient_measures() does.
+  explicit FibreMemory(std::vector<MaxwellFibres> families, double gradient_length = 0.);
 
   const std::vector<MaxwellFibres> &families() const { return families_; }
-  std::size_t n_variables() const { return n_variables_; }
+  double gradient_length() const { return gradient_length_; }
+  /// Returns the part that depends on the second derivatives of u, those of the lifted gradients; nullptr: none. It
+  /// requires a sheet with a gradient law.
+  const FibreMemory *gradient() const { return gradient_.get(); }
+
+  std::size_t n_strains() const { return strains_.size(); }
+  std::size_t n_variables() const { return variables_.size(); }
   std::size_t n_numbers() const { return n_numbers_; } ///< of branches in energy ledgers
 
   /// Coefficients of an update over one duration, per variable (theory-viscoelastic.md, eqs. (V.2), (V.5)).
@@ -61,32 +73,46 @@ public:
   /// Returns the coefficients for the duration h [s] >= 0.
   Step step(double duration) const;
 
-  /// Computes the stretches l [-] of all families. Throws NonPhysicalState if det F <= 0 or not finite.
-  void stretches(const dealii::Tensor<2, 2> &F, double *l) const;
+  /// Computes the strains [-], of a gradient [1/m], at a point. Throws NonPhysicalState if det F <= 0 or not finite.
+  void strains(const FieldDerivatives &u, double *e) const;
 
-  /// Updates the overstresses q [Pa] exactly for stretches that change linearly in time from `before` to `now` [-].
+  /// Updates the overstresses exactly for strains that change linearly in time from `before` to `now`.
   void advance(const Step &step, const double *before, const double *now, double *q) const;
 
+  /// Sets the overstresses of the branches with this number to those after a sudden change from `relaxed` to `now`.
+  void set_sudden(std::size_t number, const double *relaxed, const double *now, double *q) const;
+
   /// Adds the energies of the branches [J/m^3] by their numbers.
-  /// @param q overstresses [Pa]
   void add_stored(const double *q, double *by_number) const;
 
   /// Adds the energies that the branches dissipate in an update [J/m^3] by their numbers: exact integrals of
-  /// q^2 / (E tau) on the path of advance(). @param q overstresses before the update [Pa]
+  /// q^2 / (E tau) on the path of advance(). @param q overstresses before the update
   void add_dissipated(const Step &step, const double *before, const double *now, const double *q,
                       double *by_number) const;
 
-  /// Returns the first Piola stress P_iJ [Pa] of the overstresses q.
-  dealii::Tensor<2, 2> stress(const dealii::Tensor<2, 2> &F, const double *q) const;
-
-  /// Returns dP_iJ/dF_kL [Pa] with q advanced by `step` to F (theory-viscoelastic.md, eq. (V.3)), index order
-  /// [i][J][k][L], major symmetric.
-  /// @param q overstresses after the update, those of stress()
-  dealii::Tensor<4, 2> tangent(const Step &step, const dealii::Tensor<2, 2> &F, const double *q) const;
+  /// Adds the first derivatives of a density at a point, the stresses of the overstresses q, and with Order::second
+  /// their derivatives with q advanced by `step` to u (theory-viscoelastic.md, eq. (V.3)), which are symmetric.
+  /// @param q overstresses after the update
+  void add_density(const Step &step, const FieldDerivatives &u, const double *q, Order order,
+                   PointIntegrand &density) const;
 
 private:
+  // A branch of one strain, whose variable has its number in the list.
+  struct Variable
+  {
+    std::size_t strain;
+    double weight; // of the strain
+    MaxwellBranch branch;
+    std::size_t number; // in energy ledgers
+  };
+
+  void add(const StrainMeasure &strain, const MaxwellFibres &fibres);
+
   std::vector<MaxwellFibres> families_;
-  std::size_t n_variables_ = 0;
+  double gradient_length_ = 0.;
+  std::vector<StrainMeasure> strains_;
+  std::vector<Variable> variables_; // in the order of their strains
   std::size_t n_numbers_ = 0;
+  std::shared_ptr<const FibreMemory> gradient_;
 };
 } // namespace latcon::continuum

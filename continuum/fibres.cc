@@ -46,12 +46,17 @@ PotentialDerivatives derivatives(const FibrePotential &potential, const double l
   return std::visit([l](const auto &p) { return of(p, l); }, potential);
 }
 
+void check_fibre(const dealii::Tensor<1, 2> &direction, const double weight, const std::string &name)
+{
+  if (!(std::abs(direction.norm() - 1.) <= 1e-12))
+    throw InvalidMaterial("the direction of " + name + " must be a unit vector");
+  if (!(weight > 0. && std::isfinite(weight)))
+    throw InvalidMaterial("the weight of " + name + " must be positive and finite");
+}
+
 void check(const FibreFamily &family)
 {
-  if (!(std::abs(family.direction.norm() - 1.) <= 1e-12))
-    throw InvalidMaterial("the direction of a fibre family must be a unit vector");
-  if (!(family.weight > 0. && std::isfinite(family.weight)))
-    throw InvalidMaterial("the weight of a fibre family must be positive and finite");
+  check_fibre(family.direction, family.weight, "a fibre family");
   const double stiffness = derivatives(family.potential, 1.).second;
   if (!(stiffness > 0. && std::isfinite(stiffness)))
     throw InvalidMaterial("a fibre must have a positive and finite stiffness at stretch 1");

@@ -1,6 +1,7 @@
 #include "continuum/lattice_gradient.h"
 
 #include "continuum/errors.h"
+#include "continuum/fibre_strain.h"
 #include "continuum/material.h"
 
 #include <algorithm>
@@ -111,11 +112,7 @@ LatticeGradient::LatticeGradient(const std::vector<BondFamily> &families, const 
   for (const BondFamily &family : families)
   {
     check(family);
-    // At the smallest length the difference is zero up to rounding and must not become negative.
-    constexpr double rounding = 1e-14;
-    double along = length * length - family.length * family.length / 12.;
-    if (std::abs(along) <= rounding * length * length)
-      along = 0.;
+    const double along = squared_length_along(family.length, length);
     if (along < 0.)
       throw InvalidMaterial("the micro-inertia length must be at least " + std::to_string(smallest_length(families)) +
                             " m, the longest bond over sqrt(12), for the gradient energy to be positive");

@@ -20,6 +20,22 @@ Tensor<3, 2> second_gradient(const FieldDerivatives &u)
   return G;
 }
 
+void add_stress(PointIntegrand &d, const Tensor<2, 2> &P)
+{
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      d.first[i][J] += P[i][J];
+}
+
+void add_tangent(PointIntegrand &d, const Tensor<4, 2> &T)
+{
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      for (unsigned int k = 0; k < 2; ++k)
+        for (unsigned int L = 0; L < 2; ++L)
+          d.second[i][k][J][L] += T[i][J][k][L];
+}
+
 // Component c of the second derivatives represents the entries (J, K) and (K, J).
 constexpr unsigned int first_index[n_derivatives] = {0, 1, 0, 1, 0};
 constexpr unsigned int second_index[n_derivatives] = {0, 0, 0, 1, 1};
@@ -43,20 +59,15 @@ Tensor<2, 2> deformation_gradient(const FieldDerivatives &u)
   return F;
 }
 
-void add_stress(PointIntegrand &d, const Tensor<2, 2> &P)
+FieldDerivatives field_derivatives(const Tensor<2, 2> &F, const Tensor<3, 2> &G)
 {
+  FieldDerivatives u;
   for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int J = 0; J < 2; ++J)
-      d.first[i][J] += P[i][J];
-}
-
-void add_tangent(PointIntegrand &d, const Tensor<4, 2> &T)
-{
-  for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int J = 0; J < 2; ++J)
-      for (unsigned int k = 0; k < 2; ++k)
-        for (unsigned int L = 0; L < 2; ++L)
-          d.second[i][k][J][L] += T[i][J][k][L];
+  {
+    u[i] = {F[i][0], F[i][1], G[i][0][0], G[i][1][1], G[i][0][1]};
+    u[i][i] -= 1.;
+  }
+  return u;
 }
 
 void add_energy(const Material &law, const FieldDerivatives &u, const Order order, PointIntegrand &d)

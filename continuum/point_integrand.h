@@ -28,11 +28,9 @@ void clear(PointIntegrand &density, Order order);
 /// Returns F_iJ = delta_iJ + u_i,J of a displacement.
 dealii::Tensor<2, 2> deformation_gradient(const FieldDerivatives &u);
 
-/// Adds a first Piola stress P [Pa] to the first derivatives of the density.
-void add_stress(PointIntegrand &density, const dealii::Tensor<2, 2> &P);
-
-/// Adds T = dP/dF [Pa], index order [i][J][k][L], to the second derivatives of the density.
-void add_tangent(PointIntegrand &density, const dealii::Tensor<4, 2> &T);
+/// Returns the derivatives of the displacement with the deformation gradient F and, in G, its gradient.
+FieldDerivatives field_derivatives(const dealii::Tensor<2, 2> &F,
+                                   const dealii::Tensor<3, 2> &G = dealii::Tensor<3, 2>());
 
 /// Adds W(F) [J/m^3], eq. (C.28).
 void add_energy(const Material &law, const FieldDerivatives &u, Order order, PointIntegrand &density);

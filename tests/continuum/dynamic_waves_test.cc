@@ -150,7 +150,7 @@ TEST(DynamicSolver, WavesFollowTheDispersionOfTheLattice)
     }
 }
 
-// theory-continuum.md, eqs. (C.48) and (C.62).
+// theory-continuum.md, eq. (C.62).
 TEST(DynamicSolver, DampsAStandingWaveAsKelvinTheorySays)
 {
   // q'' + 2 g q' + w^2 q = 0 with g = eta k^2 / (2 rho (1 + l_d^2 k^2)), eta the viscous modulus of the polarisation,
@@ -166,7 +166,7 @@ TEST(DynamicSolver, DampsAStandingWaveAsKelvinTheorySays)
     Tensor<1, 2> polarisation;
     polarisation[i] = 1e-6;
     double stiffness = law.tangent(identity)[i][0][i][0];
-    double eta = viscosity.stress_by_rate(identity, Tensor<2, 2>())[i][0][i][0];
+    double eta = 0.;
     double stiffness_4 = 0.;
     double eta_4 = 0.;
     for (const auto &bond : bonds)
@@ -174,6 +174,7 @@ TEST(DynamicSolver, DampsAStandingWaveAsKelvinTheorySays)
       const Tensor<1, 2> &N = bond.fibre.direction;
       const double along = bond.fibre.weight * bond.length * bond.length / 12. * std::pow(N[0], 4) * N[i] * N[i];
       stiffness_4 += along * continuum::derivatives(bond.fibre.potential, 1.).second;
+      eta += bond.fibre.weight * bond_viscosity * N[0] * N[0] * N[i] * N[i];
       eta_4 += along * bond_viscosity;
     }
     stiffness += (l_d * l_d * stiffness - stiffness_4) * k_wave * k_wave;

@@ -2,8 +2,8 @@
 #include "continuum/dynamic_solver.h"
 #include "continuum/errors.h"
 #include "continuum/fibre_memory.h"
-#include "continuum/memory_forces.h"
 #include "continuum/meshes.h"
+#include "continuum/rate_forces.h"
 #include "moving_sheets.h"
 
 #include <deal.II/base/mpi.h>
@@ -25,7 +25,7 @@ using continuum::BranchEnergy;
 using continuum::DynamicSolver;
 using continuum::FibreMemory;
 using continuum::MaxwellFibres;
-using continuum::MemoryForces;
+using continuum::RateForces;
 namespace edge = continuum::edge;
 
 const double epsilon = std::numeric_limits<double>::epsilon();
@@ -35,13 +35,6 @@ FibreMemory mixed_branches()
 {
   return FibreMemory({{Tensor<1, 2>({0.6, 0.8}), 1.1, {{2e5, 1e-3}, {1e5, 2e-2}}, 0},
                       {Tensor<1, 2>({-0.28, 0.96}), 0.4, {{3e5, 5e-3}}, 2}});
-}
-
-std::vector<double> stretches(const FibreMemory &law, const Tensor<2, 2> &F)
-{
-  std::vector<double> l(law.families().size());
-  law.stretches(F, l.data());
-  return l;
 }
 
 std::vector<double> advanced(const FibreMemory &law, const double duration, const std::vector<double> &before,
@@ -175,7 +168,8 @@ TEST(FibreMemory, RefusesInvalidFamilies)
   fibres.branches.clear();
   EXPECT_THROW(FibreMemory({fibres}), continuum::InvalidMaterial);
   std::vector<double> l(1);
-  EXPECT_THROW(FibreMemory({valid}).stretches(matrix(-1., 0., 0., 1.), l.data()), continuum::NonPhysicalState);
+  EXPECT_THROW(FibreMemory({valid}).strains(continuum::field_derivatives(matrix(-1., 0., 0., 1.)), l.data()),
+               continuum::NonPhysicalState);
 }
 
 // Sheet held at its whole boundary, whose strain follows a load factor.
@@ -209,7 +203,7 @@ private:
 };
 
 // A sheet that is strained suddenly and held: closed form of theory.md, eq. (L.31). The energies balance to round-off.
-TEST(MemoryForces, RelaxInAHeldSheet)
+TEST(RateForces, RelaxInAHeldSheet)
 {
   constexpr double h = 1e-4;
   constexpr int n_steps = 30;
@@ -268,12 +262,12 @@ TEST(MemoryForces, RelaxInAHeldSheet)
 }
 
 // The derivative of the nodal forces, between updates and after them. theory-viscoelastic.md, eqs. (V.1) and (V.3).
-TEST(MemoryForces, HaveAConsistentTangent)
+TEST(RateForces, HaveAConsistentTangent)
 {
   HeldSheet held(1e-4, DynamicSolver::LoadFactor());
   const continuum::Sheet &sheet = held.solver().sheet();
-  MemoryForces forces(sheet, &held.memory());
-  forces.start(nodal(sheet, [](const Point<2> &X) { return 0.2 * Tensor<1, 2>(X); }),
+  RateForces forces(sheet, nullptr, &held.memory());
+  forces.start(nodal(sheet, [](const Point<2> &X) { return 0.2 * Tensor<1, 2>(X); }), 1.,
                {sheet.make_ghosted(), nodal(sheet,
                                             [](const Point<2> &X) {
                                               return Tensor<1, 2>({0.3 * X[1], 0.});
@@ -291,12 +285,12 @@ TEST(MemoryForces, HaveAConsistentTangent)
   const auto at = [&](const double share)
   {
     auto result = sheet.make_owned();
-    forces.add_forces(duration, u_of(share), result, nullptr);
+    forces.add_forces(duration, u_of(share), u_of(share), {}, result, nullptr);
     return result;
   };
   continuum::Sheet::Matrix matrix;
   sheet.make_matrix(sheet.conformity_constraints(), matrix);
-  forces.add_tangent(duration, u_of(0.), sheet.conformity_constraints(), matrix);
+  forces.add_tangent(duration, u_of(0.), u_of(0.), {}, 0., sheet.conformity_constraints(), matrix);
   auto direction = sheet.make_owned();
   direction = u_of(1.);
   auto at_zero = sheet.make_owned();
@@ -316,7 +310,7 @@ TEST(MemoryForces, HaveAConsistentTangent)
 }
 
 // The ledger of a sheet that is strained through its boundary: of second order in the time step.
-TEST(MemoryForces, BalanceTheWorkOfAMovingBoundary)
+TEST(RateForces, BalanceTheWorkOfAMovingBoundary)
 {
   const auto imbalance = [](const double time_step)
   {
@@ -335,7 +329,7 @@ TEST(MemoryForces, BalanceTheWorkOfAMovingBoundary)
 }
 
 // A step that fails leaves the history as it was.
-TEST(MemoryForces, StayAsTheyWereAfterAStepThatFails)
+TEST(RateForces, StayAsTheyWereAfterAStepThatFails)
 {
   HeldSheet held(1e-4, [](const double t) { return t < 4.5e-4 ? 0. : -2.5; });
   DynamicSolver &solver = held.solver();

@@ -1,10 +1,10 @@
 // Gradient part of the viscosity of dashpots at a point, compared with differences and with sums over bonds.
 #include "continuum/errors.h"
-#include "continuum/gradient_viscosity.h"
-#include "continuum/viscous_forces.h"
+#include "continuum/rate_forces.h"
 #include "sheets.h"
 #include "support/largest_error.h"
 
+#include <deal.II/base/quadrature_lib.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,6 +25,13 @@ std::vector<FibreDashpot> dashpots()
   for (const BondFamily &bond : rubber_bonds(spacing))
     all.push_back({bond.fibre.direction, bond.fibre.weight, bond.length > spacing ? 250. : 400., bond.length});
   return all;
+}
+
+// The law of these dashpots, with its gradient part.
+const FibreViscosity &viscosity()
+{
+  static const FibreViscosity law(dashpots(), micro_length);
+  return law;
 }
 
 double entry(std::mt19937 &generator)
@@ -64,7 +71,7 @@ double stretch(const FieldDerivatives &u, const FieldDerivatives &v, const Tenso
 // theory-continuum.md, eq. (C.61).
 TEST(GradientViscosity, DissipatesTheRatesOfTheGradientsOfStretches)
 {
-  const GradientViscosity law(dashpots(), micro_length);
+  const Viscosity &law = *viscosity().gradient();
   std::mt19937 generator(31);
   for (int sample = 0; sample < 20; ++sample)
   {
@@ -99,17 +106,13 @@ TEST(GradientViscosity, DissipatesTheRatesOfTheGradientsOfStretches)
 // order that of the local and the gradient viscosity. theory-continuum.md, eqs. (C.60) and (C.62).
 TEST(GradientViscosity, HasTheBondsDampingOfLongWavesToFourthOrder)
 {
-  const FibreViscosity viscosity(dashpots(), micro_length);
   std::mt19937 generator(32);
   for (int sample = 0; sample < 10; ++sample)
   {
     const Tensor<2, 2> F = random_deformation(generator);
     const Tensor<1, 2> direction = random_normal(generator);
     const Tensor<1, 2> p = random_normal(generator);
-    FieldDerivatives state{};
-    for (unsigned int i = 0; i < 2; ++i)
-      for (unsigned int J = 0; J < 2; ++J)
-        state[i][J] = F[i][J] - (i == J ? 1. : 0.);
+    const FieldDerivatives state = field_derivatives(F);
     const auto error = [&](const double kd)
     {
       const Tensor<1, 2> K = kd / spacing * direction;
@@ -122,14 +125,17 @@ TEST(GradientViscosity, HasTheBondsDampingOfLongWavesToFourthOrder)
                  std::pow(std::sin(0.5 * l * (K * dashpot.direction)) / l, 2) * std::pow(f * p / f.norm(), 2);
       }
       // The amplitudes: F' = -p K sin, G' = -p K K cos.
-      FieldDerivatives v{};
+      FieldDerivatives first{}, second{};
       for (unsigned int i = 0; i < 2; ++i)
-        v[i] = {0., 0., p[i] * K[0] * K[0], p[i] * K[1] * K[1], p[i] * K[0] * K[1]};
+      {
+        first[i] = {p[i] * K[0], p[i] * K[1]};
+        second[i] = {0., 0., p[i] * K[0] * K[0], p[i] * K[1] * K[1], p[i] * K[0] * K[1]};
+      }
       PointIntegrand density;
       clear(density, Order::value);
-      viscosity.gradient()->add_density(state, v, Order::value, 0., density);
-      const double sum = viscosity.dissipation(F, outer_product(p, K)) + density.value;
-      return std::abs(sum / (bonds * (1. + micro_length * micro_length * K.norm_square())) - 1.);
+      viscosity().add_density(state, first, Order::value, 0., density);
+      viscosity().gradient()->add_density(state, second, Order::value, 0., density);
+      return std::abs(density.value / (bonds * (1. + micro_length * micro_length * K.norm_square())) - 1.);
     };
     // The next term is of the order of (k l)^2/30 of the error.
     EXPECT_NEAR(std::log2(error(0.2) / error(0.1)), 4., 0.05);
@@ -140,7 +146,7 @@ TEST(GradientViscosity, HasTheBondsDampingOfLongWavesToFourthOrder)
 // (C.61).
 TEST(GradientViscosity, HasTheDerivativesOfItsDensity)
 {
-  const GradientViscosity law(dashpots(), micro_length);
+  const Viscosity &law = *viscosity().gradient();
   constexpr double rate_by_displacement = 20.;
   const auto density = [&](const FieldDerivatives &at_u, const FieldDerivatives &at_v, const Order order)
   {
@@ -199,17 +205,14 @@ TEST(GradientViscosity, DissipatesAKinkAsInClosedForm)
 {
   const CauchyBorn law = rubber_network();
   const LatticeGradient gradient = rubber_gradient(spacing);
-  const FibreViscosity with(dashpots(), micro_length), without(dashpots());
+  const FibreViscosity without(dashpots());
   constexpr double h = 0.02, s = 0.3, n = 4.;
   const Tensor<2, 2> F = matrix(1.4, 0.1, 0., 1.2);
-  FieldDerivatives state{}, rate{};
-  for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int J = 0; J < 2; ++J)
-      state[i][J] = F[i][J] - (i == J ? 1. : 0.);
+  FieldDerivatives rate{};
   rate[1][n_first] = s;
   PointIntegrand density;
   clear(density, Order::value);
-  with.gradient()->add_density(state, rate, Order::value, 0., density);
+  viscosity().gradient()->add_density(field_derivatives(F), rate, Order::value, 0., density);
   for (const unsigned int p : {2u, 3u})
   {
     Mesh mesh(MPI_COMM_SELF);
@@ -231,10 +234,52 @@ TEST(GradientViscosity, DissipatesAKinkAsInClosedForm)
       [&](const Point<2> &X) {
         return Tensor<1, 2>({0., s * std::max(0., X[0] - 2. * h)});
       });
-    const double local = ViscousForces(sheet, &without).dissipation(u, v, 0.);
+    const double local = RateForces(sheet, &without, nullptr).dissipation(u, v, {});
     const double expected = density.value * n * p * p / (2. * h) * 2. * h;
-    EXPECT_NEAR(ViscousForces(sheet, &with).dissipation(u, v, 0.) - local, expected, 1e-10 * (local + expected)) << p;
+    EXPECT_NEAR(RateForces(sheet, &viscosity(), nullptr).dissipation(u, v, {}) - local, expected,
+                1e-10 * (local + expected))
+      << p;
   }
+}
+
+// A quadratic motion whose normal gradient is the prescribed one has no jumps, and the gradient part dissipates the
+// power of its own second gradients. theory-continuum.md, eq. (C.63).
+TEST(GradientViscosity, KnowsThePrescribedNormalGradients)
+{
+  const CauchyBorn law = rubber_network();
+  const LatticeGradient gradient = rubber_gradient(spacing);
+  Mesh mesh(MPI_COMM_SELF);
+  make_rectangle(mesh, rectangle(1, 1));
+  constexpr double curvature = 3., factor = 0.7, rate = 40.;
+  // u = factor w and v = rate w with w = curvature X^2 / 2 along both axes.
+  BoundaryConditions conditions;
+  conditions.normal_gradients = {{edge::right, std::make_shared<Field>(
+                                                 [](const Point<2> &X) {
+                                                   return curvature * X[0] * Tensor<1, 2>({1., 1.});
+                                                 })}};
+  const Sheet sheet(mesh, Constitution(law, gradient), 2, conditions);
+  const auto w = [](const Point<2> &X) { return 0.5 * curvature * X[0] * X[0] * Tensor<1, 2>({1., 1.}); };
+  const auto u = nodal(sheet, [&](const Point<2> &X) { return factor * w(X); });
+  const auto v = nodal(sheet, [&](const Point<2> &X) { return rate * w(X); });
+  double expected = 0.;
+  const dealii::QGauss<2> points(3);
+  for (unsigned int q = 0; q < points.size(); ++q)
+  {
+    FieldDerivatives derivatives{}, rates{};
+    for (unsigned int i = 0; i < 2; ++i)
+    {
+      derivatives[i] = {factor * curvature * length * points.point(q)[0], 0., factor * curvature};
+      rates[i] = {rate * curvature * length * points.point(q)[0], 0., rate * curvature};
+    }
+    PointIntegrand density;
+    clear(density, Order::value);
+    viscosity().gradient()->add_density(derivatives, rates, Order::value, 0., density);
+    expected += points.weight(q) * length * height * density.value;
+  }
+  const FibreViscosity without(dashpots());
+  const double local = RateForces(sheet, &without, nullptr).dissipation(u, v, {factor, rate});
+  EXPECT_NEAR(RateForces(sheet, &viscosity(), nullptr).dissipation(u, v, {factor, rate}) - local, expected,
+              1e-12 * (local + expected));
 }
 
 // Nodal forces at a rough state, whose normal gradients jump, on a mesh with hanging nodes: their power is what is
@@ -243,13 +288,12 @@ TEST(GradientViscosity, HasTheForcesOfTheLiftedGradients)
 {
   const CauchyBorn law = rubber_network();
   const LatticeGradient gradient = rubber_gradient(spacing);
-  const FibreViscosity viscosity(dashpots(), micro_length);
   Mesh mesh(MPI_COMM_SELF);
   make_rectangle(mesh, rectangle(2, 2));
   mesh.begin_active()->set_refine_flag();
   mesh.execute_coarsening_and_refinement();
   const Sheet sheet(mesh, Constitution(law, gradient), 2);
-  const ViscousForces viscous(sheet, &viscosity);
+  const RateForces viscous(sheet, &viscosity(), nullptr);
   std::mt19937 generator(35);
   const auto random = [&](const double size)
   {
@@ -268,20 +312,20 @@ TEST(GradientViscosity, HasTheForcesOfTheLiftedGradients)
   const auto forces = [&](const Sheet::Vector &u, const Sheet::Vector &v)
   {
     Sheet::Vector sum = sheet.make_owned();
-    viscous.add_forces(ghosted(u), ghosted(v), 0., sum, nullptr);
+    viscous.add_forces(0., ghosted(u), ghosted(v), {}, sum, nullptr);
     return sum;
   };
   constexpr double rate = 20., step = 1e-4;
   const Sheet::Vector u = random(2e-3), v = random(0.1), w = random(1e-3);
   const Sheet::Vector C = forces(u, v);
-  const double dissipation = viscous.dissipation(ghosted(u), ghosted(v), 0.);
+  const double dissipation = viscous.dissipation(ghosted(u), ghosted(v), {});
   EXPECT_GT(dissipation, 0.);
   EXPECT_NEAR(C * v, dissipation, 1e-12 * dissipation);
 
   Sheet::Matrix K;
   sheet.make_matrix(sheet.conformity_constraints(), K);
   K = 0.;
-  viscous.add_tangent(ghosted(u), ghosted(v), 0., rate, sheet.conformity_constraints(), K);
+  viscous.add_tangent(0., ghosted(u), ghosted(v), {}, rate, sheet.conformity_constraints(), K);
   Sheet::Vector Kw = sheet.make_owned(), difference = sheet.make_owned();
   K.vmult(Kw, w);
   for (const double sign : {1., -1.})
@@ -302,12 +346,12 @@ TEST(GradientViscosity, HasTheForcesOfTheLiftedGradients)
 TEST(GradientViscosity, RefusesLengthsThatWouldNotDissipate)
 {
   const double longest = std::sqrt(3.) * spacing;
-  EXPECT_NO_THROW(GradientViscosity(dashpots(), longest / std::sqrt(12.)));
-  EXPECT_THROW(GradientViscosity(dashpots(), 0.999 * longest / std::sqrt(12.)), InvalidMaterial);
-  EXPECT_THROW(GradientViscosity(dashpots(), std::nan("")), InvalidMaterial);
+  EXPECT_NO_THROW(FibreViscosity(dashpots(), longest / std::sqrt(12.)));
+  EXPECT_THROW(FibreViscosity(dashpots(), 0.999 * longest / std::sqrt(12.)), InvalidMaterial);
+  EXPECT_THROW(FibreViscosity(dashpots(), std::nan("")), InvalidMaterial);
   std::vector<FibreDashpot> without_length = dashpots();
   without_length.front().length = 0.;
-  EXPECT_THROW(GradientViscosity(without_length, micro_length), InvalidMaterial);
+  EXPECT_THROW(FibreViscosity(without_length, micro_length), InvalidMaterial);
   EXPECT_NO_THROW(FibreViscosity{without_length});
 }
 } // namespace gradient_viscosity_test

@@ -56,7 +56,7 @@ protected:
   const continuum::CauchyBorn law_ = rubber_network();
   const continuum::IsotropicGradient gradient_{5e5, 0.01};
   const continuum::FibreViscosity viscosity_ = network_viscosity(50.);
-  const continuum::FibreMemory memory_ = network_memory(1e5, {5e-4, 4e-3});
+  const continuum::FibreMemory memory_ = network_memory(1e5, {5e-4, 4e-3}, 0.01);
   Mesh mesh_;
   std::unique_ptr<DynamicSolver> solver_;
 };

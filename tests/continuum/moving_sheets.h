@@ -47,19 +47,20 @@ inline latcon::continuum::FibreViscosity network_viscosity(const double eta, con
   return latcon::continuum::FibreViscosity(dashpots, micro_length);
 }
 
-// Maxwell branches of equal moduli along the bonds of rubber_network.
-inline latcon::continuum::FibreMemory network_memory(const double modulus, const std::vector<double> &relaxation_times)
+// Maxwell branches of equal moduli along the bonds of rubber_network; a micro-inertia length as for network_viscosity.
+inline latcon::continuum::FibreMemory network_memory(const double modulus, const std::vector<double> &relaxation_times,
+                                                     const double micro_length = 0.)
 {
-  const latcon::continuum::CauchyBorn network = rubber_network();
   std::vector<latcon::continuum::MaxwellFibres> families;
-  for (const auto &family : network.families())
+  for (const auto &bond : rubber_bonds(micro_length / 0.6))
   {
-    families.push_back({family.direction, family.weight, {}, 0});
+    families.push_back({bond.fibre.direction, bond.fibre.weight, {}, 0, bond.length});
     for (const double time : relaxation_times)
       families.back().branches.push_back({modulus, time});
   }
-  return latcon::continuum::FibreMemory(families);
+  return latcon::continuum::FibreMemory(families, micro_length);
 }
+
 // Problem with all features: a moving held edge, a traction, a weak normal gradient, a gradient law, viscosity
 // with a gradient part.
 struct Problem

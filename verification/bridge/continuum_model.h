@@ -33,7 +33,8 @@ public:
   double extent() const { return extent_; }                 ///< smaller of length and height [m]
   double static_length() const { return static_length_; }   ///< l_s [m] of the isotropic gradient energy; otherwise 0
   double inertia_length() const { return inertia_length_; } ///< l_d [m]; 0 without a gradient energy
-  /// Returns l_d [m] if the gradient energy is that of the bonds, whose dashpots then have a gradient part too; else 0.
+  /// Returns l_d [m] if the gradient energy is that of the bonds, whose dashpots and Maxwell branches then have a
+  /// gradient part too; else 0.
   double viscous_gradient_length() const;
 
 private:

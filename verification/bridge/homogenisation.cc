@@ -127,7 +127,7 @@ std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::Trian
 }
 
 std::unique_ptr<continuum::FibreMemory> homogenised_memory(const lattice::TriangularLattice &lattice,
-                                                           const lattice::Material &material)
+                                                           const lattice::Material &material, double gradient_length)
 {
   std::vector<continuum::MaxwellFibres> families;
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
@@ -141,12 +141,13 @@ std::unique_ptr<continuum::FibreMemory> homogenised_memory(const lattice::Triang
     continuum::MaxwellFibres fibres{direction_of(lattice, kind),
                                     bond_weight(lattice, *shell, kind),
                                     {},
-                                    material.first_mechanism(lattice::shell_of(kind))};
+                                    material.first_mechanism(lattice::shell_of(kind)),
+                                    lattice.rest_length(kind)};
     for (const auto &[modulus, relaxation_time] : memory->branches())
       fibres.branches.push_back({modulus, relaxation_time});
     families.push_back(std::move(fibres));
   }
-  return families.empty() ? nullptr : std::make_unique<continuum::FibreMemory>(std::move(families));
+  return families.empty() ? nullptr : std::make_unique<continuum::FibreMemory>(std::move(families), gradient_length);
 }
 
 GradientLengths gradient_lengths(const lattice::TriangularLattice &lattice, const lattice::Material &material)

@@ -41,9 +41,11 @@ std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::Trian
 /// Returns the Maxwell branches of a lattice as those of fibres, with weights as in cauchy_born()
 /// (theory-comparison.md, eq. (H.1); theory-viscoelastic.md, eq. (V.1)); null if there are no branches. Branches are
 /// numbered as in lattice::Simulation::mechanism_energies(): those of nearest-neighbour bonds first.
+/// @param gradient_length as for homogenised_viscosity()
 /// @throws std::invalid_argument for bonds with a memory of another program
 std::unique_ptr<continuum::FibreMemory> homogenised_memory(const lattice::TriangularLattice &lattice,
-                                                           const lattice::Material &material);
+                                                           const lattice::Material &material,
+                                                           double gradient_length = 0.);
 
 /// Lengths of the gradient continuum.
 struct GradientLengths

@@ -19,7 +19,7 @@ struct WaveMatrices
   Eigen::Matrix2d damping;   ///< C [1/s], symmetric
 };
 
-/// Free wave exp(-g t) cos(w t) of one polarisation. For g at F = I see theory-continuum.md, eq. (C.48).
+/// Free wave exp(-g t) cos(w t) of one polarisation. For g at F = I see theory-continuum.md, eq. (C.62).
 struct PlaneWave
 {
   double frequency;             ///< w [rad/s], >= 0; 0 if the wave is overdamped or the sheet is unstable

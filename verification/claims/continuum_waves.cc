@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "continuum/gradient_viscosity.h"
 #include "verification/bridge/homogenisation.h"
 
 namespace latcon::claims
@@ -11,25 +10,20 @@ namespace latcon::claims
 namespace
 {
 
-// Of the forces on a sheet at rest, per rate of displacement.
-Eigen::Matrix2d gradient_damping(const continuum::GradientViscosity &law, const Eigen::Matrix2d &F,
-                                 const Eigen::Vector2d &K)
+// Of the forces of a law on a sheet at rest, per rate of displacement.
+Eigen::Matrix2d damping(const continuum::Viscosity &law, const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
 {
-  continuum::FieldDerivatives u{};
-  for (int i = 0; i < 2; ++i)
-    for (int J = 0; J < 2; ++J)
-      u[i][J] = F(i, J) - (i == J ? 1. : 0.);
   continuum::PointIntegrand density;
   continuum::clear(density, continuum::Order::second);
-  law.add_density(u, {}, continuum::Order::second, 1., density);
-  const double second[] = {K[0] * K[0], K[1] * K[1], K[0] * K[1]};
-  Eigen::Matrix2d damping = Eigen::Matrix2d::Zero();
+  law.add_density(continuum::field_derivatives(bridge::to_continuum(F)), {}, continuum::Order::second, 1., density);
+  const double derivatives[] = {K[0], K[1], K[0] * K[0], K[1] * K[1], K[0] * K[1]};
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (int i = 0; i < 2; ++i)
     for (int k = 0; k < 2; ++k)
-      for (unsigned int c = 0; c < 3; ++c)
-        for (unsigned int e = 0; e < 3; ++e)
-          damping(i, k) += second[c] * second[e] * density.second[i][k][continuum::n_first + c][continuum::n_first + e];
-  return damping;
+      for (unsigned int c = 0; c < continuum::n_derivatives; ++c)
+        for (unsigned int e = 0; e < continuum::n_derivatives; ++e)
+          sum(i, k) += derivatives[c] * derivatives[e] * density.second[i][k][c][e];
+  return sum;
 }
 
 } // namespace
@@ -52,9 +46,6 @@ bridge::WaveMatrices continuum_matrices(const WaveContinuum &medium, const Eigen
   dealii::Tensor<6, 2> C;
   if (medium.constitution.gradient != nullptr)
     C = medium.constitution.gradient->double_stress_by_G(state);
-  dealii::Tensor<4, 2> viscous;
-  if (medium.viscosity != nullptr)
-    viscous = medium.viscosity->stress_by_rate(state, dealii::Tensor<2, 2>());
   bridge::WaveMatrices matrices{Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int k = 0; k < 2; ++k)
@@ -62,13 +53,12 @@ bridge::WaveMatrices continuum_matrices(const WaveContinuum &medium, const Eigen
         for (unsigned int L = 0; L < 2; ++L)
         {
           matrices.stiffness(i, k) += T[i][J][k][L] * K[J] * K[L];
-          matrices.damping(i, k) += viscous[i][J][k][L] * K[J] * K[L];
           for (unsigned int M = 0; M < 2; ++M)
             for (unsigned int N = 0; N < 2; ++N)
               matrices.stiffness(i, k) += C[i][J][L][k][M][N] * K[J] * K[L] * K[M] * K[N];
         }
-  if (medium.viscosity != nullptr && medium.viscosity->gradient() != nullptr)
-    matrices.damping += gradient_damping(*medium.viscosity->gradient(), F, K);
+  for (const continuum::Viscosity *law = medium.viscosity.get(); law != nullptr; law = law->gradient())
+    matrices.damping += damping(*law, F, K);
   const double mass = medium.inertia.density * (1. + medium.inertia.length * medium.inertia.length * K.squaredNorm());
   matrices.stiffness /= mass;
   matrices.damping /= mass;
@@ -95,7 +85,9 @@ std::vector<bridge::BranchMatrix> branch_matrices(const WaveContinuum &medium, c
   for (const continuum::MaxwellFibres &fibres : medium.memory->families())
   {
     const Eigen::Vector2d N(fibres.direction[0], fibres.direction[1]), n = (F * N).normalized();
-    const Eigen::Matrix2d per_modulus = fibres.weight * std::pow(N.dot(K), 2) / mass * n * n.transpose();
+    const double l_d = medium.memory->gradient_length(), along = std::pow(N.dot(K), 2);
+    const double gradient = l_d == 0. ? 0. : l_d * l_d * K.squaredNorm() - fibres.length * fibres.length / 12. * along;
+    const Eigen::Matrix2d per_modulus = fibres.weight * along * (1. + gradient) / mass * n * n.transpose();
     for (const auto &[modulus, time] : fibres.branches)
     {
       const auto same =

@@ -215,6 +215,9 @@ std::array<bridge::PlaneWave, 2> discrete_waves(const WaveContinuum &medium, con
   continuum::Sheet::Matrix stiffness;
   sheet.make_matrix(sheet.conformity_constraints(), stiffness);
   sheet.tangent(u, sheet.conformity_constraints(), stiffness);
+  continuum::RateForces branches(sheet, nullptr, medium.memory.get());
+  branches.start(u, 1., {});
+  branches.add_tangent(0., u, u, {}, 0., sheet.conformity_constraints(), stiffness);
   continuum::LinearSolver solver(sheet, {}, {});
 
   // Both waves at once, by inverse iteration with a shift below them. Translations by whole cells keep waves of other
@@ -238,8 +241,8 @@ std::array<bridge::PlaneWave, 2> discrete_waves(const WaveContinuum &medium, con
   // The errors of the eigenvalues in the space of the two vectors are the squares of those of the vectors.
   continuum::Sheet::Matrix damping;
   sheet.make_matrix(sheet.conformity_constraints(), damping);
-  continuum::ViscousForces(sheet, medium.viscosity.get())
-    .add_tangent(u, sheet.make_ghosted(), 0., 1., sheet.conformity_constraints(), damping);
+  continuum::RateForces(sheet, medium.viscosity.get(), nullptr)
+    .add_tangent(0., u, sheet.make_ghosted(), {}, 1., sheet.conformity_constraints(), damping);
   Eigen::Matrix2d K2, C2, M2;
   for (std::size_t v = 0; v < 2; ++v)
     for (std::size_t w = 0; w < 2; ++w)

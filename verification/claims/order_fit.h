@@ -12,6 +12,8 @@ namespace latcon::claims
 
 /// Wave numbers kd over which orders are fitted; the smallest error is well above round-off.
 inline const std::vector<double> order_kd{0.05, 0.1, 0.2};
+/// Wave number kd at which damped waves of finite elements are compared in all directions.
+inline constexpr double largest_damped_kd = 0.4;
 /// Tolerance of such an order.
 inline constexpr double order_tolerance = 0.05;
 /// Why that tolerance. The next order of undamped waves is (kd)^2 / 12 of the error; damping mixes the polarisations,

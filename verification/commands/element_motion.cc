@@ -172,7 +172,7 @@ MovingSheet::MovingSheet(const input::Case &input, bridge::ContinuumModel &model
   : settings(dynamic_settings(input, model)),
     viscosity(
       bridge::homogenised_viscosity(input.lattice(), model.subject().material, model.viscous_gradient_length())),
-    memory(bridge::homogenised_memory(input.lattice(), model.subject().material)),
+    memory(bridge::homogenised_memory(input.lattice(), model.subject().material, model.viscous_gradient_length())),
     solver(model.mesh(), model.constitution(), model.conditions(), {input.density, model.inertia_length()}, settings,
            viscosity.get(), {}, memory.get()),
     added(claims::interpolated(solver.sheet(),

@@ -117,6 +117,12 @@ TEST(Homogenisation, GivesFibresTheBranchesOfTheirBonds)
     EXPECT_EQ(fibres.branches[0].modulus, is_nearest ? 2e5 : 3e5);
     EXPECT_EQ(fibres.branches[0].relaxation_time, is_nearest ? 2e-5 : 1e-5);
   }
+  EXPECT_EQ(memory->gradient(), nullptr);
+  const double gradient_length = gradient_lengths(input.lattice(), input.material()).lattice;
+  const auto with_gradient = homogenised_memory(input.lattice(), input.material(), gradient_length);
+  EXPECT_EQ(with_gradient->gradient()->n_variables(), 2u * memory->n_variables());
+  EXPECT_EQ(with_gradient->gradient_length(), gradient_length);
+  EXPECT_EQ(with_gradient->families().back().length, bond_families(input.lattice(), input.material()).back().length);
   // Branches of next-nearest neighbours alone begin at 0.
   input.nearest.branch_moduli = {};
   input.nearest.relaxation_times = {};

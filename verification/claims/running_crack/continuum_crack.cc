@@ -7,7 +7,6 @@
 
 #include "continuum/field_writer.h"
 #include "continuum/flank.h"
-#include "continuum/gradient_viscosity.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/homogenisation.h"
@@ -123,14 +122,18 @@ void add_sample(const CrackDrive &drive, const lattice::TriangularLattice &sheet
     values.anisotropy = anisotropy(bonds, states[n].F);
     if (medium.viscosity != nullptr)
     {
-      const continuum::Viscosity &viscosity = medium.viscosity->at(points[n]);
-      dealii::Tensor<2, 2> Fdot = rates[n].F;
-      for (unsigned int i = 0; i < 2; ++i)
-        Fdot[i][i] -= 1.;
-      values.opening_stress += viscosity.stress(states[n].F, Fdot)[1][1];
-      values.dissipation = viscosity.dissipation(states[n].F, Fdot);
-      if (const continuum::GradientViscosity *gradient = medium.viscosity->gradient())
-        values.dissipation += gradient->dissipation(states[n].F, states[n].G, Fdot, rates[n].G);
+      continuum::PointIntegrand density;
+      continuum::clear(density, continuum::Order::first);
+      const auto add = [&](const continuum::Viscosity &law)
+      {
+        law.add_density(continuum::field_derivatives(states[n].F, states[n].G),
+                        continuum::field_derivatives(rates[n].F, rates[n].G), continuum::Order::first, 0., density);
+      };
+      add(medium.viscosity->at(points[n]));
+      values.opening_stress += density.first[1][1];
+      if (const continuum::Viscosity *gradient = medium.viscosity->gradient())
+        add(*gradient);
+      values.dissipation = density.value;
     }
     field.add(sites[n], values);
   }

@@ -28,8 +28,10 @@ struct ViscoelasticWavesOptions
 ///   and the glassy limit, and the decay peaks at w tau ~ 1.
 /// - With the branches and the dashpots of the material, if it has any branches: a wave that is damped by less than
 ///   critical damping, and one twice as long.
-/// - The same waves, but for the last, in the local continuum: runs of finite elements against the complex modulus of
+/// - The same waves, but for the last, in the gradient continuum: runs of finite elements against the complex modulus
+/// of
 ///   the continuum (theory-viscoelastic.md, eq. (V.6)), with their energy balance.
+/// - Both continua with one branch in all directions against the lattice: the order in kd of their errors.
 ///
 /// Each run starts with one wave alone, the overstresses included, so that displacements are one damped oscillation.
 ClaimOutcome viscoelastic_waves_claim(const bridge::Subject &subject, const ViscoelasticWavesOptions &options);

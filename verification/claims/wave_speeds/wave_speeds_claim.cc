@@ -134,8 +134,6 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
             subject.judges_gradient(F));
 }
 
-constexpr double largest_damped_kd = 0.4; // of damping_orders
-
 // Decays of waves in all directions, against Bloch's: their order in kd, and those of the finite elements. Dashpots are
 // scaled, so that the shortest waves are damped to a third of critical, and long ones measurably.
 void damping_orders(const bridge::Subject &subject, const Eigen::Matrix2d &F, const WaveSpeedsOptions &options,
