@@ -29,20 +29,15 @@ std::array<PlaneWave, 2> undamped(const Eigen::Matrix2d &stiffness)
   return {wave(0), wave(1)};
 }
 
-Eigen::Matrix2d sum_of(const std::vector<BranchMatrix> &branches)
-{
-  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
-  for (const BranchMatrix &branch : branches)
-    sum += branch.stiffness;
-  return sum;
-}
-
 // Modes exp(s t) of a sheet, with s in `rate`: those with w > 0 first, and of two that do not oscillate the slower.
 std::vector<MemoryWave> free_modes(const WaveMatrices &relaxed, const std::vector<BranchMatrix> &branches)
 {
   // (u, u'/r, r_1, r_2, ...)' = r B (...) with the forces r_i' = G_i u' - r_i / tau_i per mass and r^2, and a rate r
   // that scales the entries to similar size.
-  const double rate = std::sqrt(relaxed.stiffness.norm() + sum_of(branches).norm());
+  double squared_rate = relaxed.stiffness.norm();
+  for (const BranchMatrix &branch : branches)
+    squared_rate += branch.stiffness.norm();
+  const double rate = std::sqrt(squared_rate);
   const auto size = static_cast<Eigen::Index>(4 + 2 * branches.size());
   Eigen::MatrixXd B = Eigen::MatrixXd::Zero(size, size);
   B.block<2, 2>(0, 2).setIdentity();
@@ -82,36 +77,6 @@ std::array<PlaneWave, 2> damped(const WaveMatrices &matrices)
     return PlaneWave{support::one_sided(mode.frequency()), mode.decay(), mode.polarisation.real().normalized()};
   };
   return {wave(modes[0]), wave(modes[1])};
-}
-
-// The branches of each shell.
-std::vector<BranchMatrix> branch_matrices(const lattice::TriangularLattice &lattice, const lattice::Material &material,
-                                          const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
-{
-  std::vector<BranchMatrix> branches;
-  const double mass = lattice::site_mass(material, lattice);
-  for (std::size_t number = 0; number < lattice::n_shells; ++number)
-  {
-    const lattice::Shell *shell = material.in_shell(number);
-    if (shell != nullptr && std::holds_alternative<lattice::CustomMemory>(shell->memory))
-      throw std::invalid_argument("waves in bonds with a custom memory have no closed form");
-    const auto *memory = shell != nullptr ? std::get_if<lattice::MaxwellMemory>(&shell->memory) : nullptr;
-    if (memory == nullptr)
-      continue;
-    // Per unit of the modulus.
-    Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();
-    for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
-      if (lattice::shell_of(kind) == number)
-      {
-        const Eigen::Vector2d R = lattice.bond_vector(kind), n = (F * R).normalized();
-        const double phase = 4. * std::pow(std::sin(0.5 * K.dot(R)), 2);
-        stiffness +=
-          phase * lattice::cross_section(*shell, lattice) / lattice.rest_length(kind) / mass * n * n.transpose();
-      }
-    for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
-      branches.push_back({branch.modulus * stiffness, branch.relaxation_time});
-  }
-  return branches;
 }
 
 // The corners of the hexagonal zone are at kd = 4 pi / 3; all reciprocal vectors, where w = 0 again, are longer.
@@ -237,10 +202,33 @@ SlowestWave slowest_wave(const lattice::TriangularLattice &lattice, const lattic
   return slowest;
 }
 
-Eigen::Matrix2d glassy_stiffness(const lattice::TriangularLattice &lattice, const lattice::Material &material,
-                                 const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+std::vector<BranchMatrix> branch_matrices(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                          const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
 {
-  return sum_of(branch_matrices(lattice, material, F, K));
+  std::vector<BranchMatrix> branches;
+  const double mass = lattice::site_mass(material, lattice);
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+  {
+    const lattice::Shell *shell = material.in_shell(number);
+    if (shell != nullptr && std::holds_alternative<lattice::CustomMemory>(shell->memory))
+      throw std::invalid_argument("waves in bonds with a custom memory have no closed form");
+    const auto *memory = shell != nullptr ? std::get_if<lattice::MaxwellMemory>(&shell->memory) : nullptr;
+    if (memory == nullptr)
+      continue;
+    // Per unit of the modulus.
+    Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();
+    for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+      if (lattice::shell_of(kind) == number)
+      {
+        const Eigen::Vector2d R = lattice.bond_vector(kind), n = (F * R).normalized();
+        const double phase = 4. * std::pow(std::sin(0.5 * K.dot(R)), 2);
+        stiffness +=
+          phase * lattice::cross_section(*shell, lattice) / lattice.rest_length(kind) / mass * n * n.transpose();
+      }
+    for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
+      branches.push_back({branch.modulus * stiffness, branch.relaxation_time});
+  }
+  return branches;
 }
 
 std::array<MemoryWave, 2> memory_waves(const lattice::TriangularLattice &lattice, const lattice::Material &material,

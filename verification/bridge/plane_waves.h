@@ -102,9 +102,8 @@ std::array<MemoryWave, 2> memory_waves(const WaveMatrices &relaxed, const std::v
 std::array<MemoryWave, 2> memory_waves(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                        const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
 
-/// Stiffness that the branches add to the Bloch matrix D in fast motion, sum_i G_i [1/s^2].
-/// @throws std::invalid_argument for bonds with a CustomMemory
-Eigen::Matrix2d glassy_stiffness(const lattice::TriangularLattice &lattice, const lattice::Material &material,
-                                 const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
+/// The branches of the bonds. @throws std::invalid_argument for bonds with a CustomMemory
+std::vector<BranchMatrix> branch_matrices(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                          const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
 
 } // namespace latcon::bridge

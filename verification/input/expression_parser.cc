@@ -66,10 +66,6 @@ double record_minus(double argument)
 {
   return record(Operation::multiply, static_cast<double>(recorded->constant(-1.)), argument);
 }
-double record_plus(double argument)
-{
-  return argument;
-}
 
 // Reads a number at the start of the text, whatever the locale.
 int record_number(const char *text, int *position, double *value)
@@ -100,7 +96,8 @@ void define_grammar(mu::Parser &parser)
   parser.DefineOprt("/", record_binary<Operation::divide>, mu::prMUL_DIV, mu::oaLEFT);
   parser.DefineOprt("^", record_power, mu::prPOW, mu::oaRIGHT);
   parser.DefineInfixOprt("-", record_minus, mu::prINFIX, false);
-  parser.DefineInfixOprt("+", record_plus, mu::prINFIX, false);
+  parser.DefineInfixOprt(
+    "+", +[](double argument) { return argument; }, mu::prINFIX, false);
   parser.DefineFun(functions[0], record_function<Operation::square_root>, false);
   parser.DefineFun(functions[1], record_function<Operation::exponential>, false);
   parser.DefineFun(functions[2], record_function<Operation::logarithm>, false);

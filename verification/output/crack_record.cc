@@ -65,13 +65,15 @@ Json crack_json(const analysis::CrackMeasurement &measurement)
   put("wavelength", measurement.wavelength);
   put("amplitude", measurement.amplitude);
   put("crest_amplitude", measurement.crest_amplitude);
-  const analysis::Sinusoid curve =
-    measurement.wavelength ? measurement.sinusoid->curve.about(0.) : analysis::Sinusoid{};
-  const auto put_curve = [&](const std::string &name, double value)
-  { json["sinusoid_" + name] = measurement.wavelength ? Json(value) : Json(); };
-  put_curve("offset", curve.offset);
-  put_curve("slope", curve.slope);
-  put_curve("phase", std::atan2(curve.cosine, curve.sine));
+  for (const char *name : {"sinusoid_offset", "sinusoid_slope", "sinusoid_phase"})
+    json[name] = nullptr;
+  if (measurement.wavelength)
+  {
+    const analysis::Sinusoid curve = measurement.sinusoid->curve.about(0.);
+    json["sinusoid_offset"] = curve.offset;
+    json["sinusoid_slope"] = curve.slope;
+    json["sinusoid_phase"] = std::atan2(curve.cosine, curve.sine);
+  }
   json["periods"] = measurement.periods;
   json["window_begin"] = measurement.X_begin;
   json["window_end"] = measurement.X_end;

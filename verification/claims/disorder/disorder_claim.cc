@@ -37,12 +37,6 @@ constexpr double nonlinearity_tolerance =
 // Standard errors of a mean that is normally distributed, exceeded with a probability of 6e-7.
 constexpr double normal_quantile = 5., exceeded = 6e-7;
 
-// The same for a standard error that is estimated from n values.
-double student_quantile(double n)
-{
-  return boost::math::quantile(boost::math::complement(boost::math::students_t(n - 1.), 0.5 * exceeded));
-}
-
 // One sheet at one load.
 struct Measured
 {
@@ -175,7 +169,9 @@ private:
     }
     // The ratio is of second order in the factors, whose squares scatter by less than twice their mean: more scatter
     // of the sheets does not loosen the tolerance.
-    const double quantile = student_quantile(n);
+    // The same quantile for a standard error that is estimated from n values.
+    const double quantile =
+      boost::math::quantile(boost::math::complement(boost::math::students_t(n - 1.), 0.5 * exceeded));
     const double sampling = quantile * support::smallest_of({std::sqrt(squares / (n * (n - 1.))),
                                                              2. * width * width / std::sqrt(n_factors_)});
     // Pairs of bonds are what the effective medium leaves out, in the fourth order; the next orders are below the fifth

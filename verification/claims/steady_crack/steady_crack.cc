@@ -172,8 +172,8 @@ double steady_speed(const CrackStrip &strip, double driving, double fastest)
   if (low <= 0.5 * step)
     throw std::runtime_error("no steady crack runs under so weak a driving");
   std::uintmax_t most = 50;
-  const auto is_close = [](double a, double b) { return std::abs(b - a) < 1e-10; };
-  const auto [below, above] = boost::math::tools::toms748_solve(excess, low, high, is_close, most);
+  const auto [below, above] =
+    boost::math::tools::toms748_solve(excess, low, high, boost::math::tools::eps_tolerance<double>(35), most);
   return 0.5 * (below + above);
 }
 

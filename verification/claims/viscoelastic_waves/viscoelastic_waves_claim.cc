@@ -139,12 +139,10 @@ private:
   double glassy(const WaveCell &cell, const lattice::Material &material, std::size_t w) const
   {
     bridge::WaveMatrices matrices = relaxed(cell, material);
-    if (has_elements_)
-      for (const bridge::BranchMatrix &branch :
-           branch_matrices(gradient_continuum(subject_, cell.sheet, material), F_, cell.K))
-        matrices.stiffness += branch.stiffness;
-    else
-      matrices.stiffness += bridge::glassy_stiffness(cell.sheet, material, F_, cell.K);
+    for (const bridge::BranchMatrix &branch :
+         has_elements_ ? branch_matrices(gradient_continuum(subject_, cell.sheet, material), F_, cell.K)
+                       : bridge::branch_matrices(cell.sheet, material, F_, cell.K))
+      matrices.stiffness += branch.stiffness;
     return frequency(matrices, cell, w);
   }
   double frequency(const bridge::WaveMatrices &matrices, const WaveCell &cell, std::size_t w) const
@@ -219,68 +217,33 @@ void one_branch(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
                       subject.judges_gradient(F));
 }
 
-// Waves with one branch in all directions, against Bloch's: the order in kd of their frequencies and decays, and the
-// finite elements in the glassy limit. Relaxation times are those of waves: with one of its own, the error of each wave
-// would have another factor.
-void branch_orders(const bridge::Subject &subject, const Eigen::Matrix2d &F, bool has_elements, ClaimOutcome &outcome)
+// Order in kd of the complex rates of waves with one branch, in all directions, against Bloch's. Relaxation times are
+// those of waves: with one of its own, the error of each wave would have another factor.
+void branch_orders(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Rows &rows)
 {
   const lattice::TriangularLattice sheet = subject.sheet(); // only its bonds matter
-  const lattice::Material elastic = lattice::without_dashpots(subject.material);
-  const auto with_branch = [&](double kd)
-  { return with_branches(elastic, {swept_ratio}, {subject.spacing / (kd * subject.theory.longitudinal_speed)}); };
-  CommonOrder local_frequency, local_decay, gradient_frequency, gradient_decay;
-  support::LargestError glassy;
-  const Rows rows(outcome.results, "viscoelastic-waves",
-                  subject.name + ", " + state_name(F) + ": one branch that relaxes with the wave, ");
+  CommonOrder of_local, of_gradient;
   for (const WaveDirection &direction : wave_directions(subject.orientation))
-  {
-    const auto wave_vector = [&](double kd) -> Eigen::Vector2d
-    { return kd / subject.spacing * unit_vector(direction, subject.orientation); };
     for (std::size_t i = 0; i < order_kd.size(); ++i)
     {
-      const Eigen::Vector2d K = wave_vector(order_kd[i]);
-      const lattice::Material material = with_branch(order_kd[i]);
+      const Eigen::Vector2d K = order_kd[i] / subject.spacing * unit_vector(direction, subject.orientation);
+      const lattice::Material material =
+        with_branches(lattice::without_dashpots(subject.material), {swept_ratio},
+                      {subject.spacing / (order_kd[i] * subject.theory.longitudinal_speed)});
       WaveContinuum local = SubjectContinua(subject).local;
       local.memory = bridge::homogenised_memory(sheet, material);
-      const auto bloch = bridge::memory_waves(sheet, material, F, K);
-      const auto add = [&](const WaveContinuum &medium, CommonOrder &frequency, CommonOrder &decay)
+      const auto bloch = bridge::memory_waves(sheet, material, F, K),
+                 of_local_waves = continuum_memory_waves(local, F, K),
+                 of_gradient_waves = continuum_memory_waves(gradient_continuum(subject, sheet, material), F, K);
+      for (std::size_t w = 0; w < 2; ++w)
       {
-        const auto waves = continuum_memory_waves(medium, F, K);
-        for (std::size_t w = 0; w < 2; ++w)
-        {
-          frequency.add(i, std::abs(waves[w].frequency() / bloch[w].frequency() - 1.));
-          decay.add(i, std::abs(waves[w].decay() / bloch[w].decay() - 1.));
-        }
-      };
-      add(local, local_frequency, local_decay);
-      add(gradient_continuum(subject, sheet, material), gradient_frequency, gradient_decay);
+        of_local.add(i, std::abs(of_local_waves[w].rate / bloch[w].rate - 1.));
+        of_gradient.add(i, std::abs(of_gradient_waves[w].rate / bloch[w].rate - 1.));
+      }
     }
-    if (!has_elements)
-      continue;
-    const Eigen::Vector2d K = wave_vector(largest_damped_kd);
-    const WaveContinuum medium = gradient_continuum(subject, sheet, with_branch(largest_damped_kd));
-    bridge::WaveMatrices matrices = continuum_matrices(medium, F, K);
-    for (const bridge::BranchMatrix &branch : branch_matrices(medium, F, K))
-      matrices.stiffness += branch.stiffness;
-    const auto closed = bridge::plane_waves(matrices, bridge::wave_normal(F, K));
-    std::array<bridge::PlaneWave, 2> elements{};
-    elements[0].frequency = elements[1].frequency = unknown;
-    rows.attempt("finite elements, glassy limit", [&] { elements = discrete_waves(medium, F, K, element_mesh); });
-    for (std::size_t w = 0; w < 2; ++w)
-      glassy.add_relative(elements[w].frequency, closed[w].frequency);
-  }
-  add_order(rows, "order in kd of the local continuum's frequency, all waves together", local_frequency, 2.);
-  add_order(rows, "order in kd of the local continuum's decay, all waves together", local_decay, 2.);
-  const bool is_judged = subject.judges_gradient(F);
-  add_order(rows, "order in kd of the gradient continuum's frequency, all waves together", gradient_frequency, 4.,
-            is_judged);
-  add_order(rows, "order in kd of the gradient continuum's decay, all waves together", gradient_decay, 4., is_judged);
-  if (has_elements)
-    rows.add(
-      "frequency at kd = 0.4 in the glassy limit, finite elements against their continuum, worst of 4 directions "
-      "and both waves",
-      "rad/s", of_continuum(glassy), glassy,
-      {discretisation_bound(element_mesh), "Ainsworth's dispersion error of the elements"});
+  const std::string what = "order in kd to which waves follow those of a branch that relaxes with them, all together, ";
+  add_order(rows, what + "local continuum", of_local, 2.);
+  add_order(rows, what + "gradient continuum", of_gradient, 4., subject.judges_gradient(F));
 }
 
 // The branches of the material, with its dashpots.
@@ -323,7 +286,7 @@ ClaimOutcome viscoelastic_waves_claim(const bridge::Subject &subject, const Visc
     const bool has_elements = state < options.element_states && !options.element_frequencies.empty();
     const Rows rows(outcome.results, "viscoelastic-waves", subject.name + ", " + state_name(F) + ": ");
     rows.attempt("one branch", [&] { one_branch(subject, F, options, has_elements, outcome); });
-    rows.attempt("orders in kd", [&] { branch_orders(subject, F, has_elements, outcome); });
+    rows.attempt("orders in kd", [&] { branch_orders(subject, F, rows); });
     if (has_branches(subject.material))
       rows.attempt("own branches", [&] { own_branches(subject, F, options, has_elements, outcome); });
   }
