@@ -213,10 +213,7 @@ TEST(Contact, ListNeverMissesAPair)
 {
   const TriangularLattice sheet = sheets::square(20);
   const Material material = sheets::rubber();
-  std::vector<std::size_t> places;
-  for (std::size_t row = 0; row < sheet.rows(); ++row)
-    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-      places.push_back(sheet.index(row, column));
+  const std::vector<std::size_t> places = sheets::sites(sheet);
   State state = loose_sites(sheet, material, places);
   std::mt19937 generator(7);
   std::uniform_real_distribution<double> uniform(-1., 1.);
@@ -380,10 +377,7 @@ TEST(Contact, ListsDoNotDependOnThreads)
 {
   const TriangularLattice sheet = sheets::square(80);
   const Material material = sheets::rubber();
-  std::vector<std::size_t> places;
-  for (std::size_t place = 0; place < sheet.n_places(); ++place)
-    if (sheet.is_site(place))
-      places.push_back(place);
+  const std::vector<std::size_t> places = sheets::sites(sheet);
   State state = loose_sites(sheet, material, places);
   add_noise(state, sheet, 0.3 * sheets::spacing, 1);
   const auto forces = [&](int threads)

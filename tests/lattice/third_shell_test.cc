@@ -54,19 +54,17 @@ TEST(ThirdShell, HomogeneousSheetHasTheEnergyAndStressOfItsNineDirections)
     const SiteEvaluator evaluator(sheet, material);
     Forces forces(sheet, material);
     forces.evaluate(state, state.vx, state.vy);
-    for (std::size_t row = 0; row < sheet.rows(); ++row)
-      for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-      {
-        const std::size_t place = sheet.index(row, column);
-        const SiteValues values = evaluator.at(state, place);
-        EXPECT_EQ(values.bonds, 18u);
-        EXPECT_EQ(state.held[place], 0);
-        EXPECT_LT((values.deformation_gradient - F).norm(), 1e-12);
-        EXPECT_NEAR(values.strain_energy_density, energy, 1e-12 * energy);
-        EXPECT_LT((values.first_piola_stress - stress).norm(), 1e-12 * stress.norm());
-        // Of 18 forces, each 2.5e5 Pa times a section of about d.
-        EXPECT_LT(std::hypot(forces.fx()[place], forces.fy()[place]), 18. * 1e-13 * 2.5e5 * d);
-      }
+    for (const std::size_t place : sheets::sites(sheet))
+    {
+      const SiteValues values = evaluator.at(state, place);
+      EXPECT_EQ(values.bonds, 18u);
+      EXPECT_EQ(state.held[place], 0);
+      EXPECT_LT((values.deformation_gradient - F).norm(), 1e-12);
+      EXPECT_NEAR(values.strain_energy_density, energy, 1e-12 * energy);
+      EXPECT_LT((values.first_piola_stress - stress).norm(), 1e-12 * stress.norm());
+      // Of 18 forces, each 2.5e5 Pa times a section of about d.
+      EXPECT_LT(std::hypot(forces.fx()[place], forces.fy()[place]), 18. * 1e-13 * 2.5e5 * d);
+    }
   }
 }
 
