@@ -77,7 +77,7 @@ TEST(Multigrid, IsSymmetricAndPositive)
     {
       if (degree == 1 && internal_length > 0.)
         continue;
-      const LinearProblem problem(internal_length, degree, 3, 2);
+      const LinearProblem problem(internal_length, degree, 2, 3);
       ASSERT_GE(problem.multigrid->levels().size(), 3u);
       const auto a = problem.random(1);
       const auto b = problem.random(2);
@@ -147,8 +147,7 @@ TEST(Multigrid, HasAPatchForEveryFreeDegreeOfFreedom)
   for (const unsigned int degree : {1u, 2u, 3u})
   {
     // Randomly refined cells, with all combinations of levels that a mesh can have.
-    Mesh mesh(MPI_COMM_SELF);
-    continuum::make_rectangle(mesh, rectangle(6, 4));
+    RectangleMesh mesh(rectangle(6, 4));
     std::mt19937 generator(degree);
     for (unsigned int n = 0; n < 4; ++n)
     {
@@ -248,10 +247,8 @@ TEST(Multigrid, TakesTheStateToEveryLevel)
                      [&](const Sheet &level, const Sheet::Vector &u, const AffineConstraints<double> &constraints,
                          Sheet::Matrix &matrix)
                      {
-                       Sheet::Vector difference = level.make_owned();
-                       difference = u;
-                       Sheet::Vector exact = level.make_owned();
-                       exact = nodal(level, quadratic);
+                       Sheet::Vector difference = owned(level, u);
+                       const Sheet::Vector exact = owned(level, nodal(level, quadratic));
                        difference -= exact;
                        EXPECT_LT(difference.linfty_norm(), 1e-13 * exact.linfty_norm()) << "degree " << degree;
                        form.assemble(level, constraints, matrix);

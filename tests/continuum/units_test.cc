@@ -72,9 +72,8 @@ struct MovingSheet
     conditions.tractions = {{continuum::edge::top, constant(0., units.stress * 1e5)}};
     conditions.normal_gradients = {{continuum::edge::right, constant(0.2, 0.1)}};
     const double t = units.time();
-    continuum::DynamicSettings settings{t * 2e-4};
-    settings.degree = 2;
-    settings.rule = continuum::NewmarkParameters::generalised_alpha(0.6);
+    const continuum::DynamicSettings settings =
+      quadratic(t * 2e-4, continuum::NewmarkParameters::generalised_alpha(0.6));
     solver = std::make_unique<continuum::DynamicSolver>(
       mesh, continuum::Constitution(network, gradient), conditions,
       continuum::Inertia{units.density * density, l_d(units)}, settings, &viscosity,
