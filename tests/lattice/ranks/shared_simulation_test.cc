@@ -117,7 +117,7 @@ TEST_P(SharedCrack, HasTheBitsOfOneRank)
   Crack shared(variant, RowPartition(sheet, MPI_COMM_WORLD), material), alone(variant, sheet, material);
   Simulation &ours = *shared.simulation, &theirs = *alone.simulation;
   std::size_t touching = 0;
-  for (int step = 0; step < 1500; ++step)
+  for (int step = 0; step < 3000; ++step)
   {
     const std::vector<BrokenBond> &broken = ours.step(), &expected = theirs.step();
     ASSERT_EQ(broken.size(), expected.size()) << "step " << step;
@@ -166,7 +166,7 @@ TEST(SharedNonlocalCrack, HasTheBitsOfOneRank)
     for (Simulation *crack : {shared.simulation.get(), alone.simulation.get()})
     {
       crack->cut_bonds(slit);
-      for (int step = 0; step < 150; ++step)
+      for (int step = 0; step < 75; ++step)
         crack->step();
     }
     EXPECT_GT(alone.simulation->n_broken(), 30u) << "too quiet to show anything";
