@@ -296,38 +296,6 @@ TEST(Multigrid, StaysFiniteForATangentThatIsNotPositiveDefinite)
   EXPECT_TRUE(std::isfinite(z.l2_norm()));
 }
 
-TEST(Multigrid, SolvesForTheTangentOfAStretchedSheet)
-{
-  // The cycle with the tangent of the law at a large, inhomogeneous stretch. Measured: 8 and 8.
-  const continuum::MooneyRivlin law = rubber_sheet();
-  for (const unsigned int degree : {2u, 3u})
-  {
-    Mesh mesh(MPI_COMM_SELF);
-    make_mesh(mesh, 2, 2);
-    const Sheet sheet(mesh, law, degree);
-    const GradientForm form(0.);
-    Multigrid multigrid(sheet, same_sheets(law, degree), form.matrix_factory(), all_held(), many_levels());
-    const Multigrid::Assembler assemble = [](const Sheet &level, const Sheet::Vector &u,
-                                             const AffineConstraints<double> &constraints, Sheet::Matrix &matrix)
-    { level.tangent(u, constraints, matrix); };
-    const Sheet::Vector u =
-      nodal(sheet,
-            [](const Point<2> &X) {
-              return Tensor<1, 2>({1.3 * X[0] + 0.02 * std::sin(40. * X[1]), 1.8 * X[1] + 0.02 * std::sin(30. * X[0])});
-            });
-    Sheet::Matrix K;
-    form.make_matrix(sheet, multigrid.constraints(), K);
-    assemble(sheet, u, multigrid.constraints(), K);
-    multigrid.update(u, K, assemble);
-    Sheet::Vector x = sheet.make_owned();
-    Sheet::Vector b = sheet.make_owned();
-    body_force(sheet, multigrid.constraints(), b);
-    EXPECT_LE(solve(multigrid, K, x, b), 8u) << "degree " << degree;
-    for (const auto &level : multigrid.levels())
-      EXPECT_EQ(level.n_replaced_patches, 0u);
-  }
-}
-
 TEST(Multigrid, RefusesSettingsOutOfRange)
 {
   const auto refused = [](const std::function<void(MultigridSettings &)> &change)
