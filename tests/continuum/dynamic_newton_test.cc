@@ -2,8 +2,6 @@
 #include "continuum/newton_solver.h"
 #include "moving_sheets.h"
 
-#include <deal.II/base/mpi.h>
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,8 +21,7 @@ using Vector = continuum::Sheet::Vector;
 
 TEST(DynamicSolver, NewtonIsQuadraticWithViscosityAtFiniteStrain)
 {
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(4, 4));
+  RectangleMesh mesh(rectangle(4, 4));
   const Problem problem;
   DynamicSettings settings{2e-3}; // long, so that the predictor is poor
   settings.degree = 2;
@@ -58,10 +55,8 @@ TEST(DynamicSolver, GmresAgreesWithTheDirectSolver)
   const FibreViscosity viscosity = network_viscosity(200., 0.01);
   const auto moved = [&](const dealii::types::global_dof_index direct_limit)
   {
-    Mesh mesh(MPI_COMM_SELF);
-    continuum::make_rectangle(mesh, rectangle(8, 8));
-    DynamicSettings settings{5e-4};
-    settings.degree = 2;
+    RectangleMesh mesh(rectangle(8, 8));
+    DynamicSettings settings = quadratic(5e-4);
     settings.linear.direct_limit = direct_limit;
     settings.linear.multigrid.coarsest_size = 100;
     DynamicSolver solver(mesh, Constitution(problem.law, problem.gradient), problem.conditions(), {density, 0.01},

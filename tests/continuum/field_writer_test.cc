@@ -4,8 +4,6 @@
 #include "moving_sheets.h"
 #include "sheets.h"
 
-#include <deal.II/base/mpi.h>
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -38,8 +36,7 @@ protected:
 TEST_F(FieldWriter, IsReadByVtkWithNamesTimesAndValues)
 {
   const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(6, 4));
+  RectangleMesh mesh(rectangle(6, 4));
   continuum::StaticSettings settings;
   settings.first_load_step = 1. / 3.; // a time with more than 6 digits
   continuum::StaticSolver solver(mesh, law, on_all_edges(affine(matrix(2.3, 0.25, -0.1, 1.4))), settings);
@@ -59,8 +56,7 @@ TEST_F(FieldWriter, StressesOfAMotionIncludeThoseOfViscosityAndBranches)
   const continuum::CauchyBorn law = rubber_network();
   const continuum::FibreViscosity viscosity = moving_sheets::network_viscosity(300.);
   const continuum::FibreMemory memory = moving_sheets::network_memory(2e5, {1e-3});
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(3, 2));
+  RectangleMesh mesh(rectangle(3, 2));
   continuum::DynamicSettings settings{1e-5};
   continuum::DynamicSolver solver(mesh, continuum::Constitution(law), {}, continuum::Inertia{950.}, settings,
                                   &viscosity, {}, &memory);
@@ -80,8 +76,7 @@ TEST_F(FieldWriter, StressesOfAMotionIncludeThoseOfViscosityAndBranches)
 TEST_F(FieldWriter, LeavesNoHalfFile)
 {
   const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(2, 2));
+  RectangleMesh mesh(rectangle(2, 2));
   const continuum::Sheet sheet(mesh, law, 1);
   continuum::FieldWriter writer(MPI_COMM_SELF, directory_, "sheet");
   writer.add_frame(0., sheet, sheet.make_ghosted());
@@ -103,8 +98,7 @@ TEST_F(FieldWriter, ThrowsWhenItCannotWrite)
   fs::remove(directory_);
 
   const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(2, 2));
+  RectangleMesh mesh(rectangle(2, 2));
   const continuum::Sheet sheet(mesh, law, 1);
   continuum::FieldWriter writer(MPI_COMM_SELF, directory_);
   fs::remove_all(directory_);
@@ -114,8 +108,7 @@ TEST_F(FieldWriter, ThrowsWhenItCannotWrite)
 TEST_F(FieldWriter, RefusesTimeThatDoesNotGrow)
 {
   const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(2, 2));
+  RectangleMesh mesh(rectangle(2, 2));
   const continuum::Sheet sheet(mesh, law, 1);
   continuum::FieldWriter writer(MPI_COMM_SELF, directory_);
   writer.add_frame(0.5, sheet, sheet.make_ghosted());

@@ -13,7 +13,6 @@ using namespace latcon;
 using namespace material_checks;
 using continuum::CauchyBorn;
 using continuum::FibreFamily;
-using continuum::FibrePotential;
 using continuum::IsotropicNetwork;
 
 // Rods with two ratios of their constants, and springs; directions are irrelevant.

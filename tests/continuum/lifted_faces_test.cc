@@ -12,7 +12,6 @@ namespace lifted_faces_test
 
 using namespace latcon;
 using namespace sheets;
-using dealii::Point;
 
 constexpr unsigned int whole = dealii::numbers::invalid_unsigned_int;
 

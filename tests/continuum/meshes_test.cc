@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 
 #include <filesystem>
@@ -19,7 +18,6 @@ namespace meshes_test
 
 using namespace latcon;
 using namespace sheets;
-using continuum::StaticSettings;
 using continuum::StaticSolver;
 
 struct Measures
@@ -112,20 +110,6 @@ TEST(Meshes, NotchHasTwoFacesAndNoArea)
   EXPECT_NEAR(m.area, length * height, 1e-12);
   EXPECT_NEAR(m.edges.at(continuum::edge::inner), 2. * 0.06, 1e-12);
   EXPECT_NEAR(m.edges.at(continuum::edge::left), height, 1e-12);
-}
-
-TEST(Meshes, NotchOpens)
-{
-  const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_notched_rectangle(mesh, {length, height, 0.06, 3});
-  const auto field = affine(matrix(1., 0., 0., 1.3));
-  StaticSolver solver(mesh, law, {{continuum::edge::bottom, field}, {continuum::edge::top, field}});
-  solver.solve();
-  // Just above and below the slit, near its mouth and beyond its tip.
-  const auto states = solver.evaluate({{0.001, 1e-5}, {0.001, -1e-5}, {0.1, 1e-5}, {0.1, -1e-5}});
-  EXPECT_GT(states[0].displacement[1] - states[1].displacement[1], 0.01);
-  EXPECT_LT(states[2].displacement[1] - states[3].displacement[1], 1e-4);
 }
 
 TEST(Meshes, ReadsGmsh)
@@ -377,7 +361,7 @@ TEST(ErrorIndicator, RefinesAtTheTipOfANotch)
   adaptive.solve();
   std::vector<double> energies;
   std::vector<double> unknowns;
-  for (unsigned int cycle = 0; cycle < 7; ++cycle)
+  for (unsigned int cycle = 0; cycle < 6; ++cycle)
   {
     adaptive.refine(here, 0.12);
     const continuum::SolverReport report = adaptive.equilibrate();
@@ -395,8 +379,8 @@ TEST(ErrorIndicator, RefinesAtTheTipOfANotch)
     }
   EXPECT_LT(distance, 0.005);
   // The error of the last mesh is about the last change.
-  const auto error = [&](const unsigned int cycle) { return energies[cycle] - 2. * energies[6] + energies[5]; };
-  EXPECT_GT(std::log(error(1) / error(4)) / std::log(unknowns[4] / unknowns[1]), 1.);
+  const auto error = [&](const unsigned int cycle) { return energies[cycle] - 2. * energies[5] + energies[4]; };
+  EXPECT_GT(std::log(error(1) / error(3)) / std::log(unknowns[3] / unknowns[1]), 1.);
 }
 
 // theory-continuum.md, eq. (C.33).
@@ -404,8 +388,7 @@ TEST(ErrorIndicator, VanishesInHomogeneousDeformation)
 {
   const continuum::CauchyBorn law = rubber_network();
   const continuum::LatticeGradient gradient = rubber_gradient(0.005);
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(6, 4));
+  RectangleMesh mesh(rectangle(6, 4));
   StaticSolver solver(mesh, continuum::Constitution(law, gradient), on_all_edges(affine(matrix(2.3, 0.1, 0.2, 2.8))));
   solver.solve();
   // Compared with the energy of an inhomogeneous deformation.
@@ -415,8 +398,7 @@ TEST(ErrorIndicator, VanishesInHomogeneousDeformation)
 
 TEST(Rectangle, HasItsSizeCellsAndEdges)
 {
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(12, 8));
+  RectangleMesh mesh(rectangle(12, 8));
   EXPECT_EQ(mesh.n_global_active_cells(), 96u);
   EXPECT_EQ(mesh.n_levels(), 3u); // 12 x 8 = 3 x 2 halved twice
   unsigned int faces[4] = {0, 0, 0, 0};

@@ -72,9 +72,7 @@ public:
     conditions.displacements = {{edge::left, constant(0., 0.)}};
     conditions.tractions = {{edge::right, constant(3e5, 1e5)}};
     conditions.periodic = {{edge::bottom, edge::top, 1}};
-    continuum::DynamicSettings settings{4e-4};
-    settings.degree = 2;
-    settings.rule = continuum::NewmarkParameters::generalised_alpha(0.8);
+    const continuum::DynamicSettings settings = quadratic(4e-4, continuum::NewmarkParameters::generalised_alpha(0.8));
     make_solver(conditions, settings, &viscosity_, &memory_);
   }
 };
@@ -93,8 +91,7 @@ public:
     conditions.displacements = {{edge::left, constant(0., 0.)}};
     conditions.tractions = {{edge::right, constant(3e5, 1e5)}};
     conditions.normal_gradients = {{edge::top, constant(0.3, 0.2)}};
-    continuum::DynamicSettings settings{4e-4};
-    settings.degree = 2;
+    continuum::DynamicSettings settings = quadratic(4e-4);
     settings.linear.direct_limit = 0;
     settings.linear.multigrid.coarsest_size = 100;
     settings.linear.rebuild_ratio = 1.1; // so that some but not all of the steps rebuild it

@@ -12,6 +12,17 @@ using namespace sheets;
 inline const double density = 944.; // [kg/m^3]
 inline const Tensor<2, 2> identity = matrix(1., 0., 0., 1.);
 
+/// Settings of a motion with quadratic elements.
+inline latcon::continuum::DynamicSettings quadratic(
+  const double time_step,
+  const latcon::continuum::NewmarkParameters &rule = latcon::continuum::NewmarkParameters::average_acceleration())
+{
+  latcon::continuum::DynamicSettings settings{time_step};
+  settings.degree = 2;
+  settings.rule = rule;
+  return settings;
+}
+
 inline std::shared_ptr<Field> constant(const double x, const double y)
 {
   return std::make_shared<Field>([=](const Point<2> &) { return Tensor<1, 2>({x, y}); });

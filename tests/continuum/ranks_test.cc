@@ -35,8 +35,7 @@ struct Answer
 Answer answer(const MPI_Comm communicator, const dealii::types::global_dof_index direct_limit)
 {
   const continuum::MooneyRivlin law = rubber_sheet();
-  Mesh mesh(communicator);
-  continuum::make_rectangle(mesh, rectangle(12, 10));
+  RectangleMesh mesh(rectangle(12, 10), communicator);
   StaticSettings settings;
   settings.relative_tolerance = 1e-12;
   settings.linear.direct_limit = direct_limit;
@@ -112,8 +111,7 @@ struct LinearAnswer
 LinearAnswer linear_answer(const MPI_Comm communicator, const unsigned int degree)
 {
   const continuum::MooneyRivlin law = rubber_sheet();
-  Mesh mesh(communicator);
-  continuum::make_rectangle(mesh, rectangle(6, 4));
+  RectangleMesh mesh(rectangle(6, 4), communicator);
   multigrid_cases::refine_towards(mesh, Point<2>(0.4 * length, 0.003), 3, length / 3.);
   const continuum::Sheet sheet(mesh, law, degree);
   const multigrid_cases::GradientForm form(0.03 * length);
@@ -182,8 +180,7 @@ TEST(Ranks, SolveSheetsSmallerThanTheirNumber)
 {
   // One cell: all ranks except one have no cells.
   const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_WORLD);
-  continuum::make_rectangle(mesh, rectangle(1, 1));
+  RectangleMesh mesh(rectangle(1, 1), MPI_COMM_WORLD);
   const Tensor<2, 2> F = matrix(2.3, 0.2, 0.1, 2.8);
   StaticSolver solver(mesh, law, on_all_edges(affine(F)));
   solver.solve();
@@ -224,8 +221,7 @@ TEST(Ranks, AllSeeANonPhysicalStateOnOneRank)
 {
   // One cell in a corner of the sheet is inverted.
   const continuum::MooneyRivlin law = rubber_sheet();
-  Mesh mesh(MPI_COMM_WORLD);
-  continuum::make_rectangle(mesh, rectangle(8, 8));
+  RectangleMesh mesh(rectangle(8, 8), MPI_COMM_WORLD);
   const continuum::Sheet sheet(mesh, law, 1);
   continuum::Sheet::Vector owned = sheet.make_owned();
   std::vector<dealii::types::global_dof_index> dofs(sheet.element().n_dofs_per_cell());
@@ -273,8 +269,7 @@ Motion motion(const MPI_Comm communicator, const bool is_periodic)
   for (const auto &bond : rubber_bonds(0.015))
     dashpots.push_back({bond.fibre.direction, bond.fibre.weight, 50., bond.length});
   const continuum::FibreViscosity viscosity(dashpots, 0.01);
-  Mesh mesh(communicator);
-  continuum::make_rectangle(mesh, {length, height, 8, 6, false, is_periodic});
+  RectangleMesh mesh({length, height, 8, 6, false, is_periodic}, communicator);
   continuum::BoundaryConditions conditions;
   conditions.displacements = {{edge::left, std::make_shared<Field>(
                                              [](const Point<2> &) {
@@ -341,8 +336,7 @@ TEST(Ranks, GiveTheSameMotionWithGmres)
 TEST(Ranks, AllSeeAnInitialFieldThatFailsOnOneRank)
 {
   const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_WORLD);
-  continuum::make_rectangle(mesh, rectangle(8, 8));
+  RectangleMesh mesh(rectangle(8, 8), MPI_COMM_WORLD);
   continuum::DynamicSolver solver(mesh, law, {}, {944., 0.}, {1e-4});
   const auto failing = std::make_shared<Field>(
     [](const Point<2> &X)
@@ -368,8 +362,7 @@ TEST(Ranks, WritePiecesThatVtkJoins)
   // The same folder on every rank, named after the parent process, mpirun.
   const fs::path directory = fs::temp_directory_path() / ("latcon_ranks_" + std::to_string(::getppid()));
   const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_WORLD);
-  continuum::make_rectangle(mesh, rectangle(6, 4));
+  RectangleMesh mesh(rectangle(6, 4), MPI_COMM_WORLD);
   StaticSettings settings;
   settings.first_load_step = 1. / 3.;
   StaticSolver solver(mesh, law, on_all_edges(affine(matrix(2.3, 0.25, -0.1, 1.4))), settings);

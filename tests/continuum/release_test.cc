@@ -53,8 +53,7 @@ struct Pulled
 
   std::unique_ptr<DynamicSolver> started(const Mesh &mesh, const double time_step) const
   {
-    DynamicSettings settings{time_step};
-    settings.degree = 2;
+    DynamicSettings settings = quadratic(time_step);
     auto solver = std::make_unique<DynamicSolver>(mesh, Constitution(law), conditions(), continuum::Inertia{density},
                                                   settings, &viscosity);
     solver->start(affine(F));
@@ -69,8 +68,7 @@ TEST(Release, LetsNodesGoSmoothly)
   constexpr double duration = 1e-3;
   const auto moved = [&](const unsigned int n, double &work)
   {
-    Mesh mesh(MPI_COMM_SELF);
-    continuum::make_rectangle(mesh, rectangle(4, 4));
+    RectangleMesh mesh(rectangle(4, 4));
     const auto solver = problem.started(mesh, duration / n);
     open(mesh, 0.5 * length);
     solver->release(duration);
@@ -95,8 +93,7 @@ TEST(Release, LetsNodesGoSmoothly)
 TEST(Release, EndsWithAFreeEdge)
 {
   const Pulled problem;
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(4, 4));
+  RectangleMesh mesh(rectangle(4, 4));
   const auto solver = problem.started(mesh, 2e-3);
   open(mesh, 0.5 * length);
   solver->release(4e-3);
@@ -105,10 +102,8 @@ TEST(Release, EndsWithAFreeEdge)
   settings.degree = 2;
   StaticSolver at_rest(mesh, Constitution(problem.law), problem.conditions(), settings);
   at_rest.solve();
-  auto difference = solver->sheet().make_owned();
-  auto exact = solver->sheet().make_owned();
-  difference = solver->displacement();
-  exact = at_rest.displacement();
+  auto difference = owned(solver->sheet(), solver->displacement());
+  const auto exact = owned(at_rest.sheet(), at_rest.displacement());
   difference -= exact;
   EXPECT_LT(difference.linfty_norm(), 1e-4 * exact.linfty_norm());
 }
@@ -116,10 +111,8 @@ TEST(Release, EndsWithAFreeEdge)
 TEST(Release, RefusesWhatItCannotDo)
 {
   const Pulled problem;
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(4, 4));
-  DynamicSettings settings{1e-3};
-  settings.degree = 2;
+  RectangleMesh mesh(rectangle(4, 4));
+  DynamicSettings settings = quadratic(1e-3);
   DynamicSolver not_started(mesh, Constitution(problem.law), problem.conditions(), continuum::Inertia{density},
                             settings);
   EXPECT_THROW(not_started.release(1e-3), continuum::InvalidInput);

@@ -53,6 +53,15 @@ inline latcon::continuum::Sheet::Vector nodal(const latcon::continuum::Sheet &sh
   return u;
 }
 
+/// A copy without ghost entries.
+inline latcon::continuum::Sheet::Vector owned(const latcon::continuum::Sheet &sheet,
+                                              const latcon::continuum::Sheet::Vector &u)
+{
+  latcon::continuum::Sheet::Vector copy = sheet.make_owned();
+  copy = u;
+  return copy;
+}
+
 /// Returns a random second gradient G_iJK [1/m], symmetric in J and K, with entries up to 0.3 / `length` [m].
 inline Tensor<3, 2> random_gradient(std::mt19937 &generator, const double length)
 {
@@ -162,6 +171,16 @@ inline latcon::continuum::Rectangle rectangle(const unsigned int cells_x, const 
 {
   return {length, height, cells_x, cells_y};
 }
+
+/// Mesh of a rectangle.
+struct RectangleMesh : Mesh
+{
+  RectangleMesh(const latcon::continuum::Rectangle &shape, const MPI_Comm communicator = MPI_COMM_SELF)
+    : Mesh(communicator)
+  {
+    latcon::continuum::make_rectangle(*this, shape);
+  }
+};
 
 /// Returns points all over the sheet that are on no cell boundary of the meshes used here.
 inline std::vector<Point<2>> scattered_points(const unsigned int n_x = 23, const unsigned int n_y = 17)

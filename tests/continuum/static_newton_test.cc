@@ -2,12 +2,9 @@
 #include "continuum/errors.h"
 #include "sheets.h"
 
-#include <deal.II/base/mpi.h>
-
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 namespace static_newton_test
 {
@@ -31,8 +28,7 @@ std::vector<continuum::NewtonIteration> last_step(const continuum::SolverReport 
 TEST(StaticSolver, NewtonIsQuadratic)
 {
   const continuum::MooneyRivlin law = rubber_sheet();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(12, 8));
+  RectangleMesh mesh(rectangle(12, 8));
   StaticSolver solver(mesh, law, bump_problem(2.3, 2.8, 0.03));
   const continuum::SolverReport report = solver.solve();
   EXPECT_EQ(report.load_steps.size(), 1u) << report.text();
@@ -55,26 +51,11 @@ TEST(StaticSolver, NewtonIsQuadratic)
   EXPECT_LE(report.iterations.size(), 7u) << report.text();
 }
 
-TEST(StaticSolver, EnergyFallsAndToleranceIsMet)
-{
-  const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(12, 8));
-  StaticSolver solver(mesh, law, bump_problem(2.3, 2.8, 0.1));
-  const continuum::SolverReport report = solver.solve();
-  const auto last = last_step(report);
-  for (std::size_t k = 1; k < last.size(); ++k)
-    EXPECT_LE(last[k].energy, last[k - 1].energy * (1. + 1e-13)) << report.text();
-  EXPECT_LE(last.back().residual, last.back().tolerance);
-  EXPECT_EQ(report.load_factor, 1.);
-}
-
 TEST(StaticSolver, CutsALoadStepThatIsTooBig)
 {
   // The bump pushes the top edge half way down: in a single step the predictor inverts cells.
   const continuum::MooneyRivlin law = rubber_sheet(0.1);
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(12, 8));
+  RectangleMesh mesh(rectangle(12, 8));
   const auto conditions = bump_problem(1.2, 1.2, -0.07);
   StaticSolver at_once(mesh, law, conditions);
   const continuum::SolverReport report = at_once.solve();
@@ -95,8 +76,7 @@ TEST(StaticSolver, BacktracksOnEnergy)
 {
   // Springs in compression soften, so a large compression needs steps shorter than full Newton steps.
   const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(12, 8));
+  RectangleMesh mesh(rectangle(12, 8));
   StaticSolver solver(mesh, law, bump_problem(1.1, 1.1, -0.045));
   const continuum::SolverReport report = solver.solve();
   double shortest = 1.;
@@ -114,8 +94,7 @@ TEST(StaticSolver, BacktracksOnEnergy)
 TEST(StaticSolver, ReportsEveryLoadStepToTheObserver)
 {
   const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(4, 4));
+  RectangleMesh mesh(rectangle(4, 4));
   StaticSettings settings;
   settings.first_load_step = 0.25;
   StaticSolver solver(mesh, law, on_all_edges(affine(matrix(2., 0., 0., 2.))), settings);
@@ -134,8 +113,7 @@ TEST(StaticSolver, ThrowsWithHistoryWhenItDoesNotConverge)
 {
   // The right edge is pushed through the left one, which no load step can reach.
   const continuum::MooneyRivlin law = rubber_sheet(0.1);
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(6, 4));
+  RectangleMesh mesh(rectangle(6, 4));
   StaticSettings settings;
   settings.smallest_load_step = 1. / 16.;
   StaticSolver solver(mesh, law, on_all_edges(affine(matrix(-0.5, 0., 0., 1.))), settings);
@@ -161,8 +139,7 @@ TEST(StaticSolver, ThrowsWithHistoryWhenItDoesNotConverge)
 TEST(StaticSolver, ThrowsWhenIterationsRunOut)
 {
   const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(6, 4));
+  RectangleMesh mesh(rectangle(6, 4));
   StaticSettings settings;
   settings.max_newton_iterations = 0;
   settings.smallest_load_step = 0.5;
@@ -177,10 +154,9 @@ TEST(StaticSolver, StopsAtTheRoundOffOfTheResidual)
   // With a tolerance below round-off, the floor ends the iteration, on coarse and fine meshes. The floor must be within
   // a factor of 100 of the residual reached, so it is not too large.
   const continuum::MooneyRivlin law = rubber_sheet();
-  for (const unsigned int n : {4, 12, 36})
+  for (const unsigned int n : {4, 24})
   {
-    Mesh mesh(MPI_COMM_SELF);
-    continuum::make_rectangle(mesh, rectangle(n, n));
+    RectangleMesh mesh(rectangle(n, n));
     StaticSettings settings;
     settings.relative_tolerance = 1e-30;
     StaticSolver solver(mesh, law, bump_problem(2.3, 2.8, 0.03), settings);

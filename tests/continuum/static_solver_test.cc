@@ -8,13 +8,11 @@
 #include "continuum/errors.h"
 #include "sheets.h"
 
-#include <deal.II/base/mpi.h>
 #include <deal.II/grid/grid_tools.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 namespace static_solver_test
 {
@@ -47,8 +45,7 @@ TEST(StaticSolver, PassesPatchTestOnDistortedMesh)
        {static_cast<const continuum::Material *>(&network), static_cast<const continuum::Material *>(&sheet)})
     for (const unsigned int degree : {1, 2, 3})
     {
-      Mesh mesh(MPI_COMM_SELF);
-      continuum::make_rectangle(mesh, rectangle(6, 4));
+      RectangleMesh mesh(rectangle(6, 4));
       distort(mesh, 6, 4);
       StaticSettings settings;
       settings.degree = degree;
@@ -84,8 +81,7 @@ TEST(StaticSolver, HoldsOnlyTheMaskedComponents)
 {
   // Uniaxial tension: u_x is prescribed left and right, u_y at the bottom, the top is free.
   const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(3, 2));
+  RectangleMesh mesh(rectangle(3, 2));
   const auto pulled = std::make_shared<Field>([](const Point<2> &X) { return Tensor<1, 2>({X[0], 1.}); });
   const auto still = std::make_shared<Field>([](const Point<2> &) { return Tensor<1, 2>({5., 0.}); });
   const dealii::ComponentMask x(std::vector<bool>{true, false});
@@ -114,8 +110,7 @@ TEST(StaticSolver, HoldsOnlyTheMaskedComponents)
 TEST(StaticSolver, ReactionsBalance)
 {
   const continuum::MooneyRivlin law = rubber_sheet();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(12, 8));
+  RectangleMesh mesh(rectangle(12, 8));
   StaticSolver solver(mesh, law, bump_problem(2.3, 2.8, 0.03));
   solver.solve();
   Tensor<1, 2> sum;
@@ -134,8 +129,7 @@ TEST(StaticSolver, ReactionIsTheDerivativeOfTheEnergy)
 {
   // dE/d(load factor) = reaction of the top edge times its unit displacement, with all other edges fixed.
   const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(8, 8));
+  RectangleMesh mesh(rectangle(8, 8));
   const auto energy_and_reaction = [&](const double lift)
   {
     const auto raised = std::make_shared<Field>(
@@ -160,8 +154,7 @@ TEST(StaticSolver, ConjugateGradientsAgreeWithDirectSolver)
   std::vector<unsigned int> most_iterations;
   for (const unsigned int n : {16, 32})
   {
-    Mesh mesh(MPI_COMM_SELF);
-    continuum::make_rectangle(mesh, rectangle(n, n));
+    RectangleMesh mesh(rectangle(n, n));
     const auto conditions = bump_problem(2.3, 2.8, 0.03);
     StaticSettings settings;
     settings.degree = 2;
@@ -191,8 +184,7 @@ TEST(StaticSolver, ConjugateGradientsAgreeWithDirectSolver)
 TEST(StaticSolver, SolvesOnAMeshThatCannotBeCoarsened)
 {
   const continuum::MooneyRivlin law = rubber_sheet();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(71, 37));
+  RectangleMesh mesh(rectangle(49, 29));
   const auto conditions = bump_problem(1.3, 1.5, 0.03);
   StaticSettings settings;
   settings.degree = 2;
@@ -208,8 +200,7 @@ TEST(StaticSolver, SolvesOnAMeshThatCannotBeCoarsened)
 TEST(StaticSolver, RefusesImpossibleInput)
 {
   const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(2, 2));
+  RectangleMesh mesh(rectangle(2, 2));
   const auto held = affine(matrix(1., 0., 0., 1.));
   const auto refuses =
     [&](const std::vector<continuum::PrescribedDisplacement> &conditions, const StaticSettings &settings)
@@ -235,8 +226,7 @@ TEST(StaticSolver, RefusesImpossibleInput)
 TEST(StaticSolver, LeavesAnUnloadedSheetAtRest)
 {
   const continuum::CauchyBorn law = rubber_network();
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(4, 4));
+  RectangleMesh mesh(rectangle(4, 4));
   StaticSolver solver(mesh, law, on_all_edges(affine(matrix(1., 0., 0., 1.))));
   solver.solve();
   EXPECT_NEAR(solver.total_energy(), 0., 1e-14 * 5e5 * length * height);
@@ -269,8 +259,7 @@ private:
 TEST(StaticSolver, EquilibratesWithoutLosingTheState)
 {
   FragileLaw law;
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(8, 6));
+  RectangleMesh mesh(rectangle(8, 6));
   StaticSettings settings;
   settings.degree = 2;
   settings.linear.direct_limit = 0;
@@ -300,8 +289,7 @@ TEST(Sheet, EvaluatesOnCellBoundariesAndCorners)
   // Linear field: the gradient is equal in all adjacent cells, so their mean is exact.
   const continuum::CauchyBorn law = rubber_network();
   const Tensor<2, 2> F = matrix(1.3, 0.2, 0.1, 0.9);
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(6, 4));
+  RectangleMesh mesh(rectangle(6, 4));
   StaticSolver solver(mesh, law, on_all_edges(affine(F)));
   solver.solve();
   const std::vector<Point<2>> points = {{0., -height / 2}, {length, height / 2}, {length / 2, 0.}, {length / 6, 0.013}};

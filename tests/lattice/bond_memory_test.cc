@@ -3,7 +3,6 @@
 #include <any>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -312,14 +311,13 @@ TEST(BondMemory, ActsOnOneSiteAsInTheLoop)
     forces.evaluate(state, state.vx, state.vy);
     without.evaluate(state, state.vx, state.vy);
     double difference = 0.;
-    for (std::size_t place = 0; place < sheet.n_places(); ++place)
-      if (sheet.is_site(place))
-      {
-        const Eigen::Vector2d force = forces.on_site(state, state.vx, state.vy, place);
-        ASSERT_EQ(force.x(), forces.fx()[place]);
-        ASSERT_EQ(force.y(), forces.fy()[place]);
-        difference = support::largest_of({difference, std::abs(force.x() - without.fx()[place])});
-      }
+    for (const std::size_t place : sheets::sites(sheet))
+    {
+      const Eigen::Vector2d force = forces.on_site(state, state.vx, state.vy, place);
+      ASSERT_EQ(force.x(), forces.fx()[place]);
+      ASSERT_EQ(force.y(), forces.fy()[place]);
+      difference = support::largest_of({difference, std::abs(force.x() - without.fx()[place])});
+    }
     EXPECT_GT(difference, 0.);
     // An update changes neither forces nor power.
     const Field fx = forces.fx();

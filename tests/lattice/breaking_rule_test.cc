@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -67,12 +66,11 @@ TEST(Fracture, AsksTheRuleAboutEachBond)
     Simulation simulation(sheet, rubber, homogeneous_state(sheet, rubber, F, Edges::held), how,
                           Fracture(sheet, rubber, std::move(rule), NoToughening{}, F));
     Field vx(sheet.n_places()), vy(sheet.n_places());
-    for (std::size_t place = 0; place < vx.size(); ++place)
-      if (sheet.is_site(place))
-      {
-        vx[place] = (rate * sheet.reference(place)).x();
-        vy[place] = (rate * sheet.reference(place)).y();
-      }
+    for (const std::size_t place : sheets::sites(sheet))
+    {
+      vx[place] = (rate * sheet.reference(place)).x();
+      vy[place] = (rate * sheet.reference(place)).y();
+    }
     simulation.set_velocities(vx, vy);
     simulation.constrain({held_sites(simulation.state(), sheet), true, true, steady(rate)});
     std::size_t near = 0, next = 0;

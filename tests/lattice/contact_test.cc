@@ -213,10 +213,7 @@ TEST(Contact, ListNeverMissesAPair)
 {
   const TriangularLattice sheet = sheets::square(20);
   const Material material = sheets::rubber();
-  std::vector<std::size_t> places;
-  for (std::size_t row = 0; row < sheet.rows(); ++row)
-    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-      places.push_back(sheet.index(row, column));
+  const std::vector<std::size_t> places = sheets::sites(sheet);
   State state = loose_sites(sheet, material, places);
   std::mt19937 generator(7);
   std::uniform_real_distribution<double> uniform(-1., 1.);
@@ -280,50 +277,6 @@ TEST(Contact, ListNeverMissesAPair)
     << "listed more often than sites can have moved that far";
 }
 
-// Three sites far apart: whichever of them comes to another one is found there.
-TEST(Contact, ASiteThatMovesIsListedAgainAlone)
-{
-  const TriangularLattice sheet = sheets::square(20);
-  const Material material = sheets::rubber();
-  const std::vector<std::size_t> places{sheet.index(2, 2), sheet.index(8, 15), sheet.index(17, 4)};
-  for (const std::size_t mover : places)
-  {
-    State state = loose_sites(sheet, material, places);
-    Contact contact(sheet, {sheets::spacing, 1e5, 0.});
-    contact.find_candidates(state);
-    EXPECT_TRUE(contact.evaluate(state, state.vx, state.vy).empty());
-    const std::size_t other = mover == places[0] ? places[1] : places[0];
-    state.x[mover] = state.x[other] + 0.6 * sheets::spacing;
-    state.y[mover] = state.y[other] + 0.6 * sheets::spacing;
-    EXPECT_EQ(contact.evaluate(state, state.vx, state.vy).size(), 2u);
-    EXPECT_EQ(contact.n_listings(), 4u);
-  }
-}
-
-// Sites that become candidates one after the other, at rest, so that each is listed once.
-TEST(Contact, SitesThatJoinFindEachOther)
-{
-  const TriangularLattice sheet = sheets::square(20);
-  const Material material = sheets::rubber();
-  const std::size_t a = sheet.index(2, 2), b = sheet.index(8, 15), c = sheet.index(17, 4), d = sheet.index(14, 10);
-  State state = loose_sites(sheet, material, {a, b, c, d});
-  state.x[c] = state.x[a] + 0.6 * sheets::spacing;
-  state.y[c] = state.y[a] - 0.6 * sheets::spacing;
-  for (const std::size_t place : {a, b, c, d})
-    state.lost_bonds[place] = 0;
-  Contact contact(sheet, {sheets::spacing, 1e5, 0.});
-  contact.find_candidates(state);
-  EXPECT_TRUE(contact.evaluate(state, state.vx, state.vy).empty());
-  contact.add_broken_bonds({{{a, 0, b}, 0., Eigen::Vector2d::Zero(), 1., 0.}});
-  EXPECT_TRUE(contact.evaluate(state, state.vx, state.vy).empty());
-  contact.add_broken_bonds({{{c, 0, d}, 0., Eigen::Vector2d::Zero(), 1., 0.}});
-  const std::vector<SiteForce> &forces = contact.evaluate(state, state.vx, state.vy);
-  ASSERT_EQ(forces.size(), 2u);
-  EXPECT_EQ(forces[0].place, a);
-  EXPECT_EQ(forces[1].place, c);
-  EXPECT_EQ(contact.n_listings(), 4u);
-}
-
 // A bond that breaks while it is pressed together: its ends overlap when they become a pair.
 TEST(Contact, LedgerClosesWhereAPairOverlapsFromTheStart)
 {
@@ -380,10 +333,7 @@ TEST(Contact, ListsDoNotDependOnThreads)
 {
   const TriangularLattice sheet = sheets::square(80);
   const Material material = sheets::rubber();
-  std::vector<std::size_t> places;
-  for (std::size_t place = 0; place < sheet.n_places(); ++place)
-    if (sheet.is_site(place))
-      places.push_back(place);
+  const std::vector<std::size_t> places = sheets::sites(sheet);
   State state = loose_sites(sheet, material, places);
   add_noise(state, sheet, 0.3 * sheets::spacing, 1);
   const auto forces = [&](int threads)

@@ -72,17 +72,12 @@ TEST_P(SymmetricSeed, StaysSymmetricToTheLastBitAndItsLedgerCloses)
   for (const auto &[shell, n] : broken)
     EXPECT_GT(n, 40u) << shell;
   EXPECT_EQ(lowest, -highest);
-  const TriangularLattice &sheet = crack.sheet;
-  const bool along = orientation == Orientation::rows_along_crack;
-  for (std::size_t row = 0; row < sheet.rows(); ++row)
-    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-    {
-      const std::size_t place = sheet.index(row, column);
-      const std::size_t mirror =
-        along ? sheet.index(sheet.rows() - 1 - row, column) : sheet.index(row, sheet.sites_in_row(row) - 1 - column);
-      ASSERT_EQ(crack.simulation->state().x[place], crack.simulation->state().x[mirror]);
-      ASSERT_EQ(crack.simulation->state().y[place], -crack.simulation->state().y[mirror]);
-    }
+  for (const std::size_t place : sheets::sites(crack.sheet))
+  {
+    const std::size_t mirror = sheets::mirrored(crack.sheet, place);
+    ASSERT_EQ(crack.simulation->state().x[place], crack.simulation->state().x[mirror]);
+    ASSERT_EQ(crack.simulation->state().y[place], -crack.simulation->state().y[mirror]);
+  }
   const EnergyBalance e = crack.simulation->energies();
   EXPECT_GT(e.viscous, 1e-3 * e.initial);
   EXPECT_GT(e.broken, 1e-3 * e.initial);

@@ -32,24 +32,23 @@ TEST(Cutout, HoleTakesTheSitesInsideAndTheirBonds)
     const State state = with(sheet, RoundHole{R}, Eigen::Matrix2d::Identity());
     const Eigen::Vector2d centre(0.5 * sheet.length(), 0.);
     double removed = 0.;
-    for (std::size_t place = 0; place < sheet.n_places(); ++place)
-      if (sheet.is_site(place))
+    for (const std::size_t place : sheets::sites(sheet))
+    {
+      const double distance = (sheet.reference(place) - centre).norm();
+      EXPECT_EQ(state.removed[place] != 0, distance < R * (1. - 1e-9));
+      EXPECT_EQ(state.lost_bonds[place], 0);
+      removed += state.removed[place];
+      unsigned int bonds = 0;
+      for_each_bond_of_site(state, sheet, place, [&](const Bond &) { ++bonds; });
+      if (state.removed[place] != 0)
       {
-        const double distance = (sheet.reference(place) - centre).norm();
-        EXPECT_EQ(state.removed[place] != 0, distance < R * (1. - 1e-9));
-        EXPECT_EQ(state.lost_bonds[place], 0);
-        removed += state.removed[place];
-        unsigned int bonds = 0;
-        for_each_bond_of_site(state, sheet, place, [&](const Bond &) { ++bonds; });
-        if (state.removed[place] != 0)
-        {
-          EXPECT_EQ(bonds, 0u);
-        }
-        else if (distance < R + 0.9 * sheets::spacing)
-        {
-          EXPECT_LT(bonds, 12u);
-        }
+        EXPECT_EQ(bonds, 0u);
       }
+      else if (distance < R + 0.9 * sheets::spacing)
+      {
+        EXPECT_LT(bonds, 12u);
+      }
+    }
     // The area of the hole, to the sites that its rim cuts: some 2 pi R / d of them, half of them in.
     EXPECT_NEAR(removed * sheet.site_area(), M_PI * R * R, 0.5 * 2. * M_PI * R * sheets::spacing);
   }
@@ -73,27 +72,23 @@ TEST(Cutout, NotchLeavesNoBondAcrossItAndKeepsMirrorSymmetry)
                     }
                   });
     // Ahead of the notch everything is there.
-    for (std::size_t place = 0; place < sheet.n_places(); ++place)
-      if (sheet.is_site(place) && sheet.reference(place).x() > length + 0.1 * sheets::spacing)
+    for (const std::size_t place : sheets::sites(sheet))
+      if (sheet.reference(place).x() > length + 0.1 * sheets::spacing)
       {
         EXPECT_EQ(state.removed[place], 0);
       }
     relax(state, sheet, sheets::rubber(), 1e-9 * 5e5 * sheets::spacing);
-    for (std::size_t row = 0; row < sheet.rows(); ++row)
-      for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-      {
-        const std::size_t place = sheet.index(row, column);
-        const std::size_t mirror = orientation == Orientation::rows_along_crack
-                                     ? sheet.index(sheet.rows() - 1 - row, column)
-                                     : sheet.index(row, sheet.sites_in_row(row) - 1 - column);
-        EXPECT_EQ(state.x[place], state.x[mirror]);
-        EXPECT_EQ(state.y[place], -state.y[mirror]);
-      }
+    for (const std::size_t place : sheets::sites(sheet))
+    {
+      const std::size_t mirror = sheets::mirrored(sheet, place);
+      EXPECT_EQ(state.x[place], state.x[mirror]);
+      EXPECT_EQ(state.y[place], -state.y[mirror]);
+    }
     // It opens: the lips are farther apart than they would be in the homogeneous state.
     const auto lip = [&](double Y)
     {
-      for (std::size_t place = 0; place < sheet.n_places(); ++place)
-        if (sheet.is_site(place) && state.removed[place] == 0 && state.held[place] == 0 &&
+      for (const std::size_t place : sheets::sites(sheet))
+        if (state.removed[place] == 0 && state.held[place] == 0 &&
             std::abs(sheet.reference(place).x() - 4. * sheets::spacing) < 0.6 * sheets::spacing &&
             sheet.reference(place).y() * Y > 0. && std::abs(sheet.reference(place).y()) < 1.1 * sheets::spacing)
           return state.y[place] - 1.2 * sheet.reference(place).y();

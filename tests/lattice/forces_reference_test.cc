@@ -6,9 +6,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "lattice/energy.h"
 #include "lattice/forces.h"
-#include "support/largest_error.h"
 #include "tests/lattice/nonlocal_sheets.h"
 #include "tests/lattice/reference_forces.h"
 #include "tests/lattice/running_crack.h"
@@ -317,13 +315,12 @@ TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
       forces.remove_bond(state, state.vx, state.vy, bond);
     }
     without.evaluate(state, state.vx, state.vy);
-    for (std::size_t place = 0; place < sheet.n_places(); ++place)
-      if (sheet.is_site(place))
-      {
-        const Eigen::Vector2d force = forces.on_site(state, state.vx, state.vy, place);
-        ASSERT_EQ(force.x(), without.fx()[place]);
-        ASSERT_EQ(force.y(), without.fy()[place]);
-      }
+    for (const std::size_t place : sheets::sites(sheet))
+    {
+      const Eigen::Vector2d force = forces.on_site(state, state.vx, state.vy, place);
+      ASSERT_EQ(force.x(), without.fx()[place]);
+      ASSERT_EQ(force.y(), without.fy()[place]);
+    }
     ASSERT_LT(without.viscous_power(), 0.9 * power);
     ASSERT_NEAR(forces.viscous_power(), without.viscous_power(), 1e-12 * power);
   }

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "lattice/simulation.h"
-#include "lattice/time_step.h"
 #include "tests/lattice/sheets.h"
 
 namespace fracture_test
@@ -390,8 +389,8 @@ TEST(Fracture, ToughensAllBondsBehindARunningTip)
     Simulation simulation(sheet, material, std::move(state), TimeStepping{4e-6, 7},
                           Fracture(sheet, material, 3.05, BehindTipToughening{distance, 2.}, F));
     std::vector<std::size_t> seed;
-    for (std::size_t place = 0; place < sheet.n_places(); ++place)
-      if (sheet.is_site(place) && std::abs(sheet.reference(place).y()) < 0.6 * sheets::spacing &&
+    for (const std::size_t place : sheets::sites(sheet))
+      if (std::abs(sheet.reference(place).y()) < 0.6 * sheets::spacing &&
           sheet.reference(place).x() > 4. * sheets::spacing && sheet.reference(place).x() < 9. * sheets::spacing)
         seed.push_back(place);
     simulation.cut(seed);

@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "lattice/energy.h"
 #include "lattice/simulation.h"
 #include "support/largest_error.h"
 #include "tests/lattice/sheets.h"

@@ -22,14 +22,6 @@ TriangularLattice periodic_square(double n, Orientation orientation, Periodic pe
   return {sheets::spacing, n * sheets::spacing, n * sheets::spacing, orientation, periodic};
 }
 
-template <class Visitor>
-void for_each_site(const TriangularLattice &sheet, const Visitor &visit)
-{
-  for (std::size_t row = 0; row < sheet.rows(); ++row)
-    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-      visit(sheet.index(row, column));
-}
-
 TEST(PeriodicLattice, HasEdgesOnlyWhereItIsNotPeriodic)
 {
   for (const Orientation orientation : orientations)
@@ -38,15 +30,14 @@ TEST(PeriodicLattice, HasEdgesOnlyWhereItIsNotPeriodic)
       const TriangularLattice sheet = periodic_square(10., orientation, periodic);
       const Material material = sheets::rubber();
       const State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
-      for_each_site(sheet,
-                    [&](std::size_t place)
-                    {
-                      const Eigen::Vector2d X = sheet.reference(place);
-                      const double from_edge =
-                        periodic.x ? 0.5 * sheet.height() - std::abs(X.y()) : std::min(X.x(), sheet.length() - X.x());
-                      // Bonds reach sqrt3 d across rows that run along the edge, 1.5 d across those that do not.
-                      EXPECT_EQ(state.held[place] != 0, from_edge < 1.4 * sheets::spacing);
-                    });
+      for (const std::size_t place : sheets::sites(sheet))
+      {
+        const Eigen::Vector2d X = sheet.reference(place);
+        const double from_edge =
+          periodic.x ? 0.5 * sheet.height() - std::abs(X.y()) : std::min(X.x(), sheet.length() - X.x());
+        // Bonds reach sqrt3 d across rows that run along the edge, 1.5 d across those that do not.
+        EXPECT_EQ(state.held[place] != 0, from_edge < 1.4 * sheets::spacing);
+      }
     }
 }
 
@@ -71,41 +62,36 @@ TEST(PeriodicLattice, SmallestCellFeelsWhatItsCopiesFeelInALargeSheet)
     const Eigen::Matrix2d F = sheets::stretched(1.3, 1.6);
     State small = homogeneous_state(cell, material, F, Edges::held);
     add_noise(small, cell, 0.1 * sheets::spacing, 3);
-    for_each_site(cell,
-                  [&](std::size_t place)
-                  {
-                    small.vx[place] = 0.3 * static_cast<double>(place % 5);
-                    small.vy[place] = -0.2 * static_cast<double>(place % 7);
-                  });
+    for (const std::size_t place : sheets::sites(cell))
+    {
+      small.vx[place] = 0.3 * static_cast<double>(place % 5);
+      small.vy[place] = -0.2 * static_cast<double>(place % 7);
+    }
     update_images(small, cell);
     State copies = homogeneous_state(large, material, F, Edges::held);
     const auto original = [&](std::size_t place)
     { return cell.index(large.row_of(place) % 2, large.column_of(place) % 2); };
-    for_each_site(large,
-                  [&](std::size_t place)
-                  {
-                    const std::size_t from = original(place);
-                    const Eigen::Vector2d at_rest = F * cell.reference(from);
-                    copies.x[place] += small.x[from] - at_rest.x();
-                    copies.y[place] += small.y[from] - at_rest.y();
-                    copies.vx[place] = small.vx[from];
-                    copies.vy[place] = small.vy[from];
-                  });
+    for (const std::size_t place : sheets::sites(large))
+    {
+      const std::size_t from = original(place);
+      const Eigen::Vector2d at_rest = F * cell.reference(from);
+      copies.x[place] += small.x[from] - at_rest.x();
+      copies.y[place] += small.y[from] - at_rest.y();
+      copies.vx[place] = small.vx[from];
+      copies.vy[place] = small.vy[from];
+    }
     update_images(copies, large);
     Forces in_cell(cell, material), in_large(large, material);
     in_cell.evaluate(small, small.vx, small.vy);
     in_large.evaluate(copies, copies.vx, copies.vy);
     double largest = 0.;
-    for_each_site(cell,
-                  [&](std::size_t place) {
-                    largest = support::largest_of({largest, std::abs(in_cell.fx()[place])});
-                  });
-    for_each_site(large,
-                  [&](std::size_t place)
-                  {
-                    EXPECT_NEAR(in_large.fx()[place], in_cell.fx()[original(place)], 1e-12 * largest);
-                    EXPECT_NEAR(in_large.fy()[place], in_cell.fy()[original(place)], 1e-12 * largest);
-                  });
+    for (const std::size_t place : sheets::sites(cell))
+      largest = support::largest_of({largest, std::abs(in_cell.fx()[place])});
+    for (const std::size_t place : sheets::sites(large))
+    {
+      EXPECT_NEAR(in_large.fx()[place], in_cell.fx()[original(place)], 1e-12 * largest);
+      EXPECT_NEAR(in_large.fy()[place], in_cell.fy()[original(place)], 1e-12 * largest);
+    }
     EXPECT_NEAR(in_large.viscous_power(), 9. * in_cell.viscous_power(), 1e-12 * in_large.viscous_power());
     EXPECT_NEAR(elastic_energy(copies, large, material), 9. * elastic_energy(small, cell, material),
                 1e-12 * elastic_energy(copies, large, material));
@@ -128,13 +114,12 @@ TEST(PeriodicLattice, MotionKeepsEnergyAndMomentum)
   // (omega h)^2 / 8 of the energy in motion, omega h < 0.1 for the shortest waves.
   EXPECT_NEAR(after.elastic + after.kinetic, before, 2e-3 * after.kinetic);
   double px = 0., py = 0., scale = 0.;
-  for_each_site(sheet,
-                [&](std::size_t place)
-                {
-                  px += simulation.state().vx[place];
-                  py += simulation.state().vy[place];
-                  scale += std::abs(simulation.state().vx[place]);
-                });
+  for (const std::size_t place : sheets::sites(sheet))
+  {
+    px += simulation.state().vx[place];
+    py += simulation.state().vy[place];
+    scale += std::abs(simulation.state().vx[place]);
+  }
   EXPECT_LT(std::abs(px) + std::abs(py), 1e-11 * scale);
 }
 
@@ -164,12 +149,11 @@ TEST(Edges, HoldOnlyThoseThatAreAskedFor)
     const TriangularLattice sheet = sheets::square(12., orientation);
     const Material material = sheets::rubber();
     const State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), {false, true, false, false});
-    for_each_site(sheet,
-                  [&](std::size_t place)
-                  {
-                    const double from_right = sheet.length() - sheet.reference(place).x();
-                    EXPECT_EQ(state.held[place] != 0, from_right < 1.4 * sheets::spacing);
-                  });
+    for (const std::size_t place : sheets::sites(sheet))
+    {
+      const double from_right = sheet.length() - sheet.reference(place).x();
+      EXPECT_EQ(state.held[place] != 0, from_right < 1.4 * sheets::spacing);
+    }
   }
 }
 

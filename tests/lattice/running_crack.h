@@ -78,8 +78,7 @@ inline void expect_same_bits(const latcon::lattice::Simulation &one, const latco
       EXPECT_TRUE(same_bits(a.history.kinds[kind].variables[v], b.history.kinds[kind].variables[v]));
   }
   const EnergyBalance e = one.energies(), f = other.energies();
-  for (const auto energy : {&EnergyBalance::elastic, &EnergyBalance::kinetic, &EnergyBalance::viscous,
-                            &EnergyBalance::broken, &EnergyBalance::contact})
+  for (const auto energy : sheets::energies)
     EXPECT_EQ(e.*energy, f.*energy);
   EXPECT_EQ(e.imbalance(), f.imbalance());
   const std::vector<MechanismEnergy> of_one = one.mechanism_energies(), of_other = other.mechanism_energies();
@@ -90,13 +89,12 @@ inline void expect_same_bits(const latcon::lattice::Simulation &one, const latco
     EXPECT_EQ(of_one[m].dissipated, of_other[m].dissipated);
   }
   const SiteEvaluator evaluator(sheet, one.material());
-  for (std::size_t place = 0; place < sheet.n_places(); ++place)
-    if (sheet.is_site(place))
-    {
-      for (Field State::*field : {&State::x, &State::y, &State::vx, &State::vy, &State::ax, &State::ay})
-        ASSERT_EQ(std::memcmp(&(a.*field)[place], &(b.*field)[place], sizeof(double)), 0) << place;
-      ASSERT_EQ(evaluator.at(a, place).first_piola_stress, evaluator.at(b, place).first_piola_stress) << place;
-    }
+  for (const std::size_t place : sheets::sites(sheet))
+  {
+    for (Field State::*field : {&State::x, &State::y, &State::vx, &State::vy, &State::ax, &State::ay})
+      ASSERT_EQ(std::memcmp(&(a.*field)[place], &(b.*field)[place], sizeof(double)), 0) << place;
+    ASSERT_EQ(evaluator.at(a, place).first_piola_stress, evaluator.at(b, place).first_piola_stress) << place;
+  }
 }
 
 } // namespace running_crack

@@ -20,15 +20,6 @@ TriangularLattice sheet(double length, double scatter = 0.5, double m = 1.5)
   return nonlocal_sheets::sheet(Grid::Kind::square, m, length, 16., 30., Orientation::rows_along_crack, scatter);
 }
 
-// Calls visit(place) for the sites of a sheet.
-template <class Visit>
-void for_each_site(const TriangularLattice &lattice, const Visit &visit)
-{
-  for (std::size_t place = 0; place < lattice.n_places(); ++place)
-    if (lattice.is_site(place))
-      visit(place);
-}
-
 TEST(Scatter, MovesEachPointWhateverTheOthersAre)
 {
   const TriangularLattice narrow = sheet(16.), wide = sheet(24.), grid = sheet(16., 0.);
@@ -57,34 +48,32 @@ TEST(Scatter, GivesEachPointTheAreaLawAndNearlyNoForce)
     const ScatteredBonds &bonds = *lattice.scattered();
     latcon::support::LargestError sums;
     double odd = 0., before = 0.;
-    for_each_site(lattice,
-                  [&](std::size_t place)
-                  {
-                    std::array<double, 2> sum{};
-                    std::array<Eigen::Vector2d, 2> pull{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()}, raw = pull;
-                    for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
-                      for (const auto &[bond, sense] :
-                           {std::pair(lattice.bond(place, kind), 1.), std::pair(lattice.bond_into(place, kind), -1.)})
-                      {
-                        const double weight = bonds.weights[kind][bond.near];
-                        EXPECT_EQ(weight > 0., lattice.has_bond(bond.near, kind));
-                        if (!(weight > 0.))
-                          continue;
-                        const Eigen::Vector2d R = lattice.bond_vector(bond);
-                        const double l = lattice.ring_radius(kind),
-                                     tent = 1. - std::abs(R.norm() - l) / lattice.spacing();
-                        EXPECT_GT(tent, 0.);
-                        sum[lattice.shell(kind)] += weight;
-                        pull[lattice.shell(kind)] += sense * weight * l / R.squaredNorm() * R;
-                        raw[lattice.shell(kind)] += sense * tent * l / R.squaredNorm() * R;
-                      }
-                    for (const std::size_t shell : {0, 1})
-                    {
-                      sums.add(std::abs(sum[shell] - 2.));
-                      odd += pull[shell].squaredNorm();
-                      before += raw[shell].squaredNorm() / (shell == 0 ? 50. : 130.); // sums of tents are 7 and 11
-                    }
-                  });
+    for (const std::size_t place : sheets::sites(lattice))
+    {
+      std::array<double, 2> sum{};
+      std::array<Eigen::Vector2d, 2> pull{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()}, raw = pull;
+      for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+        for (const auto &[bond, sense] :
+             {std::pair(lattice.bond(place, kind), 1.), std::pair(lattice.bond_into(place, kind), -1.)})
+        {
+          const double weight = bonds.weights[kind][bond.near];
+          EXPECT_EQ(weight > 0., lattice.has_bond(bond.near, kind));
+          if (!(weight > 0.))
+            continue;
+          const Eigen::Vector2d R = lattice.bond_vector(bond);
+          const double l = lattice.ring_radius(kind), tent = 1. - std::abs(R.norm() - l) / lattice.spacing();
+          EXPECT_GT(tent, 0.);
+          sum[lattice.shell(kind)] += weight;
+          pull[lattice.shell(kind)] += sense * weight * l / R.squaredNorm() * R;
+          raw[lattice.shell(kind)] += sense * tent * l / R.squaredNorm() * R;
+        }
+      for (const std::size_t shell : {0, 1})
+      {
+        sums.add(std::abs(sum[shell] - 2.));
+        odd += pull[shell].squaredNorm();
+        before += raw[shell].squaredNorm() / (shell == 0 ? 50. : 130.); // sums of tents are 7 and 11
+      }
+    }
     EXPECT_LT(sums.error(), 1e-9);
     EXPECT_LT(odd, 0.02 * before) << scatter;
   }
@@ -97,21 +86,20 @@ TEST(Scatter, HasTimeStepsForTheMostCrowdedPoint)
   const Material material = without_dashpots(sheets::rubber());
   const State state = homogeneous_state(lattice, material, Eigen::Matrix2d::Identity(), Edges::held);
   double highest = 0.;
-  for_each_site(lattice,
-                [&](std::size_t place)
-                {
-                  double rate = 0.;
-                  for_each_bond_of_site(state, lattice, place,
-                                        [&](const Bond &bond)
-                                        {
-                                          const Shell &shell = *material.shell(lattice, bond.kind);
-                                          rate += 2. * state.stiffness.of(bond.near, bond.kind) *
-                                                  cross_section(shell, lattice, bond.kind) * stiffness(shell.law, 1.) *
-                                                  std::pow(lattice.length_ratio(bond.near, bond.kind), 2) /
-                                                  lattice.rest_length(bond.kind) / site_mass(material, lattice);
-                                        });
-                  highest = std::max(highest, rate);
-                });
+  for (const std::size_t place : sheets::sites(lattice))
+  {
+    double rate = 0.;
+    for_each_bond_of_site(state, lattice, place,
+                          [&](const Bond &bond)
+                          {
+                            const Shell &shell = *material.shell(lattice, bond.kind);
+                            rate += 2. * state.stiffness.of(bond.near, bond.kind) *
+                                    cross_section(shell, lattice, bond.kind) * stiffness(shell.law, 1.) *
+                                    std::pow(lattice.length_ratio(bond.near, bond.kind), 2) /
+                                    lattice.rest_length(bond.kind) / site_mass(material, lattice);
+                          });
+    highest = std::max(highest, rate);
+  }
   const double allowed = std::pow(2. / time_step_limits(lattice, material, 1.).elastic, 2);
   EXPECT_LE(highest, allowed * (1. + 1e-12));
   EXPECT_GT(highest, 0.8 * allowed); // the most crowded points of both rings are not one
@@ -154,16 +142,15 @@ TEST(Scatter, HasNoEdgesInAPeriodicSheet)
   const auto [fx, fy] = forces(state);
   latcon::support::Extremes sizes;
   double rest_x = 0., rest_y = 0.;
-  for_each_site(lattice,
-                [&](std::size_t place)
-                {
-                  const Eigen::Vector2d force(fx[place], fy[place]);
-                  sizes.add(force.norm());
-                  rest_x += force.x();
-                  rest_y += force.y();
-                  EXPECT_LT((force - Forces(lattice, material).on_site(state, state.vx, state.vy, place)).norm(),
-                            1e-12 * force.norm() + 1e-15);
-                });
+  for (const std::size_t place : sheets::sites(lattice))
+  {
+    const Eigen::Vector2d force(fx[place], fy[place]);
+    sizes.add(force.norm());
+    rest_x += force.x();
+    rest_y += force.y();
+    EXPECT_LT((force - Forces(lattice, material).on_site(state, state.vx, state.vy, place)).norm(),
+              1e-12 * force.norm() + 1e-15);
+  }
   EXPECT_LT(std::hypot(rest_x, rest_y), 1e-10 * sizes.largest());
 }
 

@@ -211,6 +211,32 @@ square(double n, latcon::lattice::Orientation orientation = latcon::lattice::Ori
   return {spacing, n * spacing, n * spacing, orientation};
 }
 
+/// Places of the sites, in their order.
+inline std::vector<std::size_t> sites(const latcon::lattice::TriangularLattice &sheet)
+{
+  std::vector<std::size_t> places;
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+    if (sheet.is_site(place))
+      places.push_back(place);
+  return places;
+}
+
+/// The site at the same X and at -Y.
+inline std::size_t mirrored(const latcon::lattice::TriangularLattice &sheet, std::size_t place)
+{
+  const std::size_t row = sheet.row_of(place), column = sheet.column_of(place);
+  return sheet.orientation() == latcon::lattice::Orientation::rows_along_crack
+           ? sheet.index(sheet.rows() - 1 - row, column)
+           : sheet.index(row, sheet.sites_in_row(row) - 1 - column);
+}
+
+/// Each energy of a ledger.
+inline constexpr double latcon::lattice::EnergyBalance::*energies[] = {
+  &latcon::lattice::EnergyBalance::elastic, &latcon::lattice::EnergyBalance::kinetic,
+  &latcon::lattice::EnergyBalance::viscous, &latcon::lattice::EnergyBalance::broken,
+  &latcon::lattice::EnergyBalance::contact, &latcon::lattice::EnergyBalance::boundary_work,
+  &latcon::lattice::EnergyBalance::initial};
+
 /// The n places in the middle row from a given column on; a seed crack.
 inline std::vector<std::size_t> middle_row(const latcon::lattice::TriangularLattice &sheet, std::size_t column,
                                            std::size_t n)

@@ -48,12 +48,11 @@ TEST(SiteFields, DeformationGradientIsThatOfAnyHomogeneousState)
   Eigen::Matrix2d F;
   F << 2.1, 0.4, -0.3, 1.7;
   const SiteFields fields = site_fields(homogeneous_state(sheet, material, F, Edges::free), sheet, material);
-  for (std::size_t place = 0; place < sheet.n_places(); ++place)
-    if (sheet.is_site(place))
-    {
-      // Round-off of positions, 1e-16 of the sheet's size, over d.
-      EXPECT_NEAR((fields.deformation_gradient[place] - F).norm(), 0., 1e-13);
-    }
+  for (const std::size_t place : sheets::sites(sheet))
+  {
+    // Round-off of positions, 1e-16 of the sheet's size, over d.
+    EXPECT_NEAR((fields.deformation_gradient[place] - F).norm(), 0., 1e-13);
+  }
 }
 
 // A sheet at rest in the reference configuration that is stretched at once. theory.md, eq. (L.31), at the start:

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <functional>
-#include <set>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
@@ -68,28 +67,6 @@ const struct
              {"square", Grid::Kind::square, 0.},
              {"turned square", Grid::Kind::square, M_PI / 4.},
              {"slightly turned square", Grid::Kind::square, 0.13}};
-
-TEST(Stencil, OfSixDirectionsIsTheLattice)
-{
-  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
-  {
-    const bool along = orientation == Orientation::rows_along_crack;
-    const TriangularLattice lattice(d, 10. * d, 10. * d, orientation);
-    const Stencil stencil =
-      ring_stencil({Grid::Kind::triangular, d, along ? 0. : M_PI / 6.}, lattice_rings(d, orientation, 0.));
-    ASSERT_EQ(stencil.size(), 6u);
-    std::set<std::size_t> kinds;
-    for (const HalfBond &bond : stencil)
-    {
-      EXPECT_NEAR(bond.weight, 1. / 3., 1e-14);
-      for (std::size_t kind = 0; kind < 6; ++kind)
-        for (const double sign : {-1., 1.})
-          if ((lattice.bond_vector(kind) - sign * bond.vector).norm() < 1e-12 * d && shell_of(kind) == bond.shell)
-            kinds.insert(kind);
-    }
-    EXPECT_EQ(kinds.size(), 6u);
-  }
-}
 
 TEST(Stencil, HasTheMomentsOfAllDirections)
 {

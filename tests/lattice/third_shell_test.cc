@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "lattice/energy.h"
-#include "lattice/simulation.h"
 #include "lattice/site_fields.h"
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
@@ -54,19 +53,17 @@ TEST(ThirdShell, HomogeneousSheetHasTheEnergyAndStressOfItsNineDirections)
     const SiteEvaluator evaluator(sheet, material);
     Forces forces(sheet, material);
     forces.evaluate(state, state.vx, state.vy);
-    for (std::size_t row = 0; row < sheet.rows(); ++row)
-      for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-      {
-        const std::size_t place = sheet.index(row, column);
-        const SiteValues values = evaluator.at(state, place);
-        EXPECT_EQ(values.bonds, 18u);
-        EXPECT_EQ(state.held[place], 0);
-        EXPECT_LT((values.deformation_gradient - F).norm(), 1e-12);
-        EXPECT_NEAR(values.strain_energy_density, energy, 1e-12 * energy);
-        EXPECT_LT((values.first_piola_stress - stress).norm(), 1e-12 * stress.norm());
-        // Of 18 forces, each 2.5e5 Pa times a section of about d.
-        EXPECT_LT(std::hypot(forces.fx()[place], forces.fy()[place]), 18. * 1e-13 * 2.5e5 * d);
-      }
+    for (const std::size_t place : sheets::sites(sheet))
+    {
+      const SiteValues values = evaluator.at(state, place);
+      EXPECT_EQ(values.bonds, 18u);
+      EXPECT_EQ(state.held[place], 0);
+      EXPECT_LT((values.deformation_gradient - F).norm(), 1e-12);
+      EXPECT_NEAR(values.strain_energy_density, energy, 1e-12 * energy);
+      EXPECT_LT((values.first_piola_stress - stress).norm(), 1e-12 * stress.norm());
+      // Of 18 forces, each 2.5e5 Pa times a section of about d.
+      EXPECT_LT(std::hypot(forces.fx()[place], forces.fy()[place]), 18. * 1e-13 * 2.5e5 * d);
+    }
   }
 }
 
@@ -92,47 +89,6 @@ TEST(ThirdShell, FrequenciesStayBelowTheBoundOfTheTimeStep)
   const double added = 3. * 4. * cross_section(third, sheet) * largest_stiffness(third.law, 1.) /
                        (2. * sheets::spacing * site_mass(undamped, sheet));
   EXPECT_NEAR(square(undamped) - square(without), added, 1e-12 * square(undamped));
-}
-
-// Bonds of the third shell lie upon two nearest ones, and know nothing of them: each breaks alone.
-TEST(ThirdShell, BondOutlastsTheNearestOnesBelowIt)
-{
-  const TriangularLattice sheet = sheets::square(14);
-  const Material material = sheets::rubber_of_three_shells();
-  State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
-  Forces forces(sheet, material);
-  Fracture fracture(sheet, material, 1.5, NoToughening{}, Eigen::Matrix2d::Identity());
-  fracture.configure(state, forces);
-  const std::size_t left = sheet.index(6, 5), middle = left + 1, right = left + 2;
-  // The middle site goes to the right by 0.55 d: the bond to the left comes to 1.55, the long one stays at 1.
-  state.x[middle] += 0.55 * sheets::spacing;
-  forces.evaluate(state, state.vx, state.vy);
-  const std::vector<BrokenBond> broken = fracture.apply(state, forces, state.vx, state.vy);
-  bool has_left = false;
-  for (const BrokenBond &bond : broken)
-  {
-    has_left = has_left || (bond.near == left && bond.kind == 0);
-    EXPECT_TRUE(bond.near == middle || bond.far == middle);
-  }
-  EXPECT_TRUE(has_left);
-  EXPECT_FALSE(state.bonds.present(left, 0));
-  EXPECT_TRUE(state.bonds.present(left, 6));
-  // Now the long one alone: 2 d become 3.2 d, its nearest ones are cut before.
-  fracture.remove_bonds(state, {{middle, 0}});
-  const double before = state.lost_bonds[left];
-  state.x[right] += 1.2 * sheets::spacing;
-  forces.evaluate(state, state.vx, state.vy);
-  std::size_t long_ones = 0;
-  for (const BrokenBond &bond : fracture.apply(state, forces, state.vx, state.vy))
-    if (bond.near == left && bond.kind == 6)
-    {
-      ++long_ones;
-      EXPECT_NEAR(bond.stretch, 1.6, 1e-12);
-      EXPECT_EQ(bond.far, right);
-      EXPECT_NEAR((bond.midpoint - sheet.reference(middle)).norm(), 0., 1e-12);
-    }
-  EXPECT_EQ(long_ones, 1u);
-  EXPECT_GT(state.lost_bonds[left], before);
 }
 
 } // namespace lattice_third_shell_test

@@ -29,10 +29,7 @@ TEST_P(BothOrientations, SitesHaveSixNeighboursAtEachOfTheRightDistances)
   const lattice::Material material = sheets::rubber_of_three_shells();
   const lattice::State state =
     lattice::homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), lattice::Edges::free);
-  std::vector<std::size_t> sites;
-  for (std::size_t place = 0; place < sheet.n_places(); ++place)
-    if (sheet.is_site(place))
-      sites.push_back(place);
+  const std::vector<std::size_t> sites = sheets::sites(sheet);
   ASSERT_EQ(sites.size(), sheet.n_sites());
 
   std::size_t interior = 0;
@@ -79,17 +76,12 @@ TEST_P(BothOrientations, BondDirectionsAreTheStatedOnes)
 TEST_P(BothOrientations, SheetIsItsOwnMirrorImage)
 {
   const TriangularLattice sheet = sheets::square(11, GetParam());
-  for (std::size_t row = 0; row < sheet.rows(); ++row)
-    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-    {
-      const Eigen::Vector2d X = sheet.reference(sheet.index(row, column));
-      const bool along = GetParam() == Orientation::rows_along_crack;
-      const std::size_t mirror_row = along ? sheet.rows() - 1 - row : row;
-      const std::size_t mirror_column = along ? column : sheet.sites_in_row(row) - 1 - column;
-      const Eigen::Vector2d mirror = sheet.reference(sheet.index(mirror_row, mirror_column));
-      EXPECT_EQ(mirror.x(), X.x());
-      EXPECT_EQ(mirror.y(), -X.y()); // to the last bit
-    }
+  for (const std::size_t place : sheets::sites(sheet))
+  {
+    const Eigen::Vector2d X = sheet.reference(place), mirror = sheet.reference(sheets::mirrored(sheet, place));
+    EXPECT_EQ(mirror.x(), X.x());
+    EXPECT_EQ(mirror.y(), -X.y()); // to the last bit
+  }
 }
 
 // About the centre line along y, to round-off: with an odd number of rows. With an even one, which rows across the
@@ -131,12 +123,11 @@ TEST_P(BothOrientations, ExtentIsThatOfTheOutermostSites)
   EXPECT_NEAR(sheet.length(), 0.02, 0.5 * sheets::spacing);
   EXPECT_NEAR(sheet.height(), 0.01, sheets::spacing);
   Eigen::Vector2d low(1., 1.), high(-1., -1.);
-  for (std::size_t place = 0; place < sheet.n_places(); ++place)
-    if (sheet.is_site(place))
-    {
-      low = low.cwiseMin(sheet.reference(place));
-      high = high.cwiseMax(sheet.reference(place));
-    }
+  for (const std::size_t place : sheets::sites(sheet))
+  {
+    low = low.cwiseMin(sheet.reference(place));
+    high = high.cwiseMax(sheet.reference(place));
+  }
   EXPECT_EQ(low.x(), 0.);
   EXPECT_NEAR(high.x(), sheet.length(), 1e-15);
   EXPECT_NEAR(high.y() - low.y(), sheet.height(), 1e-15);

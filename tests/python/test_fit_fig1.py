@@ -1,6 +1,5 @@
-"""Checks that the page of the fit of Fig. 1 has the tables that its record gives, and pictures."""
+"""Checks that the page of the fit of Fig. 1 has the tables that its record gives."""
 import pathlib
-import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -25,10 +24,3 @@ def test_page_has_the_tables_of_the_record():
         assert differences(PAGE, lines, **effect) == []
     # All three numbers are met within two standard deviations, as the page says.
     assert (result.observations["difference"].abs() < 2).all() and result.best == dict(result.near_equal.iloc[0][list(result.best)])
-
-
-def test_pictures_are_small():
-    pictures = re.findall(r"\(pictures/(fit-fig1-\w+\.png)\)", PAGE)
-    assert len(pictures) == 3
-    for name in pictures:
-        assert (ROOT / "docs" / "pictures" / name).stat().st_size < 150 * 1024

@@ -30,9 +30,9 @@ MATERIALS = {
     "10 MPa, linear": (spring(1), both(law="linear", modulus=1e7)),
     "undamped": (rod(1e5, 1.5e5), both(viscosity=0)),
 }
-# Strongly stretched; compressed so far that the sheet of nearest neighbours alone buckles. With the claim to check. Neutral
-# stability: tests/verification/bridge/slowest_wave_test.cc; waves in a sheet that buckles: verify_test.py.
-SOME = [("a = 0", 0.0, 3.0, "energy"), ("rubber", -0.3, 0.03, "energy")]
+# Compressed so far that the sheet of nearest neighbours alone buckles. With the claim to check. Neutral stability:
+# tests/verification/bridge/slowest_wave_test.cc; waves in a sheet that buckles: verify_test.py.
+SOME = [("rubber", -0.3, 0.03, "energy")]
 # The row by which a state may be refused.
 REASON = "stability of the loaded lattice"
 

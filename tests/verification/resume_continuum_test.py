@@ -75,17 +75,33 @@ def stop(out, which, case=WAVES, ranks=1, victim=None):
         return run.returncode
 
 
-def goes_on_to_the_same_files(out, tmp_path, which, case=WAVES, ranks=1, victim=None):
-    out = tmp_path / "undisturbed"
-    run_to_end(out, case=case, ranks=ranks)
-    expected = files(out)
-    out = tmp_path / "stopped"
-    status = stop(out, which, case, ranks, victim)
-    assert status != 0
+@pytest.fixture(scope="module")
+def undisturbed(module_path):
+    """Returns the folder of a run to the end of a case on a number of ranks, which tests leave as it is."""
+    made = {}
+
+    def of(case, ranks):
+        key = f"{'multigrid' if case is BY_MULTIGRID else 'direct'}-{ranks}"
+        if key not in made:
+            made[key] = module_path / key
+            run_to_end(made[key], case=case, ranks=ranks)
+        return made[key]
+    return of
+
+
+# mpirun returns the exit code of a rank.
+@pytest.mark.parametrize("which, case, ranks, victim, status", [
+    (signal.SIGTERM, WAVES, 1, None, {130}), (signal.SIGKILL, BY_MULTIGRID, 1, None, {-9}),
+    (signal.SIGTERM, WAVES, 2, 1, {130}), (signal.SIGKILL, BY_MULTIGRID, 2, 1, set(range(1, 256)))],
+    ids=["signal", "kill with multigrid", "signal to one rank", "killed rank"])
+def test_goes_on_to_the_same_files(out, undisturbed, which, case, ranks, victim, status):
+    expected = files(undisturbed(case, ranks))
+    ended = stop(out, which, case, ranks, victim)
+    assert ended in status
     with h5py.File(checkpoints(out)[-1], "r") as file:
         step = int(file["run/step"][0])
     assert step < 20
-    if status == 130:
+    if ended == 130:
         # The instant of the signal is in a frame, in the table and in a checkpoint.
         with h5py.File(checkpoints(out)[-1], "r") as file:
             assert file["solver/time"][0] == frames(out / "continuum.pvd")[-1][0]
@@ -95,42 +111,20 @@ def goes_on_to_the_same_files(out, tmp_path, which, case=WAVES, ranks=1, victim=
     assert f"step {step}," in run.stdout
     assert run_json(out)["resumed_from"]["step"] == step
     expect_same(out, expected)
-    return status
 
 
-def test_signal(out, tmp_path):
-    assert goes_on_to_the_same_files(out, tmp_path, signal.SIGTERM) == 130
-
-
-def test_kill_with_multigrid(out, tmp_path):
-    assert goes_on_to_the_same_files(out, tmp_path, signal.SIGKILL, BY_MULTIGRID) == -9
-
-
-def test_signal_to_one_rank_stops_all(out, tmp_path):
-    # mpirun returns the exit code of a rank.
-    assert goes_on_to_the_same_files(out, tmp_path, signal.SIGTERM, ranks=2, victim=1) == 130
-
-
-def test_killed_rank_ends_all(out, tmp_path):
-    goes_on_to_the_same_files(out, tmp_path, signal.SIGKILL, BY_MULTIGRID, ranks=2, victim=1)
-
-
-def test_on_another_number_of_ranks(out, tmp_path):
-    out = tmp_path / "undisturbed"
-    run_to_end(out)
-    expected = {name: np.array([float(row[name]) for row in read_csv(out / "energy.csv")])
-                for name in ("t", "elastic", "kinetic")}
-    out = tmp_path / "stopped"
+def test_on_another_number_of_ranks(out, undisturbed):
+    whole = undisturbed(WAVES, 1)
     stop(out, signal.SIGKILL, ranks=2)
     run_to_end(out, "--resume")
-    assert [time for time, _ in frames(out / "continuum.pvd")] == (
-        [time for time, _ in frames(tmp_path / "undisturbed" / "continuum.pvd")])
-    for time_, file in frames(out / "continuum.pvd"):
+    assert [time for time, _ in frames(out / "continuum.pvd")] == [time for time, _ in frames(whole / "continuum.pvd")]
+    for _, file in frames(out / "continuum.pvd"):
         assert file.exists(), file
-    for name, column in expected.items():
-        found = np.array([float(row[name]) for row in read_csv(out / "energy.csv")])
+    rows, expected = read_csv(out / "energy.csv"), read_csv(whole / "energy.csv")
+    for name in ("t", "elastic", "kinetic"):
+        column = np.array([float(row[name]) for row in expected])
         # Newton stops at 1e-10 of the forces.
-        np.testing.assert_allclose(found, column, rtol=1e-8, atol=1e-8 * abs(column).max())
+        np.testing.assert_allclose([float(row[name]) for row in rows], column, rtol=1e-8, atol=1e-8 * abs(column).max())
 
 
 def test_equilibrium_starts_from_the_beginning(out):

@@ -55,7 +55,7 @@ def test_verify_keeps_the_claims_that_are_done(out, start):
 
 
 def test_relaxation(out, start):
-    ends_at_once(start, out, "lattice", QUICK, "--set", "Sheet/length=45 cm", "--set", "Sheet/height=25 cm",
+    ends_at_once(start, out, "lattice", QUICK, "--set", "Sheet/length=25 cm", "--set", "Sheet/height=15 cm",
                   begun=(out / "lattice-0000.vtp").exists)
 
 

@@ -3,8 +3,6 @@
 
 #include <cmath>
 #include <functional>
-#include <ostream>
-#include <string>
 #include <vector>
 
 #include "lattice/bond_factors.h"

@@ -41,6 +41,7 @@ Results check(const std::string &claim, const Subject &subject, const Change &of
     return wave_speeds_claim(subject, options).results;
   }
   CutStudy study = hole_study(true);
+  study.sizes = {6., 8., 12., 16.};
   study.other_sizes.clear();
   return cut_claim(subject, study).results;
 }

@@ -190,24 +190,10 @@ TEST(WaveSpeeds, HoldsForBothShellSetsAcrossTheCrack)
 TEST(WaveSpeeds, HoldsForDampedWaves)
 {
   const Case input = subjects::weakly_damped_case();
-  const WaveSpeedsOptions options = parts::waves({}, {input.deformation()});
-  const ClaimOutcome outcome = wave_speeds_claim(subject(input), options);
+  const ClaimOutcome outcome = wave_speeds_claim(subject(input), parts::waves({}, {input.deformation()}));
   EXPECT_EQ(outcome.results.rows().size(), 9u);
   for (const Result &row : outcome.results.rows())
     EXPECT_EQ(row.verdict(), Verdict::holds) << row.quantity << " " << row.error.value_or(-1.);
-
-  // Both sides take the dashpots from the subject: with others the decay of both is another one, and no row fails.
-  Subject damped_more = subject(input);
-  damped_more.material.next_nearest->viscosity *= 1.01;
-  const ClaimOutcome other = wave_speeds_claim(damped_more, options);
-  for (std::size_t w = 0; w < 2; ++w)
-  {
-    const Result &before = outcome.results.rows()[3 * w + 1], &after = other.results.rows()[3 * w + 1];
-    EXPECT_NE(after.quantity.find("decay"), std::string::npos);
-    EXPECT_EQ(after.verdict(), Verdict::holds) << after.error.value_or(-1.);
-    EXPECT_GT(std::abs(after.lattice.value() / before.lattice.value() - 1.), 1e-3);
-    EXPECT_GT(std::abs(after.continuum.value() / before.continuum.value() - 1.), 1e-3);
-  }
 }
 
 } // namespace wave_speeds_test
