@@ -52,7 +52,8 @@ def claims_where(property_):
 
 
 def latcon_on_ranks(ranks, *arguments, env=None):
-    environment = dict(env or os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    environment = dict(env or os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                       OMPI_MCA_mpi_yield_when_idle="1")  # tests run side by side
     return subprocess.run(["mpirun", "--oversubscribe", "-n", str(ranks), LATCON, *map(str, arguments)],
                           capture_output=True, text=True, timeout=600, env=environment)
 
