@@ -9,6 +9,7 @@ import argparse
 import importlib
 import logging
 import os
+import signal
 import sys
 from pathlib import Path
 
@@ -65,6 +66,7 @@ def main(words=None):
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # ends the script in silence, while it imports too
     # Without a home, matplotlib keeps its list of fonts in a temporary folder; its advice would be in the log of every run.
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     # A `matplotlibrc` of the current folder would take precedence: the folder of a run may belong to somebody else.
