@@ -291,11 +291,8 @@ TEST(RateForces, HaveAConsistentTangent)
   continuum::Sheet::Matrix matrix;
   sheet.make_matrix(sheet.conformity_constraints(), matrix);
   forces.add_tangent(duration, u_of(0.), u_of(0.), {}, 0., sheet.conformity_constraints(), matrix);
-  auto direction = sheet.make_owned();
-  direction = u_of(1.);
-  auto at_zero = sheet.make_owned();
-  at_zero = u_of(0.);
-  direction -= at_zero;
+  auto direction = owned(sheet, u_of(1.));
+  direction -= owned(sheet, u_of(0.));
   auto slope = sheet.make_owned();
   matrix.vmult(slope, direction);
   const auto start = at(0.);
