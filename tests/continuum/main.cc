@@ -25,7 +25,7 @@ std::string filter(const std::string &given)
   if (support::n_ranks() == 1)
     return given + (given.find('-') == std::string::npos ? "-" : ":") + "*Ranks.*";
   const bool has_names = !given.empty() && given != "*" && given.front() != '-';
-  return (has_names ? "" : "*Ranks.*:Assembly.*:MeshLoop.*:MotionArchive.*:GradientMemory.*") +
+  return (has_names ? "" : "*Ranks.*:Assembly.*:RateForces.*:MotionArchive.*:GradientMemory.*") +
          (given == "*" ? "" : given);
 }
 } // namespace
