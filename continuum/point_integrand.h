@@ -28,7 +28,8 @@ void clear(PointIntegrand &density, Order order);
 /// Returns F_iJ = delta_iJ + u_i,J of a displacement.
 dealii::Tensor<2, 2> deformation_gradient(const FieldDerivatives &u);
 
-/// Returns the derivatives of the displacement with the deformation gradient F and, in G, its gradient.
+/// Returns the derivatives of the displacement [-], [1/m] with the deformation gradient F_iJ [-] and its gradient G_iJK
+/// [1/m], symmetric in J and K.
 FieldDerivatives field_derivatives(const dealii::Tensor<2, 2> &F,
                                    const dealii::Tensor<3, 2> &G = dealii::Tensor<3, 2>());
 

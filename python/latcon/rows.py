@@ -29,8 +29,9 @@ def verdict(ratio: float | None) -> str:
     return "reported" if ratio is None else "holds" if ratio <= 1 else "fails"
 
 
-def judged_row(claim: str, quantity: str, unit: str, lattice: float | None, continuum: float | None = None, theory: float | None = None,
-        error: float | None = None, tolerance: float | None = None, reason: str = "") -> dict[str, Any]:
+def judged_row(claim: str, quantity: str, unit: str, lattice: float | None, continuum: float | None = None,
+               theory: float | None = None, error: float | None = None, tolerance: float | None = None,
+               reason: str = "") -> dict[str, Any]:
     """A judged row as it is written; `reason` is that of its tolerance, or what its error is."""
     return {"claim": claim, "quantity": quantity, "unit": unit, "lattice": finite_or_text(lattice),
             "continuum": finite_or_text(continuum), "theory": finite_or_text(theory), "error": finite_or_text(error),
@@ -40,7 +41,8 @@ def judged_row(claim: str, quantity: str, unit: str, lattice: float | None, cont
 
 
 def text_table(header: Sequence[str], rows: Sequence[Sequence[str]], numbers: Collection[int], width: int = 120) -> str:
-    """Aligned text of at most `width` columns; the second column is wrapped if need be. `numbers`: right-aligned columns."""
+    """Aligned text, of at most `width` columns if wrapping the second column, to 8 at least, is enough: nothing is cut off.
+    `numbers`: right-aligned columns."""
     sizes = [max(map(len, column)) for column in zip(header, *rows)]
     sizes[1] = max(8, min(sizes[1], width - sum(sizes) + sizes[1] - 2 * (len(sizes) - 1)))
     lines = []
@@ -49,6 +51,6 @@ def text_table(header: Sequence[str], rows: Sequence[Sequence[str]], numbers: Co
             cells = [row[0] if i == 0 else "", part] + [cell if i == 0 else "" for cell in row[2:]]
             padded = [cell.rjust(size) if column in numbers else cell.ljust(size)
                       for column, (cell, size) in enumerate(zip(cells, sizes))]
-            lines.append("  ".join(padded).rstrip()[:width])
+            lines.append("  ".join(padded).rstrip())
     lines.insert(1, "-" * min(width, sum(sizes) + 2 * (len(sizes) - 1)))
     return "\n".join(lines)

@@ -23,6 +23,7 @@ from latcon.quantities import number_text
 from latcon.report import animation, report
 from latcon.report.crack_path import measured_sinusoid
 from latcon.report.runs import read_run
+from latcon.rows import text_table
 
 
 def refusal(error):
@@ -114,6 +115,13 @@ def test_draws_the_sinusoid_that_was_measured(tmp_path):
     crack = json.loads((run / "crack.json").read_text())
     (run / "crack.json").write_text(json.dumps({**crack, "sinusoid_phase": None}))
     assert measured_sinusoid(read_run(run)) is None
+
+
+def test_tables_of_text_wrap_the_second_column_and_cut_nothing_off():
+    long = "z" * 150
+    assert long in text_table(["a", "b", "c"], [["x", "y", long]], ())
+    lines = text_table(["a", "b", "c"], [["x", "words " * 40, "1"]], (2,)).splitlines()
+    assert max(map(len, lines)) <= 120 and " ".join(lines).count("words") == 40
 
 
 def test_gives_the_digits_that_the_uncertainty_leaves():

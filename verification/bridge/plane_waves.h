@@ -102,7 +102,8 @@ std::array<MemoryWave, 2> memory_waves(const WaveMatrices &relaxed, const std::v
 std::array<MemoryWave, 2> memory_waves(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                        const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
 
-/// The branches of the bonds. @throws std::invalid_argument for bonds with a CustomMemory
+/// Returns G_i [1/s^2] and tau_i [s] of the branches of the lattice's bonds, shell by shell, for the same F [-] and K
+/// [1/m]. @throws std::invalid_argument for bonds with a CustomMemory
 std::vector<BranchMatrix> branch_matrices(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                           const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
 

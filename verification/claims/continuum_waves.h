@@ -65,8 +65,8 @@ struct WaveMesh
 double discretisation_bound(const WaveMesh &mesh);
 
 /// Both waves in the finite elements, of tangent, viscosity and mass in the space of the two waves without damping,
-/// which inverse iteration finds from the nodal values of both; polarisations are those in this space. Maxwell branches
-/// do not relax. Every rank computes all of it. @throws continuum::LinearSolverFailed
+/// which inverse iteration finds from the nodal values of both; polarisations are those in this space. Every rank
+/// computes all of it. @throws continuum::LinearSolverFailed
 std::array<bridge::PlaneWave, 2> discrete_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
                                                 const Eigen::Vector2d &K, const WaveMesh &mesh);
 

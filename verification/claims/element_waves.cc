@@ -215,9 +215,6 @@ std::array<bridge::PlaneWave, 2> discrete_waves(const WaveContinuum &medium, con
   continuum::Sheet::Matrix stiffness;
   sheet.make_matrix(sheet.conformity_constraints(), stiffness);
   sheet.tangent(u, sheet.conformity_constraints(), stiffness);
-  continuum::RateForces branches(sheet, nullptr, medium.memory.get());
-  branches.start(u, 1., {});
-  branches.add_tangent(0., u, u, {}, 0., sheet.conformity_constraints(), stiffness);
   continuum::LinearSolver solver(sheet, {}, {});
 
   // Both waves at once, by inverse iteration with a shift below them. Translations by whole cells keep waves of other

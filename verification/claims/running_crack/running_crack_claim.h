@@ -61,8 +61,7 @@ struct NamedContinuum
 {
   std::string name;
   WaveContinuum medium;
-  std::vector<continuum::BondFamily> cut =
-    {}; ///< bonds that the flank lacks in part, see continuum::Flank; empty: none
+  std::vector<continuum::BondFamily> cut = {}; ///< that the flank lacks in part, see continuum::Flank; empty: none
 };
 
 /// Both sides of the comparison: one lattice and several continua. The subject must outlive it.
