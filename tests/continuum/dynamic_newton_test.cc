@@ -104,20 +104,34 @@ TEST(NewtonSolver, ReducesTheResidualWithoutAnEnergy)
   u(0) = 3.;
   u.compress(dealii::VectorOperation::insert);
   const auto evaluate = [](const Vector &at) { return State{std::abs(std::atan(at(0))), 1., 0.}; };
-  const continuum::NewtonSolver<State> newton({1e-12, 20, 10},
-                                              {evaluate, [](const State &, const Vector &) { return 0.; },
-                                               [](const State &, const Vector &at, double, Vector &step)
-                                               {
-                                                 step(0) = -std::atan(at(0)) * (1. + at(0) * at(0));
-                                                 step.compress(dealii::VectorOperation::insert);
-                                                 return continuum::NewtonStep{0, 0.};
-                                               },
-                                               nullptr, nullptr});
+  std::vector<bool> keeps;
+  double tangent_at = 0.;
+  const continuum::NewtonSolver<State> newton(
+    {1e-12, 20, 10}, {evaluate, [](const State &, const Vector &) { return 0.; },
+                      [&](const State &, const Vector &at, double, const bool keeps_tangent, Vector &step)
+                      {
+                        keeps.push_back(keeps_tangent);
+                        if (!keeps_tangent)
+                          tangent_at = at(0);
+                        step(0) = -std::atan(at(0)) * (1. + tangent_at * tangent_at);
+                        step.compress(dealii::VectorOperation::insert);
+                        return continuum::NewtonStep{0, 0.};
+                      },
+                      nullptr, nullptr});
   std::vector<continuum::NewtonIteration> history;
-  EXPECT_EQ(newton.solve(u, evaluate(u), 1, 1., 0, history), "");
+  State state = evaluate(u);
+  EXPECT_EQ(newton.solve(u, state, 1, 1., 0, history), "");
   EXPECT_LT(std::abs(u(0)), 1e-12);
+  EXPECT_EQ(state.free, std::abs(std::atan(u(0))));
+  // A tangent is kept while the residual falls a hundredfold.
+  ASSERT_EQ(keeps.size() + 1, history.size());
+  EXPECT_FALSE(keeps[0]);
+  EXPECT_TRUE(keeps.back());
   for (std::size_t i = 1; i < history.size(); ++i)
+  {
     EXPECT_LT(history[i].residual, history[i - 1].residual);
+    EXPECT_TRUE(i == keeps.size() || keeps[i] == (history[i].residual <= 0.01 * history[i - 1].residual));
+  }
 }
 
 } // namespace dynamic_newton_test
