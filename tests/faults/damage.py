@@ -42,12 +42,10 @@ def empty(content, rng):
 DAMAGES = (flip, cut, blank, lengthen, swap, empty)
 
 
-def damage_at_random(program, name, folder, rng, variants):
+def damage_at_random(name, folder, rng, variants):
     """@return statistics"""
     arguments = [*victims.VICTIMS[name], "--threads", "1"]
-    status, said = program.run(arguments, folder / "undisturbed")
-    if status not in victims.DONE:
-        raise RuntimeError(f"exit {status}: {said}")
+    victims.run_to_end(arguments, folder / "undisturbed")
     expected = victims.contents(folder / "undisturbed")
     whole = sorted((folder / "undisturbed" / "checkpoints").glob("*.h5"))
     out = folder / "damaged"
@@ -63,7 +61,7 @@ def damage_at_random(program, name, folder, rng, variants):
         content = bytearray(before)
         damage(content, rng)
         victim.write_bytes(content)
-        status, said = program.run([*arguments, "--resume"], out)
+        status, said = victims.run([*arguments, "--resume"], out)
         what = f"{name}: {damage.__name__}, {left} left: exit {status}: {said}"
         if status == 2:
             # Only the damaged checkpoint is left.

@@ -125,10 +125,3 @@ def test_says_when_there_was_no_running_crack(out):
                  "--set", "Near tip/interval=0", "--no-report")
     assert run.returncode in (0, 3), run.stderr
     assert [path.name for path in out.glob("near_tip*")] == []
-
-
-def test_refuses_a_window_that_holds_no_site(out):
-    run = latcon("fracture", CASES / "fig1.prm", "--output-dir", out, "--set", "Near tip/ahead=0.1 mm")
-    assert run.returncode == 2
-    assert "Near tip/ahead" in run.stderr
-    assert not out.exists()

@@ -23,7 +23,6 @@ SCREEN = 800  # height of a window [pixels]
 PLACE = (0.5e-6, SPACING / 2000 / 2)  # [m]
 SPEED = 0.5e-2  # [m/s]
 STRETCH = (0.5e-3, 2**0.5 / 2000)
-MARK = (0xab, 0x1f, 0x14)  # colour of the selection, --fails of style.css
 VALUES = re.compile(r"site (\d+): X (\S+) cm, Y (\S+) cm, x (\S+) cm, y (\S+) cm, speed (\S+) m/s, damage (\S+?)"
                     r"(?:; bond (\d+)–(\d+): stretch (\S+))?$")
 
