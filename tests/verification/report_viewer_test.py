@@ -13,7 +13,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from browser import Browser
 from made_up_sheet import FRAMES, SPACING, write_torn_sheet
-from report_test import HOLDS, REPORTED, main, write_verification
+from made_up_runs import HOLDS, REPORTED, main, write_verification
 
 from latcon.report import sheet_data
 from latcon.report.runs import read_motion, read_run

@@ -13,7 +13,7 @@ from PIL import Image
 
 import gallery
 from near_tip_plots_test import write_field
-from report_test import Page, main, write_fracture
+from made_up_runs import drawn, read_page, write_fracture
 
 from latcon.report import phase_map, study, study_plots
 from latcon.report.study_plots import MEASURED, NEAR_TIP, PATH, asked_quantities, draw_sweep
@@ -21,7 +21,6 @@ from latcon.report.study_runs import read_study
 
 QUANTITIES = {quantity: None for quantity, *_ in MEASURED + NEAR_TIP} | {"speed_laboratory": 40.0, "end_time": 3e-3}
 WITHOUT = {"Next-nearest neighbours/present": "false"}
-BLUE = np.array((0x00, 0x72, 0xB2))
 
 
 def made_up_seed(run, seed, pattern, state="measured", **values):
@@ -76,10 +75,8 @@ class MadeUpStudy:
         """The parsed page with the pictures of some runs, and its HTML."""
         self.document["pictures"] = list(pictures)
         self.read()
-        assert main(["study", str(self.folder), "--quiet"]) == 0
-        html = (self.folder / "study.html").read_text(encoding="utf-8")
-        page = Page(html)
-        assert page.open == []
+        drawn(self.folder, "--quiet", kind="study")
+        html, page = read_page(self.folder, "study.html")
         return page, html
 
 
