@@ -6,7 +6,6 @@ all files are compared with those of the uninterrupted run, byte for byte. LATCO
 import os
 import random
 import shlex
-import shutil
 import subprocess
 
 import pytest

@@ -125,6 +125,22 @@ def test_files_may_be_renamed_and_their_interval_changed(ended, out):
     assert step_told(out) == step
 
 
+@pytest.mark.parametrize("damage", [
+    lambda content: content[:1000] + bytes([content[1000] ^ 16]) + content[1001:],
+    lambda content: content[:-5] + bytes([content[-5] ^ 1]) + content[-4:], lambda content: content[:len(content) // 2],
+    lambda content: content[:700] + bytes(512) + content[1212:], lambda content: content + b"\0", lambda content: b""],
+    ids=["a bit", "a bit at the end", "half", "a sector of zeros", "a byte more", "nothing"])
+def test_older_one_is_taken_if_the_last_is_damaged(out, ended, damage):
+    shutil.copytree(ended, out)
+    expected = files(out)
+    first, last = checkpoints(out)
+    last.write_bytes(damage(last.read_bytes()))
+    run = run_to_end(out, "--resume")
+    assert re.search(f"{last}: it (was changed or damaged|is not a checkpoint)", run.stderr)
+    assert str(first) in run.stdout
+    expect_same(out, expected)
+
+
 def test_nothing_is_touched_if_none_can_be_used(out, ended):
     shutil.copytree(ended, out)
     first, last = checkpoints(out)
