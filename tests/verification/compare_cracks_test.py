@@ -11,6 +11,7 @@ from program import latcon, read_csv
 
 from latcon import UnreadableFile
 from latcon.compare import _read_crack as read_crack
+from latcon.quantities import number_text
 from latcon.study.program import InputError
 
 RUN = ["fracture", "quick", "--skip-verification", "--no-report", "--quiet", "--set", "Sheet/length=3 cm", "--set", "Sheet/height=1.5 cm"]
@@ -102,7 +103,9 @@ def test_the_page_shows_both_runs_and_which_failed_its_checks(tmp_path, pair, ou
         assert (out / found[f"{side}_folder"]).resolve() == folder.resolve()
     html = (out / "compare.html").read_text(encoding="utf-8")
     assert html.count('class="viewer"') == 2
-    assert "Loading/strain y" in html
+    speed = next(row for row in found["quantities"] if row["name"] == "speed_lagrangian")
+    for words in ("Loading/strain y", found["pattern"]["first"], "speed lagrangian", number_text(speed["first"], speed["first_uncertainty"])):
+        assert words in html
     assert re.search(r'failed its checks</b>: [^<]*energy imbalance over energy exchanged \(ledger\)', html)
     assert html.count("failed its checks") == 1
     compare(out, *pair)

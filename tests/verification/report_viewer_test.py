@@ -199,18 +199,15 @@ def test_both_sheets_show_the_same_time(tmp_path):
     for run in ("one", "other"):
         write_torn_sheet(folder / run)
     record = folder / "other" / "run.json"
-    record.write_text(record.read_text().replace('"3"', '"3.5"'))
+    record.write_text(record.read_text().replace('"3"', '"3.5"'))  # the breaking stretch
     listed = folder / "other" / "motion.pvd"
     frames = re.findall(r"<DataSet[^>]*>", listed.read_text())
     fewer = [frame for i, frame in enumerate(frames) if i % 3 != 1]
     listed.write_text("<VTKFile><Collection>" + "".join(fewer) + "</Collection></VTKFile>")
     times = [[time for time, _ in read_series(folder / run / "motion.pvd")] for run in ("one", "other")]
-    quantity = {"name": "wavelength", "unit": "m", "first": 0.02, "first_uncertainty": 1e-4, "second": 0.0212,
-                "second_uncertainty": None, "difference": 0.0012, "difference_over_uncertainty": None}
     document = {"first": "one", "second": "other", "first_folder": "../one", "second_folder": "../other",
-                "failed_checks": {"first": "", "second": "energy"},
-                "pattern": {"first": "oscillating", "second": "straight"}, "quantities": [quantity],
-                "entries": [{"key": "Loading/strain y", "unit": "1", "first": "1.8", "second": "1.9"}], "paths": None}
+                "failed_checks": {"first": "", "second": ""}, "pattern": {"first": "oscillating", "second": "straight"},
+                "quantities": [], "entries": [], "paths": None}
     (folder / "compare").mkdir()
     (folder / "compare" / "compare.json").write_text(json.dumps(document))
     assert main(["compare", str(folder / "compare"), "--quiet"]) == 0
@@ -236,11 +233,8 @@ def test_both_sheets_show_the_same_time(tmp_path):
         for name, (low, high) in ranges[0].items():
             assert [low, high] == [min(one[name][0] for one in own), max(one[name][1] for one in own)]
             assert ranges[1][name] == [low, high]
-        text = browser.value("document.body.innerText")
+        assert f"{len(fewer)} frames" in browser.value("document.body.innerText")
         assert browser.said == []
-    for words in (f"{len(fewer)} frames", "2.000 ± 0.010", "2.12", "oscillating", "straight", "Loading/strain y",
-              "other failed its checks"):
-        assert words in text
 
 
 def test_a_damaged_comparison_is_bad_input(tmp_path):
