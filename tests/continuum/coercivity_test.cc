@@ -1,7 +1,8 @@
 // The lifted gradient energy: never negative, and stable where laws stiffen, cells are skewed and normal gradients
 // jump.
 #include "continuum/errors.h"
-#include "sheets.h"
+#include "continuum/rate_forces.h"
+#include "moving_sheets.h"
 
 #include <deal.II/grid/grid_tools.h>
 
@@ -14,7 +15,7 @@ namespace coercivity_test
 {
 
 using namespace latcon;
-using namespace sheets;
+using namespace moving_sheets;
 using continuum::Constitution;
 using continuum::StaticSettings;
 using continuum::StaticSolver;
@@ -76,25 +77,37 @@ TEST(GradientEquilibrium, HasNoNegativeGradientEnergy)
 
 // The lifting of a kink u_y = s max(0, X - a) along a column of faces in a strip of squares of side h that is periodic
 // along Y: in both cells beside a face, whose n is 4, R is a polynomial of degree p - 1 across the face with the
-// squared mean (s p / 2 h)^2, so that W_g = c |G|^2 / 2 has the energy n c s^2 p^2 / 4 h per length of the column.
-// theory-continuum.md, eq. (C.59).
+// squared mean (s p / 2 h)^2, so that W_g = c |G|^2 / 2 has the energy n c s^2 p^2 / 4 h per length of the column, and
+// dashpots at rest dissipate n p^2 / 2 h times the power of the rate s e_y (x) NN. theory-continuum.md, eqs. (C.59) and
+// (C.63).
 TEST(GradientEquilibrium, LiftsAKinkAsInClosedForm)
 {
   const continuum::CauchyBorn law = rubber_network();
   const continuum::IsotropicGradient gradient(5e5, 0.01);
+  const continuum::FibreViscosity local_dashpots = network_viscosity(300.);
+  const continuum::FibreViscosity dashpots = network_viscosity(300., 0.01);
   constexpr double h = 0.02, s = 0.3, n = 4.;
+  continuum::FieldDerivatives rate{};
+  rate[1][continuum::n_first] = s;
+  continuum::PointIntegrand power;
+  continuum::clear(power, continuum::Order::value);
+  dashpots.gradient()->add_density({}, rate, continuum::Order::value, 0., power);
   for (const unsigned int p : {2u, 3u, 4u})
   {
     RectangleMesh mesh({4. * h, 2. * h, 4, 2, false, true});
-    continuum::BoundaryConditions periodic;
-    periodic.periodic = {{continuum::edge::bottom, continuum::edge::top, 1}};
+    continuum::BoundaryConditions along_y;
+    along_y.periodic = {{continuum::edge::bottom, continuum::edge::top, 1}};
     Constitution laws(law, gradient);
     laws.penalty = 0.;
-    const continuum::Sheet with(mesh, laws, p, periodic), without(mesh, law, p, periodic);
+    const continuum::Sheet with(mesh, laws, p, along_y), without(mesh, law, p, along_y);
     const auto u = nodal(with, [](const Point<2> &X) { return Tensor<1, 2>({0., s * std::max(0., X[0] - 2. * h)}); });
     const double expected = n * gradient.modulus() * s * s * p * p / (4. * h) * 2. * h;
     // Round-off of two energies of the order of 1e3 J/m.
     EXPECT_NEAR(with.energy(u) - without.energy(u), expected, 1e-11 * without.energy(u)) << p;
+    const double of_stretches =
+      continuum::RateForces(with, &local_dashpots, nullptr).dissipation(with.make_ghosted(), u, {});
+    const double of_both = continuum::RateForces(with, &dashpots, nullptr).dissipation(with.make_ghosted(), u, {});
+    EXPECT_NEAR(of_both - of_stretches, power.value * n * p * p / (2. * h) * 2. * h, 1e-10 * of_both) << p;
   }
 }
 

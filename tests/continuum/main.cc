@@ -25,8 +25,7 @@ std::string filter(const std::string &given)
   if (support::n_ranks() == 1)
     return given + (given.find('-') == std::string::npos ? "-" : ":") + "*Ranks.*";
   const bool has_names = !given.empty() && given != "*" && given.front() != '-';
-  return (has_names ? "" : "*Ranks.*:Assembly.*:RateForces.*:MotionArchive.*:GradientMemory.*") +
-         (given == "*" ? "" : given);
+  return (has_names ? "" : "*Ranks.*:Assembly.*:*ForcesOfRates.*:MotionArchive.*") + (given == "*" ? "" : given);
 }
 } // namespace
 
