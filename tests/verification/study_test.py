@@ -168,9 +168,11 @@ class TestStudy(Studies):
         assert [line["state"] for line in read_csv(self.out / "study.csv")] == ["failed", "measured"]
         process = self.start("--resume", change=longer)
         assert wait_for(child, process)
+        (run,) = child()
         process.kill()
         process.wait()
-        time.sleep(0.5)
+        while os.path.exists(f"/proc/{run}/exe"):  # it ends with its study
+            time.sleep(0.01)
         self.study("--resume", change=longer)
         assert self.text("study.csv") == whole
         assert not list(self.out.glob("runs/*.part"))
