@@ -124,6 +124,7 @@ State random_state(const TriangularLattice &sheet, const Material &material, uns
 
 const std::vector<double> retraction{1.3, 1.35, 1.4, 1.3, 1.35, 1.4, 1.3, 1.35, 1.4};
 
+// With the memory of bonds: theory.md, eq. (L.27).
 TEST(Forces, AreThoseOfTheReference)
 {
   bool some_retract_alone = false;

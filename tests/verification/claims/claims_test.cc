@@ -47,7 +47,6 @@ class HeldClaim : public testing::TestWithParam<std::pair<const char *, Check>>
 };
 
 // The excess is there, with its sign: the gradient continuum holds more energy than the local one, the lattice less.
-// theory-comparison.md, eqs. (W.4) and (W.5).
 void expect_that_the_local_energy_is_between(const Table &table)
 {
   const auto column = [&](const std::string &name)
@@ -88,6 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
                   std::pair("nonlocal", [](const Case &, const Subject &s)
                             { return nonlocal_claim(s, parts::nonlocal_options(s)); })));
 
+// Among them theory-comparison.md, eqs. (W.4) and (W.5).
 TEST_P(HeldClaim, HoldsForBothShellSetsAcrossTheCrack)
 {
   faults::expect_holds(GetParam().second);
