@@ -214,7 +214,7 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
       return rise;
     };
     Residual state = best_residual(step, predicted(1.), predicted(0.), u);
-    // With it, a solution with the tangent of the last one reaches the usual tolerance of a step.
+    // So exact that one further solution, with a kept tangent, reaches the usual tolerance of a step.
     constexpr double largest_forcing = 1e-5;
     Vector tangent_at; // mean displacement of the tangent
     const auto solve =

@@ -199,7 +199,7 @@ TEST(ViscoelasticWaves, FollowTheComplexModulus)
   const ClaimOutcome nearest = viscoelastic_waves_claim(subject(input, subjects::nearest_only(input)), options);
   expect_holds(nearest.results);
   EXPECT_EQ(nearest.results.rows().size(), 15u); // nine of closed forms and the lattice, six of finite elements
-  options.states = {input.deformation()};        // with both shells
+  options.states.push_back(input.deformation());
   options.element_frequencies = {};
   expect_holds(viscoelastic_waves_claim(subject(input), options).results);
 }
