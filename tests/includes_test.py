@@ -1,14 +1,8 @@
 """Includes and namespaces follow docs/architecture.md: a folder includes only those that ALLOWED gives it, and no library that
-LIBRARIES keeps from it or HEADERS from its headers; a source opens no namespace of another folder than its own; and
-docs/pictures/includes.svg is the graph of the sources (`cmake --build build/release --target include_graph` draws it).
+LIBRARIES keeps from it or HEADERS from its headers, and a source opens no namespace of another folder than its own.
 """
-import collections
-import html
 import pathlib
 import re
-import subprocess
-
-import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 
@@ -56,9 +50,6 @@ NAMESPACE = re.compile(r"^namespace latcon::(\w+)", re.MULTILINE)
 # Opened to declare names of another folder, whose header is not included.
 DECLARATION = re.compile(r"^namespace latcon::\w+\n\{\n(?:(?:class|struct) \w+;\n)+\}", re.MULTILINE)
 ROOTS = ("support", "lattice", "continuum", "verification", "tests")
-PICTURE = "docs/pictures/includes.svg"
-# Side of the comparison, by the start of a folder's name, and its colour.
-COLOURS = {"support": "#cfe3c0", "lattice": "#f4c7a1", "continuum": "#a9cbe8", "verification": "#e4e4e4"}
 
 
 def included(text):
@@ -110,37 +101,6 @@ def sources():
     return [(folder, path) for path in files if rule(folder := str(path.relative_to(ROOT).parent))]
 
 
-def graph():
-    """Pairs (folder, included folder) without those implied by others; main.cc, which is above all folders, is omitted."""
-    after = collections.defaultdict(set)
-    for folder, path in sources():
-        if folder != "verification" and folder.split("/")[0] != "tests":
-            others = {rule(str(pathlib.PurePosixPath(name).parent)) for name in included(path.read_text())}
-            after[rule(folder)] |= others - {None, rule(folder)}
-
-    def reached(folder):
-        return after[folder].union(*(reached(other) for other in after[folder]))
-
-    return {(folder, other) for folder in list(after) for other in after[folder]
-            if not any(other in reached(step) for step in set(after[folder]))}
-
-
-def drawing(pairs):
-    """The graph in Graphviz' language."""
-    lines = ["digraph {", 'graph [bgcolor=white, nodesep=0.25, ranksep=0.4]', 'edge [color="#555555", arrowsize=0.7]',
-             'node [shape=box, style="filled,rounded", fontname="DejaVu Sans", fontsize=11, penwidth=0]']
-    for folder in sorted({folder for pair in pairs for folder in pair}):
-        lines.append(f'"{folder}" [label="{folder}/", fillcolor="{COLOURS[folder.split("/")[0]]}"]')
-    lines += [f'"{folder}" -> "{other}"' for folder, other in sorted(pairs)]
-    return "\n".join([*lines, "}"])
-
-
-def drawn(picture):
-    """The pairs that a picture made by Graphviz shows."""
-    titles = re.findall(r"<title>(.*?)</title>", picture)
-    return {tuple(html.unescape(title).split("->")) for title in titles if "->" in html.unescape(title)}
-
-
 def test_folders_are_listed_above_those_that_include_them():
     order = list(ALLOWED)
     assert [folder for folder, others in ALLOWED.items() if any(order.index(other) >= order.index(folder) for other in others)] == []
@@ -161,11 +121,3 @@ def test_sources_include_what_their_folder_may():
 def test_namespaces_follow_folders():
     assert [f"{path.relative_to(ROOT)} opens latcon::{name}" for folder, path in sources()
             if folder != "verification" and folder.split("/")[0] != "tests" for name in wrong_namespaces(folder, path.read_text())] == []
-
-
-def test_picture_is_the_graph_of_the_sources():
-    assert drawn((ROOT / PICTURE).read_text()) == graph()
-
-
-if __name__ == "__main__":
-    (ROOT / PICTURE).write_text(subprocess.run(["dot", "-Tsvg"], input=drawing(graph()), capture_output=True, text=True, check=True).stdout)
