@@ -101,7 +101,7 @@ class Program:
 def run(arguments, out, timeout=600):
     """Like Program.run, in a fork, for uninterrupted runs on one thread."""
     try:
-        ended = latcon(*arguments, "--output-dir", out, timeout=timeout)
+        ended = latcon(*arguments, "--output-dir", out, timeout=timeout, expect=None)
     except subprocess.TimeoutExpired:
         return "hangs", ""
     return ended.returncode, ended.stderr

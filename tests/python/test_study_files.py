@@ -1,6 +1,7 @@
 """Study files, sweeps, shards and pools of processes."""
 import json
 import os
+import pathlib
 import sys
 import time
 
@@ -27,24 +28,6 @@ def program():
     ("Sheet/orientation=rows-along-crack, rows-across-crack", ["rows-along-crack", "rows-across-crack"])])
 def test_sweeps_are_grids_or_lists(program, text, values):
     assert parse_sweep(program, text).values == values
-
-
-@pytest.mark.parametrize("text, part", [
-    ("Loading/strain z=1:2:3", "'Loading/strain z' is not an entry of a case; nearest: Loading/strain"),
-    ("Loading/strain y", "expected Section/Name=START:STOP:COUNT"), ("Loading/strain y=1:2", "'1:2' has 2 parts"),
-    ("Loading/strain y=a:2:3", "START 'a': not a number"), ("Loading/strain y=1:2 cm:3", "STOP '2 cm': wrong unit"),
-    ("Loading/strain y=1::3", "STOP is empty"), ("Loading/strain y=1:2:1", "COUNT '1' must be a whole number from 2"),
-    ("Loading/strain y=1:2:2.5", "COUNT '2.5'"), ("Loading/strain y=2:2:3", "START and STOP must differ"),
-    ("Sheet/height=1 cm:20 mm:3", "must have the same unit"), ("Sheet/orientation=1:2:3", "Sheet/orientation is not a number"),
-    ("Loading/strain y=1,,2", "value 2 is empty"), ("Loading/strain y=-1e308:1e308:3", "are too far apart"),
-    ("Loading/strain y=1,2,1", "the value 1 is given twice"), ("Loading/strain x=0,-0", "the value -0 is given twice, also as 0"),
-    ("Sheet/height=2 cm,3 cm,0.02 m", "the value 0.02 m is given twice, also as 2 cm"),
-    ("Loading/strain y=1", "expected two values or more; for one value use --set"),
-    ("Lattice/noise seed=1,2", "seeds are set by --seeds")])
-def test_messages_name_the_wrong_part_of_a_sweep(program, text, part):
-    with pytest.raises(InputError) as error:
-        parse_sweep(program, text)
-    assert part in str(error.value)
 
 
 def test_sweeps_give_all_combinations_as_a_study_file(program):
@@ -92,31 +75,24 @@ def test_quick_versions_of_sweeps(program):
     assert [run.seeds for run in quick.runs] == [[7]] * 3 and quick.left_out == ["height-3cm"]
 
 
-@pytest.mark.parametrize("change, problem", [
-    ({"titel": "x"}, "s.json: unknown key 'titel'; nearest: title; known: title, base"), ({"title": ""}, 's.json: title: must be a non-empty text, not ""'),
-    ({"set": {"Sheet/hight": 1}}, "s.json: set/Sheet/hight: not an entry of a case; nearest: Sheet/height"),
-    ({"set": {"Lattice/noise seed": 1}}, 'set/Lattice/noise seed: is set by "seeds"'), ({"seeds": [1, 1]}, "seeds/2: this seed is given twice"),
-    ({"seeds": [-1]}, "seeds/1: must be a whole number >= 0"), ({"refine": 7}, "refine: must be a whole number from 0 to 6"),
-    ({"runs": {".x": {}}}, "must not begin with '.'"), ({"runs": {"height-2cm": {}}}, "a run of the sweep has this name"),
-    ({"pictures": ["none"]}, "pictures/1: 'none' is not a known run"),
-    *[({"claims": [{"claim": "c", "rows": [{"run": "own", "quantity": "amplitude", **row}]}]}, problem) for row, problem in (
-        ({"is": "straight"}, 'this rule is only for the quantity "pattern"'), ({"rises": True}, 'this rule needs "against"'),
-        ({"above": 1, "below": 2}, 'a row can have only one rule; the second one is "below"'), ({"is near": 1}, "must be given together"),
-        ({"is near": 0, "tolerance": 1}, "must not be 0, because the tolerance is relative"), ({"above": {}}, 'must be a number or {"run": NAME}'),
-        ({"against": "Sheet"}, "must be zeta or an entry of a case"), ({"runs": ["own"]}, 'a row needs either "run" or "runs"'))]])
-def test_problems_of_study_files_name_their_place(program, change, problem):
-    with pytest.raises(InputError) as error:
-        read_study(program, "s.json", False, json.dumps(GOOD | change).encode())
-    assert problem in str(error.value)
+def problems():
+    lines = [line for line in pathlib.Path(__file__).with_name("study_problems.txt").read_text().splitlines() if line and line[0] != "#"]
+    for case, part in zip(lines[::2], lines[1::2], strict=True):
+        yield pytest.param(*case.split(" ", 1), part[2:], id=case)
+    for text, part in (("[" * 99999, "nested deeper"), ("{}\0", "s.json:1: not a text file"), ("[" * 100 + "]" * 100, "nested deeper than 64")):
+        yield pytest.param("text", text, part, id=part)
 
 
-@pytest.mark.parametrize("text, problem", [
-    ("{", "s.json: not JSON: Expecting"), ("{\"a\": NaN}", "NaN is not a number of JSON"), ("[" * 99999, "nested deeper"), ("{}\0", "s.json:1: not a text file"), ("[]", "a study must be a JSON object"), ('{"a": {"b": 1, "b": 2}}', "the key 'b' occurs twice"),
-    ("[" * 100 + "]" * 100, "nested deeper than 64")])
-def test_files_that_are_no_json_objects(program, text, problem):
+@pytest.mark.parametrize("kind, text, part", problems())
+def test_problems_name_their_place(program, kind, text, part):
+    if kind == "row":
+        kind, text = "study", json.dumps({"claims": [{"claim": "c", "rows": [{"run": "own", "quantity": "amplitude", **json.loads(text)}]}]})
     with pytest.raises(InputError) as error:
-        read_study(program, "s.json", False, text.encode())
-    assert problem in str(error.value)
+        if kind == "sweep":
+            parse_sweep(program, text)
+        else:
+            read_study(program, "s.json", False, (json.dumps(GOOD | json.loads(text)) if kind == "study" else text).encode())
+    assert part in str(error.value)
 
 
 def planned(name, seconds):

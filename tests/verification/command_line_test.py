@@ -20,7 +20,6 @@ BARE = [*TINY, "--no-report"]
 def printed(module_path):
     """What the crack that ended well printed."""
     run = latcon("fracture", CASES / "quick.prm", "--output-dir", module_path / "out", *TINY)
-    assert run.returncode == 0, run.stderr
     assert "\r" not in run.stderr  # no progress line without a terminal
     return run.stdout
 
@@ -61,7 +60,6 @@ def test_ends_with_its_result(once, printed):
 
 def test_verbose_prints_every_row(out):
     run = latcon("fracture", CASES / "quick.prm", "--output-dir", out, *BARE[:4], "--no-report", "--set", "Time/end=0.01 ms", "--verbose")
-    assert run.returncode == 0, run.stderr
     rows = json.loads((out / "results.json").read_text())["claims"]
     lines = run.stdout.splitlines()
     header = next(number for number, line in enumerate(lines) if line.startswith("claim  "))
@@ -164,7 +162,6 @@ def test_frames_open_outside_latcon_with_times_and_fields(once):
 
 def test_resolved_case_is_the_case(once):
     again = latcon("fracture", once / "case.prm", "--dry-run", "--output-dir", once.parent / "none")
-    assert again.returncode == 0, again.stderr
     resolved = (once / "case.prm").read_text()
     assert resolved.strip() in again.stdout
     assert not (once.parent / "none").exists()
@@ -177,8 +174,7 @@ def test_size_of_frames(once):
 
 
 def test_lattice_has_the_hole_and_the_free_sides_of_the_case(out):
-    run = latcon("lattice", CASES / "hole.prm", "--output-dir", out)
-    assert run.returncode == 0, run.stderr
+    latcon("lattice", CASES / "hole.prm", "--output-dir", out)
     dry = latcon("lattice", CASES / "hole.prm", "--dry-run")
     sheet = read(vtk.vtkXMLPolyDataReader(), frames(out / "lattice.pvd")[-1][1])
     removed = 97 * 75 - 37 - sheet.GetNumberOfPoints()  # 75 rows of 97 and 96 sites in turn
@@ -197,9 +193,8 @@ def test_lattice_has_the_hole_and_the_free_sides_of_the_case(out):
 
 
 def test_motion_conserves_energy(out):
-    run = latcon("lattice", CASES / "quick.prm", "--output-dir", out, "--set", "Lattice/solution=motion",
-                 "--set", "Time/end=0.2 ms")
-    assert run.returncode == 0, run.stderr
+    latcon("lattice", CASES / "quick.prm", "--output-dir", out, "--set", "Lattice/solution=motion",
+           "--set", "Time/end=0.2 ms")
     ledger = read_csv(out / "energy.csv")
     assert len(ledger) > 3
     assert list(ledger[0]) == ["t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance"]
@@ -209,33 +204,17 @@ def test_motion_conserves_energy(out):
     assert float(row["error"]) > 0
 
 
-def test_bad_command_line_is_2():
-    for arguments in [[], ["fly"], ["verify", "everything"], ["lattice"], ["lattice", "--colour"],
-                      ["verify", "--threads", "0"]]:
-        assert latcon(*arguments).returncode == 2, arguments
-
-
-def test_folder_in_the_home_that_no_shell_expanded_is_2(tmp_path):
-    for arguments in (["lattice", CASES / "hole.prm", "--output-dir=~/run"], ["init", "~/g"], ["init", "~"]):
-        run = latcon(*arguments, cwd=tmp_path)
-        assert run.returncode == 2, arguments
-        assert "~" in run.stderr
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_program_copied_without_its_data_is_5(tmp_path):
     copy = pathlib.Path(shutil.copy(LATCON, tmp_path / "latcon"))
     (tmp_path / "run").mkdir()
-    run = latcon("report", tmp_path / "run", program=copy)
-    assert run.returncode == 5
+    run = latcon("report", tmp_path / "run", program=copy, expect=5)
     assert "share/latcon" in run.stderr
 
 
 def test_step_four_times_too_long_fails_by_its_ledger(out):
     chebyshev = ["--skip-verification", *BARE, "--set", "Time/integrator=runge-kutta-chebyshev"]
     for step, code in (("auto", 0), (4 * 3.7e-6, 3)):
-        run = latcon("fracture", CASES / "quick.prm", "--output-dir", out, *chebyshev, "--set", f"Time/step={step}")
-        assert run.returncode == code, run.stderr
+        latcon("fracture", CASES / "quick.prm", "--output-dir", out, *chebyshev, "--set", f"Time/step={step}", expect=code)
         energy = read_csv(out / "energy.csv")
         spent = sum(float(energy[-1][name]) for name in ("broken", "viscous")) - float(energy[0]["broken"])
         crack = json.loads((out / "crack.json").read_text())
@@ -246,20 +225,18 @@ def test_step_four_times_too_long_fails_by_its_ledger(out):
 def test_noise_that_decays_in_steps_too_long_fails_by_its_ledger(out):
     """Automatic steps of Runge-Kutta-Chebyshev miss the energy of about two of them (theory.md, eq. (L.40))."""
     for step, code in (("auto", 0), (4 * 3.7e-6, 3)):
-        run = latcon("lattice", CASES / "quick.prm", "--output-dir", out, "--set", "Lattice/solution=motion", "--set",
-                     "Time/integrator=runge-kutta-chebyshev", "--set", "Time/end=1 ms", "--set", f"Time/step={step}")
-        assert run.returncode == code, run.stderr
+        latcon("lattice", CASES / "quick.prm", "--output-dir", out, "--set", "Lattice/solution=motion", "--set",
+               "Time/integrator=runge-kutta-chebyshev", "--set", "Time/end=1 ms", "--set", f"Time/step={step}", expect=code)
         row = [row for row in read_csv(out / "results.csv") if row["quantity"] == "energy imbalance over energy exchanged"][0]
         assert row["verdict"] == ("fails" if code else "holds")
         assert row["reason"] != ""
 
 
 def test_slit_runs_between_ends_that_absorb(out):
-    run = latcon("fracture", CASES / "quick.prm", "--output-dir", out, *BARE, "--skip-verification", "--set",
-                 "Fracture/left end=free", "--set", "Fracture/right end=absorbing", "--set",
-                 "Fracture/seed shape=slit", "--set", "Fracture/seed length=4 mm", "--set",
-                 "Fracture/seed height=2 mm")
-    assert run.returncode == 0, run.stderr
+    latcon("fracture", CASES / "quick.prm", "--output-dir", out, *BARE, "--skip-verification", "--set",
+           "Fracture/left end=free", "--set", "Fracture/right end=absorbing", "--set",
+           "Fracture/seed shape=slit", "--set", "Fracture/seed length=4 mm", "--set",
+           "Fracture/seed height=2 mm")
     crack = json.loads((out / "crack.json").read_text())
     assert crack["energy_imbalance"] < 1e-5
     assert crack["skip_verification"] and json.loads((out / "run.json").read_text())["skip_verification"]
@@ -273,8 +250,7 @@ def test_slit_runs_between_ends_that_absorb(out):
 
 def test_claim_that_fails_is_3(out):
     run = latcon("fracture", CASES / "quick.prm", "--output-dir", out, *BARE, "--skip-verification", "--set",
-                 "Reference/speed=1 m/s")
-    assert run.returncode == 3, run.stderr
+                 "Reference/speed=1 m/s", expect=3)
     assert re.search(r"1 of 2 checks fails:\n  fracture: Lagrangian crack speed: error .*, tolerance 0.2\n"
                                  r"fracture \S+ s; .*\n\Z", run.stdout)
     assert (out / "crack.json").exists()
@@ -283,5 +259,5 @@ def test_claim_that_fails_is_3(out):
 def test_unwritable_place_is_5(tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("in the way")
-    assert latcon("lattice", CASES / "quick.prm", "--output-dir", blocked / "out").returncode == 5
+    latcon("lattice", CASES / "quick.prm", "--output-dir", blocked / "out", expect=5)
     assert blocked.read_text() == "in the way"

@@ -19,8 +19,7 @@ def stiffening(ratio):
 # Shear A (1 - cosh(Y/l) / cosh(H/2l)) about the middle, of mean 1, and traction mu A.
 def sheared(out, *entries):
     """Length and height of the sheet, results, points and displacement."""
-    run = latcon("continuum", LAYER, "--output-dir", out, "--quiet", *settings(*entries))
-    assert run.returncode == 0, run.stderr
+    latcon("continuum", LAYER, "--output-dir", out, "--quiet", *settings(*entries))
     mesh = last_mesh(out)
     points = points_of(mesh)
     # Whole rows of the lattice; the file has seven digits.
@@ -93,10 +92,9 @@ def test_is_the_mean_of_the_bonds_and_close_to_the_lattice(tmp_path):
     found = {}
     for law, gradient in (("mooney-rivlin-network", "network"), ("cauchy-born", "lattice")):
         out = tmp_path / law
-        run = latcon("continuum", CASES / "quick.prm", "--output-dir", out, "--quiet",
-                     *settings("Sheet/length=2 cm", "Sheet/height=1.5 cm", f"Continuum/law={law}",
-                               f"Continuum/gradient={gradient}", "Continuum/cells x=3", "Continuum/cells y=2"))
-        assert run.returncode == 0, run.stderr
+        latcon("continuum", CASES / "quick.prm", "--output-dir", out, "--quiet",
+               *settings("Sheet/length=2 cm", "Sheet/height=1.5 cm", f"Continuum/law={law}",
+                         f"Continuum/gradient={gradient}", "Continuum/cells x=3", "Continuum/cells y=2"))
         found[law] = results(out)
     extent = np.ptp(points_of(last_mesh(out)), axis=0)
     energy, P = mean_rod(np.diag([2.3, 2.8]), 1e5, 1.5e5)
@@ -115,7 +113,6 @@ def test_is_the_mean_of_the_bonds_and_close_to_the_lattice(tmp_path):
 def once(module_path):
     """Folder of the sheet with a hole."""
     run = latcon("continuum", HOLE, "--output-dir", module_path / "out", *settings("Continuum/adaptive cycles=6"))
-    assert run.returncode == 0, run.stderr
     assert "cycle 6" in run.stdout
     return module_path / "out"
 
@@ -200,8 +197,7 @@ def test_cells_are_small_at_the_rim(once):
 def test_reaction_that_does_not_settle_is_3(once):
     out = once.parent / "absurd"
     run = latcon("continuum", HOLE, "--output-dir", out,
-                 *settings("Continuum/adaptive cycles=1", "Continuum/reaction tolerance=1e-12"))
-    assert run.returncode == 3, run.stderr
+                 *settings("Continuum/adaptive cycles=1", "Continuum/reaction tolerance=1e-12"), expect=3)
     assert "fails" in run.stdout
     assert json.loads((out / "run.json").read_text())["exit_code"] == 3
 
@@ -213,18 +209,16 @@ FIG1 = ("Loading/strain x=1.3", "Loading/strain y=1.8")
 def test_large_strain_is_carried_with_gradient_energy(once):
     for law, gradient in (("cauchy-born", "lattice"), ("mooney-rivlin-network", "network")):
         out = once.parent / law
-        run = latcon("continuum", HOLE, "--output-dir", out,
-                     *settings(*FIG1, f"Continuum/law={law}", f"Continuum/gradient={gradient}",
-                               "Continuum/adaptive cycles=5"))
-        assert run.returncode == 0, run.stderr
+        latcon("continuum", HOLE, "--output-dir", out,
+               *settings(*FIG1, f"Continuum/law={law}", f"Continuum/gradient={gradient}",
+                         "Continuum/adaptive cycles=5"))
         assert results(out)["largest area ratio"] > 6.
 
 
 def test_loading_that_cannot_be_carried_is_4(once):
     run = latcon("continuum", HOLE, "--output-dir", once.parent / "torn",
                  *settings(*FIG1, "Continuum/law=mooney-rivlin", "Continuum/gradient=none",
-                           "Continuum/refinements=2", "Continuum/adaptive cycles=0"))
-    assert run.returncode == 4, run.stderr
+                           "Continuum/refinements=2", "Continuum/adaptive cycles=0"), expect=4)
     for part in ["equilibrium was found beyond load factor 0.", "rejected", "converged", "iteration  0  residual"]:
         assert part in run.stdout + run.stderr
     assert "no static equilibrium was found" in run.stderr

@@ -24,7 +24,6 @@ def command(folder, *more, entries=None, side="continuum"):
 
 def run_to_end(out, *more, **keywords):
     run = latcon(*command(out, *more, **keywords))
-    assert run.returncode == 0, run.stderr
     return run
 
 
@@ -56,7 +55,7 @@ def test_six_directions_at_the_spacing_of_the_lattice_are_the_lattice(out, tmp_p
 
 def test_files(whole, out):
     shutil.copytree(whole, out)
-    assert latcon("report", out, "--quiet").returncode == 0
+    latcon("report", out, "--quiet")
     crack, run = (json.loads((out / name).read_text()) for name in ("crack.json", "run.json"))
     assert crack["side"] == run["side"] == "continuum"
     assert run["half_bonds"] == 30 and run["grid_spacing_m"] == pytest.approx(0.5e-3)
@@ -100,8 +99,7 @@ def test_frames_and_bonds_are_where_scattered_points_are(scattered):
 
 def test_checkpoint_of_the_other_side_is_refused(on_lattice, out):
     shutil.copytree(on_lattice, out)
-    run = latcon(*command(out, "--resume"))
-    assert run.returncode == BAD_INPUT
+    run = latcon(*command(out, "--resume"), expect=BAD_INPUT)
     assert "fracture --side continuum" in run.stderr
 
 
@@ -109,13 +107,8 @@ def test_entries_of_the_continuum_do_not_concern_the_lattice(out):
     run_to_end(out, "--dry-run", side="lattice", entries={**THE_LATTICE, "Fracture/right end": "absorbing"})
 
 
-def test_there_are_two_sides(out):
-    assert latcon(*command(out, side="both")).returncode == BAD_INPUT
-
-
 def test_dry_run(out):
     run = latcon(*command(out, "--dry-run"))
-    assert run.returncode == 0, run.stderr
     assert "# nonlocal continuum: 2013 sites" in run.stdout
     assert not out.exists()
 
@@ -128,8 +121,7 @@ def test_ends_without_load_and_a_history(out):
 
 
 def test_comparison_with_the_lattice(tmp_path, whole, on_lattice):
-    run = latcon("compare", on_lattice, whole, "--output-dir", tmp_path / "both", "--no-report")
-    assert run.returncode == 0, run.stderr
+    latcon("compare", on_lattice, whole, "--output-dir", tmp_path / "both", "--no-report")
     assert [row["quantity"] for row in read_csv(tmp_path / "both" / "compare.csv")].count("speed_lagrangian") == 1
     compared = json.loads((tmp_path / "both" / "compare.json").read_text())
     assert compared["side"] == {"first": "lattice", "second": "continuum"}
@@ -145,7 +137,6 @@ def test_study_of_both_sides(tmp_path, out):
     def study(*more):
         path.write_text(json.dumps(document))
         run = latcon("study", path, "--skip-verification", "--no-report", "--output-dir", out, *more)
-        assert run.returncode == 0, run.stdout + run.stderr
         return run.stdout
 
     def sides():

@@ -13,7 +13,6 @@ def settings(*entries):
 def memory(*arguments):
     """Estimated peak memory and the part that the program uses before the run, both in bytes."""
     run = latcon(*arguments, "--dry-run")
-    assert run.returncode == 0, run.stderr
     line, = re.findall("^# memory: .*$", run.stdout, re.M)
     peak, own = re.fullmatch(r"# memory: about (\d+) bytes .* itself takes (\d+) bytes; available: .*", line).groups()
     return int(peak), int(own)
@@ -22,8 +21,7 @@ def memory(*arguments):
 def assert_foreseen(out, *arguments):
     """Checks the estimate to a factor of two, without the memory of the libraries."""
     peak, own = memory(*arguments)
-    run = latcon(*arguments, "--output-dir", out, "--quiet")
-    assert run.returncode in (0, 3), run.stderr  # a ledger does not close within two steps
+    latcon(*arguments, "--output-dir", out, "--quiet", expect=(0, 3))
     taken = json.loads((out / "run.json").read_text())["peak_memory_bytes"]
     assert taken - own > 5e7  # large enough for a meaningful difference
     assert peak - own > 0.5 * (taken - own)
@@ -49,19 +47,14 @@ def test_what_does_not_fit_is_refused_with_its_number(out):
                               ("fracture", "Sheet/length=40 m", "Sheet/height=25 m"),
                               ("continuum", "Continuum/cells x=8192", "Continuum/cells y=8192")]:
         for mode in [[], ["--dry-run"]]:
-            run = latcon(command, CASES / "quick.prm", "--output-dir", out, *settings(*entries), *mode)
-            assert run.returncode == 2, run.stderr
+            run = latcon(command, CASES / "quick.prm", "--output-dir", out, *settings(*entries), *mode, expect=2)
             assert re.search(r"not enough memory: .* about \d{11,} bytes", run.stderr)
             assert not out.exists()
             assert ("# memory: about" in run.stdout) == bool(mode)
-    run = latcon("continuum", CASES / "quick.prm", *settings("Continuum/cells x=65536", "Continuum/cells y=65536"))
-    assert run.returncode == 2
-    assert "unknowns" in run.stderr
 
 
 def test_ranks_say_it_once():
     run = latcon_on_ranks(2, "continuum", CASES / "quick.prm", "--dry-run", "--threads", 1)
-    assert run.returncode == 0, run.stderr
     for line in ("subsection Sheet", "# time: about", "# memory: about"):
         assert run.stdout.count(line) == 1
 

@@ -10,26 +10,14 @@ FINE = ["--set", "Sheet/spacing=0.01 mm"]  # months of computing
 
 
 def refused(*arguments, **keywords):
-    run = latcon(*arguments, **keywords)
-    assert (run.returncode, run.stdout) == (2, ""), run.stderr
+    run = latcon(*arguments, **keywords, expect=2)
+    assert run.stdout == ""
     return run.stderr.strip()
 
 
-def test_typing_errors_have_a_nearest_word():
-    for arguments, message in [
-            (["fractur", "quick"], "unknown command 'fractur'; nearest: fracture; see latcon --help"),
-            (["fracture", "--sets=a", "quick"], "unknown option --sets; nearest: --set; see latcon fracture --help"),
-            (["--outptu-dir", "x", "verify"], "unknown option --outptu-dir; nearest: --output-dir; see latcon verify --help"),
-            (["verify", "--quik"], "unknown option --quik; nearest: --quick; see latcon verify --help"),
-            (["report", "a", "b"], "unexpected argument 'b'; see latcon report --help"),
-            (["entries", "fractur"], "no section 'fractur'; nearest: Fracture"),
-            (["help", "Fracture/toughning"], "no command, section or entry 'Fracture/toughning'; nearest: Fracture/toughening"),
-            (["help", "fractre"], "no command, section or entry 'fractre'; nearest: fracture")]:
-        assert refused(*arguments) == "latcon: " + message
-    assert re.search(r"unknown command 'zzz'; commands: verify, lattice, .*, schema; see", refused("zzz"))
-    for words in (["help", "gat"], ["resolv"], ["zzz"], []):  # commands that only the Python package starts are not suggested
+def test_commands_that_only_the_package_starts_are_not_suggested():
+    for words in (["help", "gat"], ["resolv"], ["zzz"], []):
         assert not re.search(r"\b(gate|resolve)\b", refused(*words))
-    assert re.search(r"a command is required: verify, lattice, ", refused())
 
 
 def test_the_list_of_claims_says_which_are_checked_without_names():
@@ -38,24 +26,15 @@ def test_the_list_of_claims_says_which_are_checked_without_names():
         assert ("only if named" in lines[claim["name"]]) == (not claim["default"]), claim["name"]
 
 
-def test_a_missing_case_is_the_only_error():
-    for command in ("fracture", "lattice", "continuum"):
-        message = refused(command, "quik", "--set", "Loading/strain y=0.2")
-        assert message == "latcon: quik: cannot read the case: No such file or directory; nearest shipped case: quick"
-    assert "; shipped cases: fig1, " in refused("lattice", "zzz.prm")
-    assert "nearest known key: Loading/strain y" in refused("lattice", "quick", "--set", "strain y=1")
-
-
 def test_shipped_cases_have_names(tmp_path):
-    run = latcon("fracture", "quick", *SHORT, cwd=tmp_path)
-    assert run.returncode == 0, run.stderr
+    latcon("fracture", "quick", *SHORT, cwd=tmp_path)
     assert (tmp_path / "output/quick/crack.json").exists()
     for command in ("lattice", "continuum"):
-        assert latcon(command, "hole", "--quiet", "--set", "Sheet/spacing=1 mm", "--set", "Continuum/adaptive cycles=0", cwd=tmp_path).returncode == 0
+        latcon(command, "hole", "--quiet", "--set", "Sheet/spacing=1 mm", "--set", "Continuum/adaptive cycles=0", cwd=tmp_path)
         assert (tmp_path / f"output/hole-{command}/run.json").exists()
     # A folder of that name is no case, a file is.
     (tmp_path / "quick").mkdir()
-    assert latcon("fracture", "quick", "--dry-run", cwd=tmp_path).returncode == 0
+    latcon("fracture", "quick", "--dry-run", cwd=tmp_path)
     (tmp_path / "hole").write_text("subsection Sheet\n")
     assert "hole:" in refused("lattice", "hole", cwd=tmp_path)
 
@@ -87,14 +66,12 @@ def test_help_on_an_entry_has_all_of_it():
 
 def test_init_makes_a_case_that_runs(tmp_path):
     run = latcon("init", "strip/", cwd=tmp_path)
-    assert run.returncode == 0, run.stderr
     case = tmp_path / "strip" / "strip.prm"
     assert "run it:       latcon fracture strip/strip.prm\n" in run.stdout
     assert case.read_bytes() == (CASES / "start.prm").read_bytes()
     assert [path.name for path in case.parent.iterdir()] == ["strip.prm"]
     assert refused("init", "strip", cwd=tmp_path) == "latcon: strip/strip.prm exists; give another folder"
-    run = latcon("fracture", "strip/strip.prm", *SHORT, cwd=tmp_path)
-    assert run.returncode == 0, run.stderr
+    latcon("fracture", "strip/strip.prm", *SHORT, cwd=tmp_path)
     assert (tmp_path / "output/strip/crack.json").exists()
 
 
@@ -102,11 +79,10 @@ def test_absurd_cost_needs_yes(out):
     for command, *entries in [("fracture", *FINE), ("lattice", *FINE, "--set", "Lattice/solution=motion", "--set",
                                                     "Time/end=1 s")]:
         for mode in ([], ["--dry-run"]):
-            run = latcon(command, "quick", *entries, *mode, "--output-dir", out)
-            assert run.returncode == 2, run.stdout
+            run = latcon(command, "quick", *entries, *mode, "--output-dir", out, expect=2)
             assert re.search(r"the run would take about \S+ days, more than 10; .*; use --yes", run.stderr)
             assert not out.exists()
-        assert latcon(command, "quick", *entries, "--dry-run", "--yes").returncode == 0
+        latcon(command, "quick", *entries, "--dry-run", "--yes")
     cells = ["--set", "Continuum/cells x=8192", "--set", "Continuum/cells y=8192"]
     assert re.search(r"memory: .* \d{11,} bytes .*; use --yes to run it anyway", refused("continuum", "quick", *cells, "--output-dir", out))
 
@@ -115,8 +91,8 @@ def log(out):
     return (out / "log.txt").read_text().splitlines()
 
 
-def run_(out, *arguments):
-    return latcon("fracture", "quick", *SHORT, "--output-dir", out, *arguments)
+def run_(out, *arguments, expect=0):
+    return latcon("fracture", "quick", *SHORT, "--output-dir", out, *arguments, expect=expect)
 
 
 def test_is_that_of_each_run(out):
@@ -132,8 +108,7 @@ def test_is_that_of_each_run(out):
 
 def test_ends_with_the_error(out):
     (out / "crack.csv").mkdir(parents=True)
-    run = run_(out)
-    assert run.returncode == 5
+    run = run_(out, expect=5)
     assert "crack.csv" in run.stderr
     assert log(out)[-1:] == run.stderr.splitlines()
 

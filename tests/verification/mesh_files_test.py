@@ -28,8 +28,7 @@ def write_mesh(tmp_path, shift=0, unit=0.01):
 
 
 def test_skewed_quadrilaterals_hold_a_homogeneous_state(out, tmp_path):
-    run = latcon("continuum", HOLE, "--output-dir", out, *write_mesh(tmp_path))
-    assert run.returncode == 0, run.stderr
+    latcon("continuum", HOLE, "--output-dir", out, *write_mesh(tmp_path))
     mesh = last_mesh(out)
     assert mesh.GetNumberOfCells() == 16
     assert cells_of(mesh)[1].sum() == pytest.approx(6e-4, abs=1e-9)
@@ -46,38 +45,33 @@ def test_skewed_quadrilaterals_hold_a_homogeneous_state(out, tmp_path):
 
 def test_curves_of_other_numbers_are_refused(out, tmp_path):
     for shift in (5, 300, -1):
-        run = latcon("continuum", HOLE, "--output-dir", out, *write_mesh(tmp_path, shift=shift))
-        assert run.returncode == 2
+        run = latcon("continuum", HOLE, "--output-dir", out, *write_mesh(tmp_path, shift=shift), expect=2)
         assert "four.msh" in run.stderr
         assert not out.exists()
 
 
 def test_extent_is_shown_and_must_be_that_of_a_sheet_in_metres(out, tmp_path):
     run = latcon("continuum", HOLE, "--output-dir", out, "--dry-run", *write_mesh(tmp_path))
-    assert run.returncode == 0, run.stderr
     assert "# mesh: 0.03 m x 0.02 m\n" in run.stdout
-    run = latcon("continuum", HOLE, "--output-dir", out, *write_mesh(tmp_path, unit=10.))
-    assert run.returncode == 2
+    run = latcon("continuum", HOLE, "--output-dir", out, *write_mesh(tmp_path, unit=10.), expect=2)
     assert "four.msh spans 30 m x 20 m" in run.stderr
     assert not out.exists()
 
 
 def test_mesh_is_part_of_the_case(tmp_path, out):
-    def move(*more):
+    def move(*more, expect=0):
         return latcon("continuum", HOLE, "--output-dir", out, *more, *entries,
                       *settings("Continuum/solution=motion", "Continuum/gradient=none", "Time/end=50 us",
-                                "Continuum/time step=10 us", "Checkpoints/steps=2"))
+                                "Continuum/time step=10 us", "Checkpoints/steps=2"), expect=expect)
     entries = write_mesh(tmp_path)
-    run = move()
-    assert run.returncode == 0, run.stderr
+    move()
     case_hash = json.loads((out / "run.json").read_text())["case_hash"]
     mesh = tmp_path / "four.msh"
     text = mesh.read_text()
     mesh.write_text(text.replace(f"5 {0.01 * 1.3!r} 0.008 0", "5 0.014 0.008 0"))
     assert mesh.read_text() != text
-    run = move("--resume")
-    assert run.returncode == 2, run.stdout
+    run = move("--resume", expect=2)
     assert "Continuum/mesh sha256" in run.stderr
     assert json.loads((out / "run.json").read_text())["case_hash"] == case_hash
     write_mesh(tmp_path)
-    assert move("--resume").returncode == 0
+    move("--resume")

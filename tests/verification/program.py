@@ -35,15 +35,22 @@ def server():
     return started
 
 
-def latcon(*arguments, program=LATCON, timeout=600, **keywords):
-    """Runs latcon: in a fork of the server, if that is what LATCON is, and nothing but the folder is asked for."""
+def latcon(*arguments, expect=0, program=LATCON, timeout=600, **keywords):
+    """Runs latcon: in a fork of the server, if that is what LATCON is, and nothing but the folder is asked for.
+    @param expect exit code, several of them, or None for any"""
     command = [program, *map(str, arguments)]
     if program != LATCON or pathlib.Path(LATCON).name != "fork_server" or not keywords.keys() <= {"cwd"}:
-        return subprocess.run(command, capture_output=True, text=True, timeout=timeout, **keywords)
+        return ended(subprocess.run(command, capture_output=True, text=True, timeout=timeout, **keywords), expect)
     how, _, number = server().run(command[1:], keywords.get("cwd", pathlib.Path.cwd()), timeout).partition(" ")
     if how == "limit":
         raise subprocess.TimeoutExpired(command, timeout)
-    return subprocess.CompletedProcess(command, int(number) if how == "exit" else -int(number), server().stdout(), server().stderr())
+    return ended(subprocess.CompletedProcess(command, int(number) if how == "exit" else -int(number), server().stdout(), server().stderr()), expect)
+
+
+def ended(run, expect):
+    """A run, after a check of its exit code."""
+    assert expect is None or run.returncode in (expect if isinstance(expect, tuple) else (expect,)), (run.args, run.returncode, run.stdout + run.stderr)
+    return run
 
 
 def claims_where(property_):
@@ -51,11 +58,11 @@ def claims_where(property_):
     return {claim["name"] for claim in json.loads(latcon("schema").stdout)["claims"] if claim[property_]}
 
 
-def latcon_on_ranks(ranks, *arguments, env=None):
-    environment = dict(env or os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+def latcon_on_ranks(ranks, *arguments, expect=0):
+    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                        OMPI_MCA_mpi_yield_when_idle="1")  # tests run side by side
-    return subprocess.run(["mpirun", "--oversubscribe", "-n", str(ranks), LATCON, *map(str, arguments)],
-                          capture_output=True, text=True, timeout=600, env=environment)
+    return ended(subprocess.run(["mpirun", "--oversubscribe", "-n", str(ranks), LATCON, *map(str, arguments)],
+                                capture_output=True, text=True, timeout=600, env=environment), expect)
 
 
 def read_csv(path):

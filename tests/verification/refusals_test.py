@@ -1,5 +1,8 @@
-"""A dry run and the run refuse the cases of refusals.txt, with the place of what is wrong, and nothing is written; and no others."""
+"""A dry run and the run refuse the cases of refusals.txt, with the place of what is wrong, and nothing is written; and no others.
+So are the words of words.txt.
+"""
 import pathlib
+import shlex
 
 import pytest
 
@@ -15,11 +18,16 @@ COMMANDS = {"lattice": (["lattice"], {}), "continuum": (["continuum"], {}), "mot
             "nonlocal": (["fracture", "--side", "continuum", "--skip-verification"], NONLOCAL)}
 
 
+def listed(name):
+    """Pairs of a line and the parts of a message, from a file beside this one."""
+    lines = [line for line in pathlib.Path(__file__).with_name(name).read_text().splitlines() if line and line[0] != "#"]
+    return [(line, message[2:].split(" | ")) for line, message in zip(lines[::2], lines[1::2], strict=True)]
+
+
 def refusals():
-    lines = [line for line in pathlib.Path(__file__).with_name("refusals.txt").read_text().splitlines() if line and line[0] != "#"]
-    for case, message in zip(lines[::2], lines[1::2], strict=True):
+    for case, parts in listed("refusals.txt"):
         (command, name), entries = case.partition(": ")[0].split(), case.partition(": ")[2].split("; ")
-        yield pytest.param(command, name, dict(entry.split("=", 1) for entry in entries), message[2:].split(" | "), id=case)
+        yield pytest.param(command, name, dict(entry.split("=", 1) for entry in entries), parts, id=case)
 
 
 def write_case(path, name, entries):
@@ -40,11 +48,10 @@ def test_is_refused_with_its_place(out, tmp_path, command, name, entries, parts)
     changed = [word for entry in entries.items() for word in ("--set", "{}={}".format(*entry))]
     out.mkdir()
     (out / "case.prm").write_text("of an earlier run")
-    dry, run = (latcon(*words, CASES / f"{name}.prm", "--output-dir", out, *changed, *more) for more in (["--dry-run"], []))
+    dry, run = (latcon(*words, CASES / f"{name}.prm", "--output-dir", out, *changed, *more, expect=2) for more in (["--dry-run"], []))
     write_case(tmp_path / "a.prm", name, entries)
-    of_file = latcon(*words, tmp_path / "a.prm", "--output-dir", out, "--dry-run")
+    of_file = latcon(*words, tmp_path / "a.prm", "--output-dir", out, "--dry-run", expect=2)
     for ended in (dry, run, of_file):
-        assert ended.returncode == 2, ended.stdout + ended.stderr
         for part in parts:
             assert part in ended.stderr
     assert dry.stderr == run.stderr
@@ -53,12 +60,20 @@ def test_is_refused_with_its_place(out, tmp_path, command, name, entries, parts)
     assert (out / "case.prm").read_text() == "of an earlier run"
 
 
+@pytest.mark.parametrize("words, parts", [("", ["a command is required: verify, lattice, "]), *listed("words.txt")])
+def test_words_are_refused(tmp_path, words, parts):
+    run = latcon(*shlex.split(words), cwd=tmp_path, expect=2)
+    assert (run.stdout, run.stderr.count("\n")) == ("", 1)
+    for part in parts:
+        assert part in run.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize("entries", [
     {}, {"Initial state/base": "equilibrium"},
     {"Initial state/displacement x": "1e-6*sin(pi*x/0.04)*(y-0.01)*(y+0.01)", "Left edge/condition": "free", "Right edge/condition": "free"}])
 def test_nothing_else_is_refused(out, entries):
     changed = [word for entry in (MOTION | entries).items() for word in ("--set", "{}={}".format(*entry))]
     for more in ["--dry-run"], []:
-        run = latcon("continuum", CASES / "quick.prm", "--quiet", "--output-dir", out, *changed, *more)
-        assert run.returncode == 0, run.stderr
+        latcon("continuum", CASES / "quick.prm", "--quiet", "--output-dir", out, *changed, *more)
     assert (out / "results.json").exists()

@@ -27,14 +27,12 @@ STRIP = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report", 
 def ended(module_path):
     """Runs the strip to its end, once for all tests that begin with it."""
     ended = module_path / "out"
-    run = latcon(*STRIP, "--output-dir", ended)
-    assert run.returncode in (0, 3), run.stderr
+    latcon(*STRIP, "--output-dir", ended, expect=(0, 3))
     return ended
 
 
 def run_to_end(out, *more):
-    run = latcon(*STRIP, "--output-dir", out, *more)
-    assert run.returncode in (0, 3), run.stderr
+    run = latcon(*STRIP, "--output-dir", out, *more, expect=(0, 3))
     return run
 
 
@@ -99,8 +97,7 @@ def test_checkpoint_of_another_program_is_named(out, tmp_path, ended):
     other = tmp_path / "bin" / "latcon"
     other.write_bytes(program.read_bytes() + b"\0")
     other.chmod(0o755)
-    run = latcon(*STRIP, "--resume", "--output-dir", out, program=other)
-    assert run.returncode in (0, 3), run.stderr
+    run = latcon(*STRIP, "--resume", "--output-dir", out, program=other, expect=(0, 3))
     assert "It was written by another build of latcon, commit " in run.stdout
     info = json.loads((out / "run.json").read_text())
     assert info["resumed_from"]["program_hash"] == own
@@ -148,8 +145,7 @@ def test_nothing_is_touched_if_none_can_be_used(out, ended):
     last.write_text("not a checkpoint at all\n")
     (out / "checkpoints" / "notes.txt").write_text("mine")
     before = {path: path.stat().st_mtime_ns for path in out.rglob("*")}
-    run = latcon(*STRIP, "--output-dir", out, "--resume")
-    assert run.returncode == 2
+    run = latcon(*STRIP, "--output-dir", out, "--resume", expect=2)
     assert f"{first}: it was changed or damaged" in run.stderr
     assert f"{last}: it is not a checkpoint" in run.stderr
     assert "omit --resume" in run.stderr
@@ -158,11 +154,9 @@ def test_nothing_is_touched_if_none_can_be_used(out, ended):
 
 def test_those_of_another_case_are_refused_with_the_difference(out, ended):
     shutil.copytree(ended, out)
-    run = latcon(*STRIP, "--output-dir", out, "--resume", "--set", "Fracture/breaking stretch=3.1")
-    assert run.returncode == 2
+    run = latcon(*STRIP, "--output-dir", out, "--resume", "--set", "Fracture/breaking stretch=3.1", expect=2)
     assert "another case: Fracture/breaking stretch = 3.05 in the checkpoint, 3.1 in this case" in run.stderr
-    run = latcon("lattice", *STRIP[1:2], "--output-dir", out, "--resume", "--set", "Lattice/solution=motion")
-    assert run.returncode == 2
+    run = latcon("lattice", *STRIP[1:2], "--output-dir", out, "--resume", "--set", "Lattice/solution=motion", expect=2)
     assert "written by `latcon fracture`" in run.stderr
 
 
@@ -177,8 +171,7 @@ def test_new_start_keeps_those_of_the_run_before(out, ended):
 def test_by_wall_time(out):
     place = STRIP.index("Checkpoints/steps=160")
     arguments = STRIP[:place - 1] + STRIP[place + 1:]
-    run = latcon(*arguments, "--output-dir", out, "--set", "Checkpoints/interval=0.05 s")
-    assert run.returncode in (0, 3), run.stderr
+    latcon(*arguments, "--output-dir", out, "--set", "Checkpoints/interval=0.05 s", expect=(0, 3))
     assert len(checkpoints(out)) == 2
 
 
@@ -197,10 +190,9 @@ def test_last_sound_state_is_left_with_when_and_where(out):
     motion = ["lattice", CASES / "quick.prm", "--output-dir", out, "--set", "Lattice/solution=motion", "--set",
               "Time/end=0.1 ms", "--set", "Fracture/breaking stretch=auto", "--set", "Output/energy interval=1",
               "--set", "Checkpoints/steps=20"]
-    assert latcon(*motion).returncode == 0
+    latcon(*motion)
     push(sorted((out / "checkpoints").glob("*.h5"))[-1], 1e4)
-    run = latcon(*motion, "--resume")
-    assert run.returncode == 4, run.stderr
+    run = latcon(*motion, "--resume", expect=4)
     told = re.search(r"became unstable: at (\S+) s .* number (\d+) at X = (\S+) m, Y = (\S+) m, .* state, at (\S+) s; try",
                      run.stderr)
     assert told is not None, run.stderr
@@ -231,10 +223,8 @@ def test_last_sound_frame_has_the_stresses_of_its_time(out, tmp_path):
                   "Nearest neighbours/branch moduli=5 MPa", "Nearest neighbours/relaxation times=0.2 ms",
                   "Output/energy interval=40", "Output/frame interval=0", "Fracture/breaking stretch=1000"):
         case += ["--set", entry]
-    sound = latcon(*case, "--output-dir", tmp_path / "sound", "--set", "Time/end=10 us")
-    assert sound.returncode in (0, 3), sound.stderr
-    run = latcon(*case, "--output-dir", out, "--set", "Time/step=9.4e-6 s")
-    assert run.returncode == 4, run.stderr
+    latcon(*case, "--output-dir", tmp_path / "sound", "--set", "Time/end=10 us", expect=(0, 3))
+    run = latcon(*case, "--output-dir", out, "--set", "Time/step=9.4e-6 s", expect=4)
     assert "valid state, at 0 s; try a smaller Time/step\n" in run.stderr
     assert [time for time, _ in frames(out / "lattice.pvd")] == [0.]
     assert (out / "lattice-0000.vtp").read_bytes() == (tmp_path / "sound" / "lattice-0000.vtp").read_bytes()

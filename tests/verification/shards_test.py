@@ -64,16 +64,10 @@ class TestShards(Studies):
             assert "the case of run base-1 differs" in printed and "--output-dir" in printed
         assert files_in(self.out) == before
 
-    def test_collect_without_shards_and_wrong_shards_are_bad_input(self):
-        assert "no shard" in self.study("--collect", expect=2)
-        assert "without --shard" in self.study("--collect", "--shard", "1/2", expect=2)
-        assert not self.out.exists()
-
     def test_batch_writes_scripts_that_a_shell_understands(self):
         study = write_study(self.folder)
         run = latcon(*self.words("--slurm", "--tasks", "2", "--cpus-per-task", "2", "--time", "0:30:00", "--set",
                                  "Sheet/length=2.4 cm", study=study, command="batch"))
-        assert run.returncode == 0, run.stderr
         for name in ("runs.sh", "collect.sh"):
             script = self.out / "batch" / name
             subprocess.run(["bash", "-n", script], check=True)
@@ -88,25 +82,13 @@ class TestShards(Studies):
         sbatch.write_text(f'#!/bin/sh\necho "$@" >>{asked}\necho "a warning\n$(wc -l <{asked})"\n')
         sbatch.chmod(0o755)
         run = latcon(*self.words("--slurm", "--submit", command="batch"), env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"})
-        assert run.returncode == 0, run.stderr
         assert asked.read_text().splitlines() == [f"--parsable {self.out}/batch/runs.sh", f"--parsable --dependency=afterany:1 {self.out}/batch/collect.sh"]
         assert "4 runs in 4 tasks: job 1\nthen the verdict: job 2\n" in run.stdout
-
-    def test_batch_refuses_what_would_break_a_script(self):
-        for words, reason in ((["--time", "1h"], "--time"), (["--time", "0:01:00"], "5 minutes"), (["--time", "4:59"], "5 minutes"), (["--partition", "a b"], "--partition"),
-                              (["--tasks", "0"], "--tasks")):
-            run = latcon(*self.words("--slurm", *words, command="batch"))
-            assert run.returncode == 2, words
-            assert reason in run.stderr
-        run = latcon(*self.words("--slurm", command="batch", out=self.folder / "with blank"))
-        assert run.returncode == 2
-        assert "--slurm" in latcon(*self.words(command="batch")).stderr
 
     def test_batch_without_slurm_says_so(self):
         empty = self.folder / "bin"
         empty.mkdir()
-        run = latcon(*self.words("--slurm", "--submit", command="batch"), env={**os.environ, "PATH": str(empty)})
-        assert run.returncode == 2
+        run = latcon(*self.words("--slurm", "--submit", command="batch"), env={**os.environ, "PATH": str(empty)}, expect=2)
         assert "no sbatch on this machine" in run.stderr
         assert (self.out / "batch/runs.sh").exists()
 
@@ -117,8 +99,7 @@ class TestShards(Studies):
             document["claims"][0]["rows"] = [{"run": "base", "quantity": "pattern"}]
         study = write_study(self.folder, longer)
         self.study("--no-report", study=study, out=self.folder / "undisturbed")
-        run = latcon(*self.words("--slurm", study=study, command="batch"))
-        assert run.returncode == 0, run.stderr
+        latcon(*self.words("--slurm", study=study, command="batch"))
         tools = self.folder / "bin"
         tools.mkdir()
         (tools / "scontrol").write_text(f'#!/bin/sh\necho "$@" >>{self.folder}/requeued\n')

@@ -136,17 +136,6 @@ class TestSweeps(Small):
         assert "--set" not in script  # the study file contains them
         assert "6 runs" in self.run_study(self.out / "sweep.json", "--dry-run")
 
-    def test_bad_sweeps_are_named_and_write_nothing(self):
-        # Others: tests/python/test_study_files.py.
-        for words, reason in ((["Sheet/height=1 mm,2 cm"], "runs/height-1mm: --set: Sheet/height = 1 mm"),
-                              (["Sheet/height=1 cm,2 cm", "--set", "Sheet/height=3 cm"], "is also an entry of --sweep")):
-            printed = self.run_study("quick", "--sweep", *words, "-o", self.out, expect=2)
-            assert reason in printed
-        assert "nearest shipped case: quick" in self.run_study("quikc", *SWEEP, "-o", self.out, expect=2)
-        assert "--seeds is an option of --sweep" in self.run_study("patterns", "--seeds", "2", expect=2)
-        assert not self.out.exists()
-
-
 class TestTroubles(Small):
     def test_folder_of_another_study_is_refused_untouched(self):
         self.run_study(self.write_study(), "-o", self.out, "--quiet")

@@ -1,7 +1,7 @@
 // All invalid entries of a case are reported together, each with its line, the allowed values and the nearest key.
 #include "tests/verification/input/sample_case.h"
+#include "tests/verification/input/sentences.h"
 
-#include <fstream>
 #include <limits>
 
 namespace parameter_problems_test
@@ -9,43 +9,7 @@ namespace parameter_problems_test
 
 using namespace sample_case;
 
-// An invalid input of problems.txt and its message.
-struct Sentence
-{
-  std::string kind, input, message;
-  friend std::ostream &operator<<(std::ostream &out, const Sentence &own)
-  {
-    return out << own.kind << ' ' << own.input;
-  }
-};
-
-// Replaces \n, \t, \r by the characters.
-std::string unescaped(const std::string &text)
-{
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i)
-  {
-    const std::size_t letter =
-      text[i] == '\\' && i + 1 < text.size() ? std::string("ntr").find(text[i + 1]) : std::string::npos;
-    result += letter == std::string::npos ? text[i] : "\n\t\r"[letter];
-    i += letter == std::string::npos ? 0 : 1;
-  }
-  return result;
-}
-
-std::vector<Sentence> sentences()
-{
-  std::ifstream file(PROBLEMS);
-  std::vector<Sentence> all;
-  for (std::string line; std::getline(file, line);)
-    if (line.rfind("  ", 0) == 0)
-      all.back().message = line.substr(2);
-    else if (!line.empty() && line[0] != '#')
-      all.push_back({line.substr(0, line.find(' ')), line.substr(line.find(' ') + 1), ""});
-  return all;
-}
-
-class Problem : public testing::TestWithParam<Sentence>
+class Problem : public testing::TestWithParam<sentences::Sentence>
 {
 };
 
@@ -55,19 +19,15 @@ TEST_P(Problem, IsSaidInASentence)
   if (kind == "line")
     EXPECT_EQ(lattice_problem(input), message);
   else if (kind == "set")
-    EXPECT_EQ(problem(good, {unescaped(input)}), message);
+    EXPECT_EQ(problem(good, {sentences::unescaped(input)}), message);
   else if (kind == "json")
     EXPECT_EQ(problem(R"({"Lattice": {"spacing": 1}, )" + input + "}", {}, "a.json"), message);
   else
-    EXPECT_EQ(problem((kind == "+text" ? good : "") + unescaped(input)), message);
+    EXPECT_EQ(problem((kind == "+text" ? good : "") + sentences::unescaped(input)), message);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sentences, Problem, testing::ValuesIn(sentences()));
-
-TEST(Problems, AreRead)
-{
-  EXPECT_GT(sentences().size(), 80u);
-}
+INSTANTIATE_TEST_SUITE_P(Sentences, Problem,
+                         testing::ValuesIn(sentences::of({"line", "set", "json", "text", "+text"})));
 
 TEST(Parameters, ValuesAtTheEndsOfTheirRangesAreRead)
 {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "support/errors.h"
+#include "tests/verification/input/sentences.h"
 #include "verification/claims/claim_inputs.h"
 #include "verification/input/case.h"
 #include "verification/input/expression_parser.h"
@@ -65,38 +67,18 @@ TEST(ExpressionParser, ListsTheNamesInAnExpression)
 
 TEST(ExpressionParser, NamesTheColumnOfAMistakeAndWhatIsAllowed)
 {
-  for (const auto &[text, part] : std::vector<std::pair<std::string, std::string>>{
-         {"1 + lan", "unknown 'lan' at column 5; nearest: lam"},
-         {"lam,2", "unknown ',' at column 4"},
-         {"lam$", "unknown '$' at column 4"},
-         {"lam?1:2", "unknown '?' at column 4"},
-         {"lam = 2", "unknown '=' at column 5"},
-         {"lam \xc2\xb2", "at column 5"},
-         {"sqrt(lam", "')' is missing at the end"},
-         {"lam)", "parenthesis at column 4"},
-         {"sqrt()", "wrong number of arguments of a function at column 6"},
-         {"exp lam", "'(' is missing after 'exp' at column 1"},
-         {"0x10*lam", "'x10' at column 2"},
-         {"2lam", "'lam' is not expected at column 2"},
-         {"sin(lam)", "unknown 'sin' at column 1"},
-         {"lam +", "ends too early"},
-         {"", "an expression is required"},
-         {"  ", "an expression is required"},
-         {"1e-400*lam", "the number 1e-400 at column 1 is out of range"},
-         {"lam + 1e400", "the number 1e400 at column 7 is out of range"}})
+  for (const sentences::Sentence &own : sentences::of({"psi"}))
     try
     {
-      (void)input::parse_expression(text, "lam", constants);
-      ADD_FAILURE() << text;
+      (void)input::parse_expression(sentences::unescaped(own.input), "lam", constants);
+      ADD_FAILURE() << own.input;
     }
     catch (const input::InvalidExpression &error)
     {
-      const std::string what = error.what();
-      EXPECT_NE(what.find(part), std::string::npos) << what;
-      EXPECT_NE(what.find("; allowed: numbers, + - * / ^ ( ), sqrt, exp, log, lam, alpha, mu"), std::string::npos)
-        << what;
+      EXPECT_EQ(error.what(), own.message + "; allowed: numbers, + - * / ^ ( ), sqrt, exp, log, lam, alpha, mu");
     }
-  EXPECT_THROW((void)input::parse_expression(std::string(3000, '('), "lam", constants), input::InvalidExpression);
+  for (const std::string &text : {std::string("  "), std::string(3000, '(')})
+    EXPECT_THROW((void)input::parse_expression(text, "lam", constants), input::InvalidExpression);
 }
 
 // What a case says about the entries of nearest neighbours, and others; empty for nothing.
@@ -193,26 +175,14 @@ TEST(UserLaw, RefusesExpressionsWithTooManyOperations)
 
 TEST(UserLaw, SaysWhichEntryIsWrong)
 {
-  const std::string key = "Nearest neighbours/";
-  for (const auto &[settings, part] : std::vector<std::pair<std::vector<std::string>, std::string>>{
-         {{"law=expression"}, key + "psi = : an expression is required"},
-         {{"law=expression", psi}, key + psi.substr(0, 3) + " = " + psi.substr(4) + ": unknown 'mu' at column 1"},
-         {{"law=expression", psi, "parameters=mu"}, key + "parameters = mu: 'mu': expected NAME = NUMBER"},
-         {{"law=expression", psi, "parameters=mu = 1 m"}, "with one of stress"},
-         {{"law=expression", psi, "parameters=mu = x"}, "'mu = x': expected a number"},
-         {{"law=expression", psi, "parameters=mu = 1, mu = 2"}, "'mu = 2': set twice"},
-         {{"law=expression", psi, "parameters=mu = 1, lam = 2"}, "'lam = 2': a name is"},
-         {{"law=expression", psi, "parameters=mu = 1, exp = 2"}, "'exp = 2': a name is"},
-         {{"law=expression", psi, "parameters=mu = 1, alpha = 2"}, "psi does not use 'alpha'; it uses: lam, mu"},
-         {{"law=expression", psi, "parameters=mu = -1"}, "psi''(1) is -3 Pa; a bond at rest needs a stiffness > 0"},
-         {{"law=expression", "psi=lam^2"}, "psi'(1) is 2 Pa; a bond at rest has no force"},
-         {{"law=library"}, key + "library = : the path of a shared library is required"},
-         {{"law=library", "library=none.so"}, key + "library = none.so: cannot read the library"},
-         {{"law=library", "library=/dev/zero"}, key + "library = /dev/zero: cannot read the library: it is not a file"},
-         {{"law=library", "library=/"}, key + "library = /: cannot read the library: it is not a file"}})
+  for (const sentences::Sentence &own : sentences::of({"law"}))
   {
+    std::vector<std::string> settings;
+    std::istringstream all(own.input);
+    for (std::string setting; std::getline(all >> std::ws, setting, ';');)
+      settings.push_back(setting);
     const std::string found = problems(settings);
-    EXPECT_NE(found.find(part), std::string::npos) << part << "\n" << found;
+    EXPECT_NE(found.find(own.message), std::string::npos) << own << "\n" << found;
     EXPECT_NE(found.find("; with Nearest neighbours/law"), std::string::npos) << found;
   }
 }
