@@ -122,7 +122,7 @@ State random_state(const TriangularLattice &sheet, const Material &material, uns
 
 const std::vector<double> retraction{1.3, 1.35, 1.4, 1.3, 1.35, 1.4, 1.3, 1.35, 1.4};
 
-// With the memory of bonds: theory.md, eq. (L.27).
+// theory.md, eqs. (L.3) and (L.4), and with the memory of bonds (L.27).
 TEST(Forces, AreThoseOfTheReference)
 {
   bool some_retract_alone = false;

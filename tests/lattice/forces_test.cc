@@ -1,4 +1,4 @@
-// Forces that follow from the energy, from one bond worked out by hand, and from copies of a cell.
+// Forces in a periodic cell and in copies of it; others: forces_reference_test.cc.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -14,69 +14,6 @@ namespace forces_test
 using namespace latcon;
 
 using namespace lattice;
-
-TEST(Forces, AreMinusTheEnergyGradient)
-{
-  Material disordered = sheets::rubber();
-  disordered.disorder = sheets::disordered_rubber().disorder;
-  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
-    for (const Material &material : {sheets::rubber(), sheets::rubber_of_three_shells(), disordered})
-    {
-      const TriangularLattice sheet = sheets::square(14, orientation);
-      State state = homogeneous_state(sheet, material, sheets::stretched(2.3, 2.8), Edges::held);
-      add_noise(state, sheet, 0.1 * sheets::spacing, 1);
-      const Field rest(sheet.n_places(), 0.);
-      Forces forces(sheet, material);
-      forces.evaluate(state, rest, rest);
-      // Along a random direction the remainder of a central difference falls with h^2.
-      State direction = state;
-      add_noise(direction, sheet, sheets::spacing, 3);
-      double slope = 0.;
-      for (std::size_t i = 0; i < rest.size(); ++i)
-      {
-        direction.x[i] -= state.x[i];
-        direction.y[i] -= state.y[i];
-        slope -= forces.fx()[i] * direction.x[i] + forces.fy()[i] * direction.y[i];
-      }
-      const auto energy_at = [&](double h)
-      {
-        State moved = state;
-        for (std::size_t i = 0; i < rest.size(); ++i)
-        {
-          moved.x[i] += h * direction.x[i];
-          moved.y[i] += h * direction.y[i];
-        }
-        return elastic_energy(moved, sheet, material);
-      };
-      const auto error = [&](double h) { return std::abs((energy_at(h) - energy_at(-h)) / (2. * h) - slope); };
-      EXPECT_NEAR(std::log2(error(4e-2) / error(1e-2)) / 2., 2., 0.1);
-      EXPECT_LT(error(1e-2), 1e-3 * std::abs(slope));
-    }
-}
-
-// One bond along x drawn apart at a known speed: A0 (psi' + eta v / l), and the power is the viscous part times v.
-// theory.md, eqs. (L.3) and (L.4).
-TEST(Forces, AreTheBondLawAndDashpotOfOneBond)
-{
-  const TriangularLattice sheet = sheets::square(14);
-  const Material material = sheets::rubber();
-  State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free);
-  const std::size_t left = sheet.index(6, 6), right = left + 1;
-  state.bonds.clear(sheet.n_places());
-  state.bonds.add(left, 0);
-  state.x[right] += sheets::spacing; // stretch 2
-  state.vx[right] = 5.;
-  Forces forces(sheet, material);
-  forces.evaluate(state, state.vx, state.vy);
-  // A0 / h = 2/3 (sqrt3 / 2) d; psi'(2) = 7/4 a + 7/8 b.
-  const double section = 2. / 3. * std::sqrt(3.) / 2. * sheets::spacing;
-  const double viscous = section * 65.625 * 5. / sheets::spacing;
-  const double expected = section * (1.75 * 1e5 + 0.875 * 1.5e5) + viscous;
-  EXPECT_NEAR(forces.fx()[left], expected, 1e-12 * expected);
-  EXPECT_NEAR(forces.fx()[right], -expected, 1e-12 * expected);
-  EXPECT_EQ(forces.fy()[left], 0.);
-  EXPECT_NEAR(forces.viscous_power(), viscous * 5., 1e-12 * viscous * 5.);
-}
 
 // The smallest cell, two rows of two sites, is bonded to itself over and over. Laid out three times along and across
 // without anything repeating, it must feel the same forces.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "lattice/energy.h"

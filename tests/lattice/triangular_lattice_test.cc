@@ -73,17 +73,6 @@ TEST_P(BothOrientations, BondDirectionsAreTheStatedOnes)
   }
 }
 
-TEST_P(BothOrientations, SheetIsItsOwnMirrorImage)
-{
-  const TriangularLattice sheet = sheets::square(11, GetParam());
-  for (const std::size_t place : sheets::sites(sheet))
-  {
-    const Eigen::Vector2d X = sheet.reference(place), mirror = sheet.reference(sheets::mirrored(sheet, place));
-    EXPECT_EQ(mirror.x(), X.x());
-    EXPECT_EQ(mirror.y(), -X.y()); // to the last bit
-  }
-}
-
 TEST_P(BothOrientations, ExtentIsThatOfTheOutermostSites)
 {
   const TriangularLattice sheet(sheets::spacing, 0.02, 0.01, GetParam());

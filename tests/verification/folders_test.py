@@ -170,8 +170,7 @@ def test_files_of_the_run_before_are_moved_aside(out):
     crack = ["fracture", *TINY, "--output-dir", out, "--no-report"]
 
     def run(*words, expect=0):
-        done = latcon(*crack, *words, expect=expect)
-        return done.stdout
+        return latcon(*crack, *words, expect=expect).stdout
 
     assert "earlier-run" not in run("--skip-verification", "--set", "Output/frame interval=1 us")
     (out / "notes.txt").write_text("mine")
@@ -186,7 +185,7 @@ def test_files_of_the_run_before_are_moved_aside(out):
     # A refused crack leaves no files of the previous run among its own, and the report shows one run.
     run("--set", "Loading/strain x=-0.3", "--set", "Next-nearest neighbours/present=false", expect=3)
     assert not any((out / name).exists() for name in ("crack.json", "crack.csv", "crack_path.png"))
-    assert "earlier-run" not in latcon("report", out).stdout
+    assert "earlier-run" not in latcon("report", out, expect=3).stdout
 
 
 def test_case_in_its_own_folder_is_not_overwritten(out):
