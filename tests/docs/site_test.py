@@ -9,20 +9,21 @@ import urllib.parse
 
 import pytest
 
+from browser import Browser
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ["LATCON_BUILD"])
 SITE = BUILD / "docs" / "html"
 THEORY = sorted((ROOT / "docs").glob("theory*.md"))
 
-# Script that writes to the title of a page, once its formulas are typeset: their number, those that MathJax does not know, and
-# equations and code that are wider than their boxes, and a page that is wider than the window.
-MEASURE = """<script>addEventListener("load", () => MathJax.Hub.Queue(() => {
-  const shown = [...document.querySelectorAll(".MathJax_Display")];
+# Number of typeset formulas, those that MathJax does not know, equations and code that are wider than their boxes, and a page that is
+# wider than the window.
+MEASURE = """(() => {
   const wrong = [...document.querySelectorAll(".merror, .MathJax_Error, .MathJax [mathcolor='red']")];
   const cut = [...document.querySelectorAll("div.math, div.highlight pre")].filter(box => box.scrollWidth > box.clientWidth + 1);
   if (document.documentElement.scrollWidth > innerWidth + 1) cut.push(document.querySelector("h1"));
-  document.title = [shown.length, ...[...wrong, ...cut].map(box => box.textContent.slice(0, 60))].join("|");
-}));</script>"""
+  return [document.querySelectorAll(".MathJax_Display").length, [...wrong, ...cut].map(box => box.textContent.slice(0, 60))];
+})()"""
 
 
 @pytest.fixture(scope="module")
@@ -79,16 +80,11 @@ def test_dead_references_are_warnings(tmp_path):
 
 def shown(name, width):
     """Number of formulas that Chromium typesets on a page at `width` pixels, and texts that are wrong or cut off."""
-    measured = SITE / f"measured-{name}"
-    measured.write_text((SITE / name).read_text(encoding="utf-8").replace("</body>", MEASURE + "</body>"), encoding="utf-8")
-    try:
-        dom = subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files",
-                              f"--window-size={width},2000", "--virtual-time-budget=60000", "--dump-dom", measured.as_uri()],
-                             capture_output=True, text=True, timeout=200, check=True, stdin=subprocess.DEVNULL).stdout
-    finally:
-        measured.unlink()
-    count, *found = re.search(r"<title>(.*?)</title>", dom, re.DOTALL)[1].split("|")
-    return int(count), found
+    with Browser(width, 2000) as browser:
+        browser.open(SITE / name)
+        browser.value("MathJax.Hub.Queue(() => document.body.classList.add('typeset'))")
+        browser.wait("document.body.classList.contains('typeset')")
+        return browser.value(MEASURE)
 
 
 @pytest.mark.skipif("LATCON_FULL" not in os.environ, reason="in full only")
