@@ -12,80 +12,133 @@
             reports its synchronisation to the sanitizer; with gcc's every barrier would be a finding
   valgrind  tests of the lattice that are quick enough, in the release build
 
-Builds its prerequisites with cmake/set-up.sh, with the packages of cmake/packages-clean.txt. Logs go to build/clean/PART/.
+Each tool ends with another code than 0 where it finds something. Builds its prerequisites with cmake/set-up.sh, with the packages of
+cmake/packages-clean.txt. Logs go to build/clean/PART/.
 """
 import argparse
 import concurrent.futures
 import os
-import re
+import pathlib
+import platform
+import shutil
 import subprocess
 import sys
-import time
 
-sys.dont_write_bytecode = True
-
-from parts import LOGS, PARTS, ROOT
-
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LOGS = ROOT / "build" / "clean"
+SOURCES = ("support", "lattice", "continuum", "verification", "tests")
+CASES = ROOT / "verification" / "cases"
 # Open MPI refuses root, and more ranks than cores, by default.
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                   OMPI_MCA_rmaps_base_oversubscribe="1", OMP_NUM_THREADS="1")
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_rmaps_base_oversubscribe="1",
+                   OMP_NUM_THREADS="1", UBSAN_OPTIONS="halt_on_error=1:print_stacktrace=1")
+# Minutes each under valgrind, or without optimisation.
+SLOW = "--gtest_filter=-*BitsDoNotDependOn*:CrackMeasurement.*:EnergyBalance.*:Cutout.Relaxed*:RungeKuttaChebyshev.Is*:" \
+       "RungeKuttaChebyshev/*:TimeStepLimits.*:Fracture/*:EndLoads/*:LinkCells.Show*:CorrelatedNoise.*"
+# Programs of tests that do not start MPI.
+SERIAL = ("lattice/lattice_tests", "verification/analysis_tests")
+# MPI keeps memory until the process ends, some of it in unloaded modules, which no suppression can name.
+NO_LEAKS = {"ASAN_OPTIONS": "detect_leaks=0"}
 
 
-def output(command, environment):
-    """@return exit status, standard output and error"""
-    done = subprocess.run(list(map(str, command)), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=ROOT, errors="replace", env=environment)
-    return done.returncode, done.stdout
+def program(preset, path):
+    return ROOT / "build" / preset / path
 
 
-def findings(name, part, job):
-    """Runs a job. @return the lines of its log that are findings; a program that fails without such a line is one too"""
-    status, log = output(job.command, dict(ENVIRONMENT, **job.environment))
-    (LOGS / name / f"{job.name}.log").write_text(f"{log}\nstatus {status}\n", encoding="utf-8")
-    found = [line for line in log.splitlines() if re.search(part.finding, line)]
-    return found or ([f"{job.name} ended with {status}"] if status else [])
+def tests(preset, names, *options, before=(), **environment):
+    """Jobs, (name, command, environment), for programs of tests, given as folder/name."""
+    return [(name.split("/")[-1], [*before, program(preset, f"tests/{name}"), "--gtest_brief=1", *options], environment) for name in names]
 
 
-def examine(name, part, jobs_at_once, only):
-    """Builds and runs a part. @return number of jobs, findings without repetition"""
-    # Programs list their tests when they are linked; memory that MPI never frees is not their error.
-    status, said = output([ROOT / "cmake" / "set-up.sh", "--with", "tests", "--with", "clean", *([part.preset] if part.preset else []), *part.targets],
-                          dict(os.environ, ASAN_OPTIONS="detect_leaks=0"))
-    if status:
-        return 0, ["cannot be built: " + said[-3000:]]
-    (LOGS / name).mkdir(parents=True, exist_ok=True)
-    jobs = [job for job in part.jobs() if only in job.name]
-    with concurrent.futures.ThreadPoolExecutor(jobs_at_once) as pool:
-        found = [line for lines in pool.map(lambda job: findings(name, part, job), jobs) for line in lines]
-    return len(jobs), list(dict.fromkeys(found)) if jobs else [f"no job with {only!r} in its name"]
+def latcon(preset, name, *arguments, before=(), **environment):
+    return name, [*before, program(preset, "verification/latcon"), *arguments, "--quiet",
+                  "--output-dir", LOGS / "output" / f"{preset}-{name}"], environment
 
 
-def arguments():
-    parser = argparse.ArgumentParser(prog="tests/clean/run", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", metavar="PART", help="of " + " ".join(PARTS) + "; default: all")
-    parser.add_argument("--jobs", type=int, default=2, help="programs at once; default: 2")
-    parser.add_argument("--only", default="", metavar="TEXT", help="only jobs with this in their name, such as a folder")
-    options = parser.parse_args()
-    for part in options.parts:
-        if part not in PARTS:
-            parser.error(f"no part {part!r}; there are {' '.join(PARTS)}")
-    return options
+def crack(preset, **how):
+    return latcon(preset, "crack", "fracture", CASES / "quick.prm", "--skip-verification", "--set", "Time/end=0.1 ms",
+                  "--set", "Output/frame interval=0.05 ms", **how)
+
+
+def lto():
+    return [*tests("lto", SERIAL, SLOW), *tests("lto", ("continuum/continuum_tests", "verification/verification_tests", "verification/claims_tests")),
+            ("study", [program("lto", "verification/latcon"), "study", "patterns", "--dry-run"], {}), crack("lto")]
+
+
+def cppcheck():
+    folder = LOGS / "cppcheck" / "analysis"
+    folder.mkdir(parents=True, exist_ok=True)
+    return [("sources", [
+        "cppcheck", "--quiet", "--enable=warning,style,performance,portability", "--inline-suppr", "--std=c++17",
+        "--language=c++", "--library=googletest", "--library=openmp", f"--suppressions-list={ROOT / 'tests/clean/cppcheck.supp'}",
+        f"--cppcheck-build-dir={folder}", "--template={file}:{line}:{column}: {severity}: {message} [{id}]",
+        "--error-exitcode=1", "-I", ".", *SOURCES], {})]
+
+
+def tidy():
+    return [(folder, ["run-clang-tidy", "-p", "build/clang", "-quiet", "-j", "1", f"^{ROOT}/{folder}/"], {}) for folder in SOURCES]
+
+
+def asan():
+    on_ranks = ["mpirun", "--oversubscribe", "-np", "2"]
+    return [*tests("debug", SERIAL, ASAN_OPTIONS="detect_leaks=1"),
+            *tests("debug", ("verification/verification_tests", "continuum/continuum_tests"), **NO_LEAKS),
+            *((f"{name}, shared", *job) for name, *job in tests("debug", ("lattice/lattice_ranks_tests", "continuum/continuum_tests"), before=on_ranks,
+                                                                LATCON_RANKS="2", **NO_LEAKS)),
+            crack("debug", **NO_LEAKS), latcon("debug", "relaxed", "lattice", CASES / "quick.prm", **NO_LEAKS),
+            latcon("debug", "hole", "continuum", CASES / "hole.prm", "--set", "Continuum/adaptive cycles=1",
+                   "--set", "Continuum/degree=2", "--set", "Continuum/reaction tolerance=1", **NO_LEAKS),
+            latcon("debug", "shear-layer", "continuum", CASES / "shear_layer.prm", "--set", "Continuum/cells y=4", **NO_LEAKS)]
+
+
+def tsan():
+    archer = pathlib.Path(shutil.which("clang++")).resolve().parents[1] / "lib" / "libarcher.so"
+    how = {"OMP_NUM_THREADS": "3", "OMP_TOOL_LIBRARIES": str(archer), "TSAN_OPTIONS": "ignore_noninstrumented_modules=1 report_signal_unsafe=0"}
+    fixed = ["setarch", "--addr-no-randomize"]  # where memory is placed at random over a wide range, ThreadSanitizer cannot start
+    if platform.machine() == "x86_64":
+        how["LATCON_INSTRUCTION_SET"] = "SSSE3"  # loads and stores of more than 16 bytes are not instrumented
+    return [*tests("clang", SERIAL, before=fixed, **how), ("motions", [*fixed, program("clang", "tests/arm64/motion_bits")], how),
+            crack("clang", before=fixed, **how)]
+
+
+def valgrind():
+    return tests("release", SERIAL, SLOW, before=["valgrind", "--quiet", "--error-exitcode=1", "--leak-check=full",
+                                                  "--errors-for-leak-kinds=definite"])
+
+
+# Jobs of a part, preset, and targets to build, by default all.
+PARTS = {"lto": (lto, "lto"), "clang": (list, "clang"), "cppcheck": (cppcheck,),
+         "tidy": (tidy, "clang", "verification/latcon_git_commit", *(f"{folder}/CMakeFiles/latcon_{folder}.dir/cmake_pch.hxx.pch"
+                                                                     for folder in ("continuum", "verification"))),
+         "asan": (asan, "debug"), "tsan": (tsan, "clang", "lattice_tests", "analysis_tests", "motion_bits", "latcon"),
+         "valgrind": (valgrind, "release", "lattice_tests", "analysis_tests")}
+
+
+def succeeds(part, name, command, environment):
+    """Runs a program with a log. @return whether it finds nothing"""
+    (LOGS / part).mkdir(parents=True, exist_ok=True)
+    path = LOGS / part / f"{name}.log"
+    with path.open("w", encoding="utf-8") as log:
+        status = subprocess.run(list(map(str, command)), stdout=log, stderr=subprocess.STDOUT, cwd=ROOT, env=dict(ENVIRONMENT, **environment)).returncode
+    print(f"{part} {name}: " + (f"status {status}, {path}\n{path.read_text(errors='replace')[-3000:]}" if status else "nothing"), flush=True)
+    return not status
 
 
 def main():
-    options = arguments()
-    print(f"{'part':10}{'jobs':>6}{'findings':>10}{'seconds':>9}", flush=True)
-    total = 0
+    parser = argparse.ArgumentParser(prog="tests/clean/run", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("parts", nargs="*", metavar="PART", help="of " + " ".join(PARTS) + "; default: all")
+    options = parser.parse_args()
+    if unknown := set(options.parts) - set(PARTS):
+        parser.error(f"no part {' '.join(unknown)}; there are {' '.join(PARTS)}")
+    is_clean = True
     for part in options.parts or PARTS:
-        start = time.monotonic()
-        jobs, found = examine(part, PARTS[part], options.jobs, options.only)
-        print(f"{part:10}{jobs:6}{len(found):10}{time.monotonic() - start:9.0f}", flush=True)
-        for finding in found[:20]:
-            print("  " + finding)
-        if len(found) > 20:
-            print(f"  and {len(found) - 20} more in {LOGS / part}")
-        total += len(found)
-    return 1 if total > 0 else 0
+        jobs, *build = PARTS[part]
+        # Programs list their tests when they are linked; memory that MPI never frees is not their error.
+        if not succeeds(part, "build", [ROOT / "cmake" / "set-up.sh", "--with", "tests", "--with", "clean", *build], NO_LEAKS):
+            is_clean = False
+            continue
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            is_clean &= all(list(pool.map(lambda job: succeeds(part, *job), jobs())))
+    return 0 if is_clean else 1
 
 
 if __name__ == "__main__":
