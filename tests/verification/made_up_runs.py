@@ -3,6 +3,8 @@ import base64
 import contextlib
 import io
 import json
+import os
+import pathlib
 import re
 from html.parser import HTMLParser
 
@@ -154,6 +156,20 @@ def read_page(folder, name="report.html"):
     """@return HTML, and the page as it is read"""
     html = (folder / name).read_text(encoding="utf-8")
     return html, Page(html)
+
+
+def expect_texts(folder, name, printed=""):
+    """Compares what was printed and the texts of a page, with the kinds of its banner and rows, with a file in report_pages/.
+
+    LATCON_REMAKE=1 writes it anew, to be looked at before it is kept."""
+    html, page = read_page(folder)
+    kinds = re.findall(r'<(?:div|tr) class="([^"]*)"', re.sub("<script.*?</script>", "", html, flags=re.S))
+    texts = [" ".join(kinds), *filter(None, map(str.strip, page.text.split("  ")))]
+    found = "\n".join([printed, *texts, ""]).replace(str(folder), "RUNS")
+    path = pathlib.Path(__file__).with_name("report_pages") / f"{name}.txt"
+    if "LATCON_REMAKE" in os.environ:
+        path.write_text(found)
+    assert found == path.read_text()
 
 
 def pixels(png):

@@ -4,7 +4,6 @@ import io
 import json
 import math
 import os
-import pathlib
 import re
 import shutil
 from unittest import mock
@@ -14,7 +13,7 @@ import pytest
 from PIL import Image
 
 from made_up_runs import (
-    BEGIN, END, FAILS, HOLDS, MOTION_FRAMES, PUBLISHED, REPORTED, check_row, drawn, path_of_tip, pixels, read_page, write_fracture, write_verification)
+    BEGIN, END, FAILS, HOLDS, MOTION_FRAMES, PUBLISHED, REPORTED, check_row, drawn, expect_texts, path_of_tip, pixels, read_page, write_fracture, write_verification)
 
 from latcon.quantities import number_text
 from latcon.report import animation, pages, report
@@ -89,20 +88,10 @@ def unreadable(runs):
 @pytest.mark.parametrize("write, expect", [(verified_and_measured, 0), (failing, 3), (not_verified, 0), (not_verified_beside_verified, 0),
                                            (unreadable, 2)])
 def test_says_what_was_checked_measured_and_given(runs, write, expect):
-    """What is printed, and the texts of the page with the kinds of its banner and rows, are those of report_pages/.
-
-    LATCON_REMAKE=1 writes them anew, to be looked at before they are kept."""
     write(runs)
     out, err = drawn(runs, expect=expect)
     assert max(map(len, out.splitlines())) <= 120
-    html, page = read_page(runs)
-    kinds = re.findall(r'<(?:div|tr) class="([^"]*)"', re.sub("<script.*?</script>", "", html, flags=re.S))
-    texts = [" ".join(kinds), *filter(None, map(str.strip, page.text.split("  ")))]
-    found = "\n".join([f"{out}{err}", *texts, ""]).replace(str(runs), "RUNS")
-    path = pathlib.Path(__file__).with_name("report_pages") / f"{write.__name__}.txt"
-    if "LATCON_REMAKE" in os.environ:
-        path.write_text(found)
-    assert found == path.read_text()
+    expect_texts(runs, write.__name__, out + err)
 
 
 def test_leaves_out_studies_beside_runs(runs):
