@@ -34,7 +34,7 @@ struct Change
   double contact_stiffness = 0., contact_viscosity = 1.; // in those of a bond
 };
 
-// theory.md, eq. (L.14) for contacts.
+// theory.md, eqs. (L.8) to (L.10), and (L.14) for contacts.
 TEST(TimeStepLimits, CountAllSpringsAndDashpots)
 {
   const TriangularLattice sheet = sheets::square(12);

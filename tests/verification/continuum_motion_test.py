@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import vtk
 
-from continuum_run import DENSITY, LAYER, MODULUS, field, last_mesh, numbers, settings
-from program import CASES, frames, latcon, latcon_on_ranks, read, read_csv
+from continuum_run import DENSITY, LAYER, MODULUS, field, last_mesh, numbers
+from program import CASES, frames, latcon, latcon_on_ranks, read, read_csv, settings
 
 # A shear wave in a strip that is periodic both ways.
 AMPLITUDE = 0.01  # of velocity [m/s]

@@ -14,10 +14,6 @@ DENSITY = 944.  # [kg/m^3]
 MODULUS = 2. / 3. * 9. / 8. * (1. + math.sqrt(3.)) * 0.25e6  # [Pa]
 
 
-def settings(*entries):
-    return [word for entry in entries for word in ("--set", entry)]
-
-
 def results(folder):
     return {row["quantity"]: float(row["continuum"]) for row in read_csv(folder / "results.csv")}
 

@@ -2,11 +2,7 @@
 import json
 import re
 
-from program import CASES, latcon, latcon_on_ranks
-
-
-def settings(*entries):
-    return [word for entry in entries for word in ("--set", entry)]
+from program import CASES, latcon, latcon_on_ranks, settings
 
 
 # Dry runs estimate memory and time, and runs that exceed the memory of the machine are refused.

@@ -4,8 +4,8 @@ import json
 import numpy as np
 import pytest
 
-from continuum_run import HOLE, cells_of, field, last_mesh, results, settings
-from program import latcon
+from continuum_run import HOLE, cells_of, field, last_mesh, results
+from program import latcon, settings
 
 NODES = [(0, 0), (1.7, 0), (3, 0), (0, 1.2), (1.3, 0.8), (3, 0.9), (0, 2), (1.2, 2), (3, 2)]
 QUADS = [(1, 2, 5, 4), (2, 3, 6, 5), (4, 5, 8, 7), (5, 6, 9, 8)]

@@ -65,6 +65,15 @@ def latcon_on_ranks(ranks, *arguments, expect=0):
                                 capture_output=True, text=True, timeout=600, env=environment), expect)
 
 
+def settings(*entries):
+    """Options that set these entries, each Section/name=value."""
+    return [word for entry in entries for word in ("--set", entry)]
+
+
+def checkpoints(out):
+    return sorted((out / "checkpoints").glob("*.h5"))
+
+
 def read_csv(path):
     with open(path, newline="") as file:
         return list(csv.DictReader(file))

@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 import pytest
 
-from program import CASES, LATCON, children, expect_same, files, frames, latcon, latcon_on_ranks, read_csv
+from program import CASES, LATCON, checkpoints, children, expect_same, files, frames, latcon, latcon_on_ranks, read_csv
 
 # Waves in a layer between held faces: 20 steps, checkpoints after every third, six frames.
 WAVES = {
@@ -39,10 +39,6 @@ ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROO
 def command(case, folder, *more):
     entries = [word for key, value in case.items() for word in ("--set", f"{key}={value}")]
     return ["continuum", str(CASES / "shear_layer.prm"), *entries, "--output-dir", str(folder), *more]
-
-
-def checkpoints(out):
-    return sorted((out / "checkpoints").glob("*.h5"))
 
 
 def run_json(out):

@@ -16,7 +16,7 @@ import h5py
 import pytest
 import vtk
 
-from program import CASES, LATCON, expect_same, files, frames, latcon, read, read_csv
+from program import CASES, LATCON, checkpoints, expect_same, files, frames, latcon, read, read_csv
 
 STRIP = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report", "--set", "Sheet/length=2.5 cm", "--set",
          "Sheet/height=1.25 cm", "--set", "Output/frame interval=0.1 ms", "--set", "Checkpoints/steps=160", "--set",
@@ -34,10 +34,6 @@ def ended(module_path):
 def run_to_end(out, *more):
     run = latcon(*STRIP, "--output-dir", out, *more, expect=(0, 3))
     return run
-
-
-def checkpoints(out):
-    return sorted((out / "checkpoints").glob("*.h5"))
 
 
 def step_told(out):
@@ -191,7 +187,7 @@ def test_last_sound_state_is_left_with_when_and_where(out):
               "Time/end=0.1 ms", "--set", "Fracture/breaking stretch=auto", "--set", "Output/energy interval=1",
               "--set", "Checkpoints/steps=20"]
     latcon(*motion)
-    push(sorted((out / "checkpoints").glob("*.h5"))[-1], 1e4)
+    push(checkpoints(out)[-1], 1e4)
     run = latcon(*motion, "--resume", expect=4)
     told = re.search(r"became unstable: at (\S+) s .* number (\d+) at X = (\S+) m, Y = (\S+) m, .* state, at (\S+) s; try",
                      run.stderr)

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from program import CASES, expect_same, files, latcon, latcon_on_ranks
+from program import CASES, checkpoints, expect_same, files, latcon, latcon_on_ranks
 
 QUICK = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report"]
 SPECTRUM = ["fracture", CASES / "spectrum.prm", *QUICK[2:]]
@@ -50,7 +50,7 @@ def test_ranks_threads_and_restarts_leave_the_same_files(tmp_path, name):
         assert json.loads(expected["near_tip.json"])["samples"] > 5
     latcon_on_ranks(2, *command, "--threads", 1, "--output-dir", shared, expect=run.returncode)
     expect_same(shared, expected)
-    *_, before, last = sorted((shared / "checkpoints").glob("*.h5"))
+    *_, before, last = checkpoints(shared)
     last.unlink()
     latcon(*command, "--threads", 2, "--resume", "--output-dir", shared, expect=run.returncode)
     assert json.loads((shared / "run.json").read_text())["resumed_from"]["step"] == int(before.stem.rpartition("-")[2])

@@ -91,21 +91,6 @@ TEST(CrackMeasurement, PureSinusoidIsExact)
   }
 }
 
-TEST(CrackMeasurement, ZigzagIsHigherThanItsSinusoid)
-{
-  SyntheticCrack crack;
-  crack.path = [](double X) { return 0.02 * X + amplitude * 2. / pi * std::asin(std::sin(2. * pi * X / wavelength)); };
-  crack.on_sites = false;
-  const CrackMeasurement m = measure(crack);
-  ASSERT_TRUE(m.crest_amplitude) << m.reason;
-  // First term of the Fourier series. The mean over a column that contains a crest is lower by at most the slope times
-  // half the width of the column; the same bound applies between two columns.
-  EXPECT_NEAR(m.amplitude->value, 8. / (pi * pi) * amplitude, 0.02 * amplitude);
-  const double column = 2. * d;
-  EXPECT_LE(m.crest_amplitude->value, amplitude * (1. + 1e-3));
-  EXPECT_GE(m.crest_amplitude->value, amplitude - 0.5 * column * 4. * amplitude / wavelength);
-}
-
 TEST(CrackMeasurement, CrestsOfASinusoidAreItsAmplitude)
 {
   SyntheticCrack crack;
@@ -227,31 +212,6 @@ TEST(CrackMeasurement, LateOnsetKeepsTwoWavelengths)
   }
 }
 
-TEST(CrackMeasurement, UnevenSamplingDoesNotBias)
-{
-  // The wavelength changes from 22 to 24 mm in the middle of the window. With eight times as many entries in the first
-  // half, a fit weighted by entries would give about 22 mm; a fit weighted by length does not change.
-  const double middle = 0.55 * length;
-  const auto Y = [&](double X)
-  {
-    const double s = X - middle;
-    return amplitude * std::sin(2. * pi * s / (s < 0. ? 0.022 : 0.024));
-  };
-  std::vector<TipRecord> even, uneven;
-  for (double X = seed_tip; X < 0.95 * length; X += 2. * d)
-    even.push_back({X / speed, X, Y(X), X, 0.});
-  for (double X = seed_tip; X < 0.95 * length; X += X < middle ? 0.25 * d : 2. * d)
-    uneven.push_back({X / speed, X, Y(X), X, 0.});
-  const CrackMeasurement of_even = measure_crack(even, {}, options_for(even));
-  const CrackMeasurement of_uneven = measure_crack(uneven, {}, options_for(uneven));
-  ASSERT_TRUE(of_even.wavelength && of_uneven.wavelength);
-  EXPECT_NEAR(of_even.wavelength->value, 0.023, 0.1e-3);
-  // Entries are distributed over a column of 2 d instead of at its edge: the window shifts by up to a column in 105 mm,
-  // which changes the result by 1 % of the difference of 2 mm; a fit weighted by entries would shift by at least 0.5
-  // mm.
-  EXPECT_NEAR(of_uneven.wavelength->value, of_even.wavelength->value, 0.05e-3);
-}
-
 TEST(CrackMeasurement, FewerThanTwoPeriodsAreFoundButNotConclusive)
 {
   // 1.8 periods in the window of 105 mm.
@@ -366,22 +326,6 @@ TEST(CrackMeasurement, SpeedUncertaintyCoversTheTruth)
   crack.slowness_noise = 0.3;
   const Ensemble ensemble(crack);
   EXPECT_COVERS(ensemble.speed_within_1, ensemble.speed_within_2);
-}
-
-TEST(CrackMeasurement, RunInAndClampZoneDoNotEnterTheSpeed)
-{
-  // Half speed up to 0.2 L and beyond 0.9 L: each part, if in the window, would reduce the speed by at least 5 %.
-  std::vector<TipRecord> tip = SyntheticCrack().record(1);
-  double t = 0.;
-  for (std::size_t i = 1; i < tip.size(); ++i)
-  {
-    const bool is_slow = tip[i].X < 0.2 * length || tip[i].X > 0.9 * length;
-    t += (tip[i].X - tip[i - 1].X) / (is_slow ? 0.5 * speed : speed);
-    tip[i].t = t;
-  }
-  tip[0].t = 0.;
-  const CrackMeasurement m = measure_crack(tip, {}, options_for(tip));
-  EXPECT_NEAR(m.speed_lagrangian->value, speed, 3. * d / (0.7 * length) * speed);
 }
 
 } // namespace crack_measurement_test

@@ -42,13 +42,6 @@ protected:
   State state;
 };
 
-TEST_F(Cut, WholeSheetHasNoFragments)
-{
-  const Fragments fragments = find_fragments(state, sheet);
-  EXPECT_TRUE(fragments.sizes.empty());
-  EXPECT_EQ(fragments.number, std::vector<std::uint32_t>(sheet.n_places(), 0));
-}
-
 // Three pieces of 1, 3 and 3 sites; larger pieces come first, and of equal ones the piece that starts in the lower row.
 TEST_F(Cut, FragmentsAreNumberedByFallingSize)
 {
