@@ -35,6 +35,8 @@ struct SolverTimes
   double assembly = 0.;       ///< of energies, residuals and tangents
   double preconditioner = 0.; ///< set-up for a tangent: coarser tangents and patches
   double linear_solve = 0.;   ///< factorisation and substitution, or Krylov iterations
+
+  SolverTimes &operator+=(const SolverTimes &other);
 };
 
 /// Full record of a solve.

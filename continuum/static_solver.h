@@ -95,6 +95,9 @@ private:
   Evaluation evaluate(const Vector &u, double load_factor) const;
   const Evaluation &current() const;
   double round_off(const Evaluation &state, const Vector &u) const;
+  void start_from(Vector &u, double load_factor);
+  bool solve_from_coarser_mesh(SolverReport &report);
+  bool take_load_step(double target, SolverReport &report);
   std::string attempt(double target, SolverReport &report);
 
   Sheet sheet_;
