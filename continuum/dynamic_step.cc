@@ -11,7 +11,6 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
-#include <utility>
 
 using namespace dealii;
 
@@ -215,22 +214,19 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
       return rise;
     };
     Residual state = best_residual(step, predicted(1.), predicted(0.), u);
-    // A tangent is kept while the residual falls a hundredfold: it has then hardly changed.
-    constexpr double kept_reduction = 0.01;
-    // With it, one further solution reaches the usual tolerance of a step.
+    // With it, a solution with the tangent of the last one reaches the usual tolerance of a step.
     constexpr double largest_forcing = 1e-5;
-    double last_free = 0.;
     Vector tangent_at; // mean displacement of the tangent
-    const auto solve = [&](const Residual &at, const Vector &, const double forcing, Vector &change)
+    const auto solve =
+      [&](const Residual &at, const Vector &, const double forcing, const bool keeps_tangent, Vector &change)
     {
       const unsigned int set_ups = linear_solver_->n_set_ups();
       const GradientLoad load = step.mean_load();
-      if (!(at.free <= kept_reduction * last_free))
+      if (!keeps_tangent)
       {
         assemble(at.u_mean, at.v_mean, load);
         tangent_at = at.u_mean;
       }
-      last_free = at.free;
       Vector rhs = at.residual;
       rhs *= -1.;
       for (const types::global_dof_index i : sheet_.owned())
@@ -247,7 +243,7 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
       {[&](const Vector &at) { return evaluate(step, at); },
        [this](const Residual &at, const Vector &there) { return round_off(at, there); }, solve, nullptr,
        [this](const Residual &at) { return ", the largest residual is" + location_of_largest(at.residual); }});
-    return newton.solve(u, std::move(state), number, step.last_load_factor, 0, report_.iterations);
+    return newton.solve(u, state, number, step.last_load_factor, 0, report_.iterations);
   }
   catch (const NonPhysicalState &failure)
   {

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <tuple>
 
 using namespace dealii;
 
@@ -73,8 +75,8 @@ LiftedShapes::LiftedShapes(const unsigned int degree)
 
 ComponentDerivatives LiftedShapes::weights(const unsigned int q, const unsigned int f) const
 {
-  const double weight = -factor_ * face_->JxW[f] / cell_->JxW[q] * (*polynomial_)(q, f);
-  const Tensor<1, 2> &N = face_->normals[f];
+  const double weight = -now_->factor * now_->face->JxW[f] / now_->cell->JxW[q] * (*now_->polynomial)(q, f);
+  const Tensor<1, 2> &N = now_->face->normals[f];
   return {0., 0., weight * N[0] * N[0], weight * N[1] * N[1], weight * N[0] * N[1]};
 }
 
@@ -82,35 +84,45 @@ void LiftedShapes::reinit(const ShapeTable &cell, const ShapeTable &cell_face, c
                           const LiftedFace &at, const std::size_t n_faces,
                           const std::vector<unsigned int> &neighbor_nodes, const unsigned int stride)
 {
-  cell_ = &cell;
-  face_ = &cell_face;
-  polynomial_ = &polynomials_[at.face][at.subface == whole ? 0 : at.subface + 1];
-  factor_ = (neighbor_face != nullptr ? 0.5 : 1.) * static_cast<double>(n_faces);
-  stride_ = stride;
+  const unsigned int part = at.subface == whole ? 0 : at.subface + 1;
+  const double factor = (neighbor_face != nullptr ? 0.5 : 1.) * static_cast<double>(n_faces);
+  Face &now = faces_[at.face][part];
+  now_ = &now;
+  const bool is_kept = cell.is_kept && cell_face.is_kept && (neighbor_face == nullptr || neighbor_face->is_kept);
+  if (is_kept && std::tie(now.cell, now.face, now.neighbor_face, now.factor, now.neighbor_nodes, now.stride) ==
+                   std::make_tuple(&cell, &cell_face, neighbor_face, factor, std::cref(neighbor_nodes), stride))
+    return;
+  now.polynomial = &polynomials_[at.face][part];
+  now.cell = &cell;
+  now.face = &cell_face;
+  now.neighbor_face = neighbor_face;
+  now.factor = factor;
+  now.neighbor_nodes = neighbor_nodes;
+  now.stride = stride;
 
-  jump_.assign(cell_face.n_points * stride, 0.);
+  now.jump.assign(cell_face.n_points * stride, 0.);
   for (unsigned int f = 0; f < cell_face.n_points; ++f)
     for (unsigned int J = 0; J < 2; ++J)
     {
       const double N = cell_face.normals[f][J];
-      double *jump = &jump_[f * stride];
+      double *jump = &now.jump[f * stride];
       for (unsigned int a = 0; a < cell_face.stride; ++a)
         jump[a] += N * cell_face.row(f, J)[a];
       for (std::size_t a = 0; a < neighbor_nodes.size(); ++a)
         jump[neighbor_nodes[a]] -= N * neighbor_face->row(f, J)[a];
     }
 
-  basis_.assign(cell.n_points * n_derivatives * stride, 0.);
+  now.basis.assign(cell.n_points * n_derivatives * stride, 0.);
   for (unsigned int q = 0; q < cell.n_points; ++q)
   {
-    double *rows = &basis_[q * n_derivatives * stride];
+    double *rows = &now.basis[q * n_derivatives * stride];
     for (unsigned int c = 0; c < n_derivatives; ++c)
       std::copy(cell.row(q, c), cell.row(q, c) + cell.stride, rows + c * stride);
     for (unsigned int f = 0; f < cell_face.n_points; ++f)
     {
       // On straight faces most polynomials vanish at most points.
       constexpr double rounding = 1e-13;
-      if (std::abs((*polynomial_)(q, f)) < rounding)
+      if (std::abs((*now.polynomial)(q, f)) < rounding)
         continue;
       const ComponentDerivatives weight = weights(q, f);
       for (unsigned int c = n_first; c < n_derivatives; ++c)

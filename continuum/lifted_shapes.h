@@ -34,32 +34,42 @@ class LiftedShapes
 public:
   explicit LiftedShapes(unsigned int degree);
 
-  /// Computes the derivatives for a face, of which the cell has `n_faces`. `neighbor_face` is nullptr on the boundary,
-  /// and otherwise `neighbor_nodes` are the numbers of the neighbor's nodes among `stride` or fewer.
+  /// Computes the derivatives for a face, of which the cell has `n_faces`, unless the last cell with this face had the
+  /// same tables. `neighbor_face` is nullptr on the boundary, and otherwise `neighbor_nodes` are the numbers of the
+  /// neighbor's nodes among `stride` or fewer.
   void reinit(const ShapeTable &cell, const ShapeTable &cell_face, const ShapeTable *neighbor_face, const LiftedFace &at,
               std::size_t n_faces, const std::vector<unsigned int> &neighbor_nodes, unsigned int stride);
 
   /// Rows of the basis at point q of the cell (see element_kernels.h).
-  const double *basis(const unsigned int q) const { return &basis_[q * n_derivatives * stride_]; }
+  const double *basis(const unsigned int q) const { return &now_->basis[q * n_derivatives * now_->stride]; }
 
   /// Row of the jump z of the normal derivative at point f of the face, value on the cell minus that on the neighbor.
-  const double *jump(const unsigned int f) const { return &jump_[f * stride_]; }
+  const double *jump(const unsigned int f) const { return &now_->jump[f * now_->stride]; }
 
   /// Returns the sums over f of `values[f]`, a normal gradient, lifted at point q of the cell: what a unit jump adds to
   /// the second derivatives.
   ComponentDerivatives lift(unsigned int q, const std::vector<double> &values) const;
 
 private:
+  // Derivatives for a face, and what they depend on.
+  struct Face
+  {
+    const dealii::FullMatrix<double> *polynomial = nullptr;
+    const ShapeTable *cell = nullptr;
+    const ShapeTable *face = nullptr;
+    const ShapeTable *neighbor_face = nullptr;
+    double factor = 0.;
+    std::vector<unsigned int> neighbor_nodes;
+    unsigned int stride = 0;
+    std::vector<double> basis; // [point of the cell][derivative][node]
+    std::vector<double> jump;  // [point of the face][node]
+  };
+
   // Share of the second derivatives at point q that a unit jump at point f of the face adds.
   ComponentDerivatives weights(unsigned int q, unsigned int f) const;
 
   dealii::FullMatrix<double> polynomials_[4][3]; // [face][all, first half, second half](point of cell, point of face)
-  const dealii::FullMatrix<double> *polynomial_ = nullptr; // of the face
-  const ShapeTable *cell_ = nullptr;
-  const ShapeTable *face_ = nullptr;
-  double factor_ = 0.;
-  unsigned int stride_ = 0;
-  std::vector<double> basis_; // [point of the cell][derivative][node]
-  std::vector<double> jump_;  // [point of the face][node]
+  Face faces_[4][3];                             // likewise
+  const Face *now_ = nullptr;
 };
 } // namespace latcon::continuum

@@ -54,8 +54,10 @@ public:
     std::function<State(const Vector &u)> evaluate;
     /// Returns the round-off of the residual at u [N/m], a lower bound of the tolerance.
     std::function<double(const State &state, const Vector &u)> round_off;
-    /// Solves for the Newton step at u to the relative residual `forcing`. @throws LinearSolverFailed
-    std::function<NewtonStep(const State &state, const Vector &u, double forcing, Vector &step)> solve;
+    /// Solves for the Newton step at u to the relative residual `forcing`, with the tangent of the last step if that
+    /// is kept. @throws LinearSolverFailed
+    std::function<NewtonStep(const State &state, const Vector &u, double forcing, bool keeps_tangent, Vector &step)>
+      solve;
     /// Returns the round-off of the energy of a state [J/m] (optional). If given, the line search requires a decrease
     /// of the energy, which leads to a minimum; if empty, a decrease of the norm of the residual.
     std::function<double(const State &state)> energy_noise;
@@ -68,15 +70,20 @@ public:
   {
   }
 
-  /// Iterates from u, with residual `state`, and overwrites u with the solution. Appends every evaluation to `history`
-  /// with the `number` and `load_factor` of the step; the first gets the `linear_iterations` of the predictor.
+  /// Iterates from u, with residual `state`, and overwrites both with those of the solution. Appends every evaluation
+  /// to `history` with the `number` and `load_factor` of the step; the first gets the `linear_iterations` of the
+  /// predictor.
   /// @return reason of failure, empty if converged; after a failure u is the last accepted iterate
-  std::string solve(Vector &u, State state, unsigned int number, double load_factor, unsigned int linear_iterations,
+  std::string solve(Vector &u, State &state, unsigned int number, double load_factor, unsigned int linear_iterations,
                     std::vector<NewtonIteration> &history) const;
 
 private:
-  /// Halves the step until its end is accepted: always if its residual is below `tolerance` [N/m]. Returns the reason
-  /// of failure, empty on success.
+  /// Ratio of residuals below which the tangent has hardly changed, and the energy decreases by less than its
+  /// round-off.
+  static constexpr double fast_reduction = 0.01;
+
+  /// Halves the step until its end is accepted: always if its residual is below `tolerance` [N/m], or has fallen fast.
+  /// Returns the reason of failure, empty on success.
   std::string search(const Vector &step, double slope, double tolerance, Vector &u, State &state, double &length) const;
   double next_forcing(double reduction, double tolerance) const;
 
@@ -85,7 +92,7 @@ private:
 };
 
 template <class State>
-std::string NewtonSolver<State>::solve(Vector &u, State state, const unsigned int number, const double load_factor,
+std::string NewtonSolver<State>::solve(Vector &u, State &state, const unsigned int number, const double load_factor,
                                        unsigned int linear_iterations, std::vector<NewtonIteration> &history) const
 {
   Vector step(u);
@@ -101,9 +108,10 @@ std::string NewtonSolver<State>::solve(Vector &u, State state, const unsigned in
       return "no convergence in " + std::to_string(iteration) + " Newton iterations" +
              (equations_.describe ? equations_.describe(state) : "");
 
-    const double forcing = next_forcing(state.free / last_free, tolerance / state.free);
+    const double reduction = state.free / last_free;
     last_free = state.free;
-    const NewtonStep solved = equations_.solve(state, u, forcing, step);
+    const double forcing = next_forcing(reduction, tolerance / state.free);
+    const NewtonStep solved = equations_.solve(state, u, forcing, reduction <= fast_reduction, step);
     linear_iterations = solved.linear_iterations;
     if (equations_.energy_noise && !(solved.slope < 0.))
       return "the tangent is not positive definite along the Newton step";
@@ -121,10 +129,12 @@ std::string NewtonSolver<State>::search(const Vector &step, const double slope, 
   const double noise = equations_.energy_noise ? equations_.energy_noise(state) : 0.;
   const auto is_accepted = [&](const State &candidate)
   {
+    if (candidate.free <= std::max(fast_reduction * state.free, tolerance))
+      return true;
     if (equations_.energy_noise)
       return candidate.energy <= start + sufficient * length * slope + noise;
     // Along an exact Newton step the residual falls as 1 - length.
-    return candidate.free <= std::max((1. - sufficient * length) * state.free, tolerance);
+    return candidate.free <= (1. - sufficient * length) * state.free;
   };
   length = 1.;
   std::string reason;

@@ -69,14 +69,9 @@ void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector
 } // namespace
 
 std::map<types::boundary_id, Tensor<1, 2>> boundary_reactions(const Sheet &sheet, const Sheet::Vector &u,
-                                                              const double load_factor,
+                                                              const Sheet::Vector &residual,
                                                               const std::map<types::boundary_id, ComponentMask> &held)
 {
-  Sheet::Vector residual = sheet.make_owned();
-  Sheet::Vector magnitude = sheet.make_owned();
-  sheet.residual(u, residual, magnitude, load_factor);
-  residual.add(-load_factor, sheet.loads());
-
   std::vector<HeldBoundary> boundaries;
   for (const auto &[id, components] : held)
     boundaries.push_back(

@@ -91,6 +91,7 @@ const ShapeTable &ShapeTables::cell(const Cell &cell)
     cell_values_.reinit(cell);
     fill(cell_values_, false, table);
   }
+  table.is_kept = shape != nullptr;
   return table;
 }
 
@@ -117,6 +118,7 @@ const ShapeTable &ShapeTables::face(const Cell &cell, const unsigned int face, c
     table = &shape->faces[{face, subface}];
   if (!shape || table->n_points == 0)
     fill_face(cell, face, subface, *table);
+  table->is_kept = shape != nullptr;
   return *table;
 }
 

@@ -18,6 +18,7 @@ namespace latcon::continuum
 /// Derivatives of the scalar shape functions of a cell at the Gauss points of the cell or of one of its faces.
 struct ShapeTable
 {
+  bool is_kept = false; ///< with the cache, as the only one of its kind
   unsigned int n_points = 0;
   unsigned int stride = 0;                   ///< length of a row: number of shape functions, padded with zeros
   std::vector<double> derivatives;           ///< [point][derivative][shape function]

@@ -41,6 +41,7 @@ private:
 struct StaticSolver::Evaluation
 {
   Vector displacement; // with ghost entries [m]
+  double stored;       // energy [J/m]
   double energy;       // minus the work of the dead loads [J/m]
   double free;         // norm of the residual over the free unknowns [N/m]
   double reference;    // norm of the nodal reactions and dead loads [N/m]
@@ -89,10 +90,10 @@ void StaticSolver::set_up()
 
 StaticSolver::Evaluation StaticSolver::evaluate(const Vector &u, const double load_factor) const
 {
-  Evaluation state{sheet_.make_ghosted(), 0., 0., 0., sheet_.make_owned(), sheet_.make_owned()};
+  Evaluation state{sheet_.make_ghosted(), 0., 0., 0., 0., sheet_.make_owned(), sheet_.make_owned()};
   state.displacement = u;
-  state.energy =
-    sheet_.residual(state.displacement, state.residual, state.magnitude, load_factor) - load_factor * (loads_ * u);
+  state.stored = sheet_.residual(state.displacement, state.residual, state.magnitude, load_factor);
+  state.energy = state.stored - load_factor * (loads_ * u);
   state.residual.add(-load_factor, loads_);
   double free = 0.;
   double given = 0.; // acting forces: reactions and dead loads
@@ -128,13 +129,20 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
   Vector rhs = sheet_.make_owned();
   Vector lift_forces = sheet_.make_owned();
 
-  const auto solve = [&](const Evaluation &state, const Vector *rise, const double forcing, Vector &step)
+  const auto assemble = [&](const Vector &at, const Vector *rise)
   {
-    const Vector &at = state.displacement;
     {
       const Clock clock(report.times.assembly);
       sheet_.tangent(at, homogeneous_, matrix_, target, rise, &lift_forces);
     }
+    const Clock clock(report.times.preconditioner);
+    linear_solver_->update(
+      at, matrix_,
+      [target](const Sheet &level, const Vector &there, const AffineConstraints<double> &constraints, Sheet::Matrix &K)
+      { level.tangent(there, constraints, K, target); });
+  };
+  const auto solve = [&](const Evaluation &state, const Vector *rise, const double forcing, Vector &step)
+  {
     rhs = state.residual;
     if (rise != nullptr)
       rhs += lift_forces;
@@ -143,13 +151,6 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
       if (homogeneous_.is_constrained(i))
         rhs(i) = 0.;
     rhs.compress(VectorOperation::insert);
-    {
-      const Clock clock(report.times.preconditioner);
-      linear_solver_->update(at, matrix_,
-                             [target](const Sheet &level, const Vector &there,
-                                      const AffineConstraints<double> &constraints, Sheet::Matrix &K)
-                             { level.tangent(there, constraints, K, target); });
-    }
     const Clock clock(report.times.linear_solve);
     const unsigned int iterations = linear_solver_->solve(matrix_, step, rhs, forcing);
     const double slope = -(rhs * step); // rhs is minus the residual, zero at constrained unknowns
@@ -171,8 +172,12 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
   const NewtonSolver<Evaluation> newton(
     {settings_.relative_tolerance, settings_.max_newton_iterations, settings_.max_halvings, settings_.largest_forcing},
     {evaluate_at, [this](const Evaluation &state, const Vector &u) { return round_off(state, u); },
-     [&](const Evaluation &state, const Vector &, const double forcing, Vector &step)
-     { return solve(state, nullptr, forcing, step); },
+     [&](const Evaluation &state, const Vector &, const double forcing, const bool keeps_tangent, Vector &step)
+     {
+       if (!keeps_tangent)
+         assemble(state.displacement, nullptr);
+       return solve(state, nullptr, forcing, step);
+     },
      energy_noise, nullptr});
 
   Vector u = sheet_.make_owned();
@@ -189,14 +194,18 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     // Without an increment the response is a Newton step, which needs the line search.
     if (target != load_factor_)
     {
-      linear_iterations = solve(evaluate_at(u), &lift, 0., step).linear_iterations;
+      const Evaluation state = evaluate_at(u);
+      assemble(state.displacement, &lift);
+      linear_iterations = solve(state, &lift, 0., step).linear_iterations;
       u += step;
       step = lift;
       u += step;
     }
-    const std::string failure = newton.solve(u, evaluate_at(u), number, target, linear_iterations, report.iterations);
+    Evaluation state = evaluate_at(u);
+    const std::string failure = newton.solve(u, state, number, target, linear_iterations, report.iterations);
     if (!failure.empty())
       return failure;
+    current_ = std::make_shared<const Evaluation>(std::move(state));
   }
   catch (const NonPhysicalState &failure)
   {
@@ -269,6 +278,7 @@ void StaticSolver::refine(Sheet::Mesh &mesh, const double fraction)
   u.compress(VectorOperation::insert);
   sheet_.conformity_constraints().distribute(u);
   displacement_ = u;
+  current_.reset();
 }
 
 SolverReport StaticSolver::equilibrate()
@@ -284,14 +294,25 @@ SolverReport StaticSolver::equilibrate()
   return report;
 }
 
+const StaticSolver::Evaluation &StaticSolver::current() const
+{
+  if (!current_)
+  {
+    Vector u = sheet_.make_owned();
+    u = displacement_;
+    current_ = std::make_shared<const Evaluation>(evaluate(u, load_factor_));
+  }
+  return *current_;
+}
+
 double StaticSolver::total_energy() const
 {
-  return sheet_.energy(displacement_, load_factor_);
+  return current().stored;
 }
 
 std::map<types::boundary_id, Tensor<1, 2>> StaticSolver::reactions() const
 {
-  return boundary_reactions(sheet_, displacement_, load_factor_, dirichlet_boundaries(sheet_.conditions()));
+  return boundary_reactions(sheet_, displacement_, current().residual, dirichlet_boundaries(sheet_.conditions()));
 }
 
 DeterminantRange StaticSolver::determinant_range() const

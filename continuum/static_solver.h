@@ -93,6 +93,7 @@ private:
   void check_input() const;
   void set_up();
   Evaluation evaluate(const Vector &u, double load_factor) const;
+  const Evaluation &current() const;
   double round_off(const Evaluation &state, const Vector &u) const;
   std::string attempt(double target, SolverReport &report);
 
@@ -105,5 +106,6 @@ private:
   Sheet::Matrix matrix_;
   Vector displacement_;
   double load_factor_ = 0.;
+  mutable std::shared_ptr<const Evaluation> current_; // at both; null: to be evaluated
 };
 } // namespace latcon::continuum

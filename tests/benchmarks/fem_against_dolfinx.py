@@ -16,6 +16,8 @@ import subprocess
 import sys
 import tempfile
 
+import page
+
 HERE = pathlib.Path(__file__).resolve().parent
 PYTHON = "/usr/bin/python3"  # the one that sees Debian's packages
 CASE = HERE / "continuum_sheet.prm"
@@ -134,28 +136,16 @@ def compare(program, cells, degree, lu, folder):
     return problem
 
 
-def table(problems):
-    print("degree  unknowns  latcon [s]  assembly  precond.  solve  2 ranks [s]  dolfinx [s]  ratio  Newton  "
-          "Krylov        B/unknown      energy difference")
-    for problem in problems:
-        one, two, other = problem["latcon"], problem["latcon_2_ranks"], problem["dolfinx"]
-        print(f"{problem['degree']:6} {problem['unknowns']:9} {one['seconds']:11.2f} {one['assembly']:9.2f} "
-              f"{one['preconditioner']:9.2f} {one['linear_solve']:6.2f} {two['seconds']:12.2f} {other['seconds']:12.2f} "
-              f"{problem['ratio']:6.2f} {one['newton_steps']:3}/{other['newton_steps']:<3} "
-              f"{'+'.join(map(str, one['krylov_iterations'])):12} {one['bytes_per_unknown']:6.0f}/"
-              f"{other['bytes_per_unknown']:<8.0f} {problem['energy_difference']:8.1e}"
-              + (f"  (LU {problem['dolfinx_lu']['seconds']:.2f} s, ratio {problem['ratio_lu']:.2f})"
-                 if "ratio_lu" in problem else "")
-              + ("" if problem["agrees"] else "  DIFFERS"))
-
-
 def main():
     arguments = parse()
     sizes = QUICK_SIZES if arguments.quick else SIZES
     with tempfile.TemporaryDirectory() as folder:
         problems = [compare(arguments.latcon.resolve(), cells, degree, arguments.lu, pathlib.Path(folder))
                     for degree in arguments.degrees for cells in sizes[degree]]
-    table(problems)
+    print(page.fem_table({"problems": problems})[0].text())
+    for problem in problems:
+        if "ratio_lu" in problem:
+            print(f"{problem['unknowns']} unknowns, LU: {problem['dolfinx_lu']['seconds']:.2f} s, ratio {problem['ratio_lu']:.2f}")
     if arguments.output:
         arguments.output.write_text(json.dumps({"problems": problems}, indent=2) + "\n")
     return 0 if all(problem["agrees"] for problem in problems) else 1

@@ -290,6 +290,18 @@ TEST(DynamicSolver, DividesAStepThatCannotBeSolved)
   EXPECT_LT(std::abs(ledger.imbalance), 0.01 * (ledger.stored + ledger.kinetic));
 }
 
+// Order q of r_(k+1) = C r_k^q from the last three residuals of a Newton iteration above the round-off of their
+// tolerance; 0 if there are fewer.
+double order_of_residuals(const std::vector<NewtonIteration> &iterations)
+{
+  std::vector<double> r;
+  for (const NewtonIteration &iteration : iterations)
+    if (r.empty() || r.back() > 1e3 * iteration.tolerance)
+      r.push_back(iteration.residual);
+  const std::size_t n = r.size();
+  return n < 3 ? 0. : std::log(r[n - 1] / r[n - 2]) / std::log(r[n - 2] / r[n - 3]);
+}
+
 TEST(DynamicSolver, NewtonIsQuadraticWithViscosityAtFiniteStrain)
 {
   RectangleMesh mesh(rectangle(4, 4));
@@ -361,19 +373,34 @@ TEST(NewtonSolver, ReducesTheResidualWithoutAnEnergy)
   u(0) = 3.;
   u.compress(dealii::VectorOperation::insert);
   const auto evaluate = [](const Vector &at) { return State{std::abs(std::atan(at(0))), 1., 0.}; };
-  const NewtonSolver<State> newton({1e-12, 20, 10}, {evaluate, [](const State &, const Vector &) { return 0.; },
-                                                     [](const State &, const Vector &at, double, Vector &step)
-                                                     {
-                                                       step(0) = -std::atan(at(0)) * (1. + at(0) * at(0));
-                                                       step.compress(dealii::VectorOperation::insert);
-                                                       return NewtonStep{0, 0.};
-                                                     },
-                                                     nullptr, nullptr});
+  std::vector<bool> keeps;
+  double tangent_at = 0.;
+  const NewtonSolver<State> newton({1e-12, 20, 10},
+                                   {evaluate, [](const State &, const Vector &) { return 0.; },
+                                    [&](const State &, const Vector &at, double, const bool keeps_tangent, Vector &step)
+                                    {
+                                      keeps.push_back(keeps_tangent);
+                                      if (!keeps_tangent)
+                                        tangent_at = at(0);
+                                      step(0) = -std::atan(at(0)) * (1. + tangent_at * tangent_at);
+                                      step.compress(dealii::VectorOperation::insert);
+                                      return NewtonStep{0, 0.};
+                                    },
+                                    nullptr, nullptr});
   std::vector<NewtonIteration> history;
-  EXPECT_EQ(newton.solve(u, evaluate(u), 1, 1., 0, history), "");
+  State state = evaluate(u);
+  EXPECT_EQ(newton.solve(u, state, 1, 1., 0, history), "");
   EXPECT_LT(std::abs(u(0)), 1e-12);
+  EXPECT_EQ(state.free, std::abs(std::atan(u(0))));
+  // A tangent is kept while the residual falls a hundredfold.
+  ASSERT_EQ(keeps.size() + 1, history.size());
+  EXPECT_FALSE(keeps[0]);
+  EXPECT_TRUE(keeps.back());
   for (std::size_t i = 1; i < history.size(); ++i)
+  {
     EXPECT_LT(history[i].residual, history[i - 1].residual);
+    EXPECT_TRUE(i == keeps.size() || keeps[i] == (history[i].residual <= 0.01 * history[i - 1].residual));
+  }
 }
 
 // Units of a sheet relative to those of another one. The equation of motion, r u / t^2 = e / l, determines the unit of

@@ -78,18 +78,6 @@ inline unsigned int most_linear_iterations(const latcon::continuum::SolverReport
   return most;
 }
 
-/// Order q of r_(k+1) = C r_k^q from the last three residuals of a Newton iteration above the round-off of their
-/// tolerance; 0 if there are fewer.
-inline double order_of_residuals(const std::vector<latcon::continuum::NewtonIteration> &iterations)
-{
-  std::vector<double> r;
-  for (const latcon::continuum::NewtonIteration &iteration : iterations)
-    if (r.empty() || r.back() > 1e3 * iteration.tolerance)
-      r.push_back(iteration.residual);
-  const std::size_t n = r.size();
-  return n < 3 ? 0. : std::log(r[n - 1] / r[n - 2]) / std::log(r[n - 2] / r[n - 3]);
-}
-
 /// Returns a random second gradient G_iJK [1/m], symmetric in J and K, with entries up to 0.3 / `length` [m].
 inline Tensor<3, 2> random_gradient(std::mt19937 &generator, const double length)
 {

@@ -1,14 +1,13 @@
-"""Tests of damaged and forged checkpoints: a short version of tests/faults/run."""
-import atexit
+"""Forged checkpoints are refused; with LATCON_FAULTS=N those of every run. Damaged ones: resume_test.py."""
 import os
 import random
 
-import damage
-import hostile
-from forked import Forked
+import pytest
 
-PROGRAM = Forked(os.environ["LATCON"])
-atexit.register(PROGRAM.close)
+import hostile
+import victims
+
+TIMES = int(os.environ.get("LATCON_FAULTS", 1))
 # One change for each number or list of a checkpoint with a size, an index, a time or a count.
 CRACK = {
     "run/command": [hostile.many], "run/case": [hostile.unterminated], "run/commit": [hostile.elsewhere],
@@ -37,21 +36,16 @@ SHEET = {
 }
 
 
-def check_refused(tmp_path, name, changes):
-    left, checkpoint = hostile.prepared(PROGRAM, name, tmp_path)
+@pytest.mark.parametrize("name, changes", [("crack", CRACK), ("sheet in motion", SHEET)])
+def test_contents_that_nobody_left_are_refused(tmp_path, name, changes):
+    left, checkpoint = hostile.prepared(name, tmp_path)
     flat = [(array, change) for array, all_changes in changes.items() for change in all_changes]
-    hostile.require_refused(PROGRAM, name, left, checkpoint, flat)
+    hostile.require_refused(name, left, checkpoint, flat)
 
 
-def test_contents_of_a_crack_that_nobody_left(tmp_path):
-    check_refused(tmp_path, "crack", CRACK)
-
-
-def test_contents_of_a_motion_in_finite_elements_that_nobody_left(tmp_path):
-    check_refused(tmp_path, "sheet in motion", SHEET)
-
-
-def test_damage_is_refused_or_fallen_back_from(tmp_path):
-    told = damage.damage_at_random(PROGRAM, "lattice in motion", tmp_path, random.Random(1), 8)
-    assert told["refused"] > 0
-    assert told["fell back"] > 0
+@pytest.mark.skipif(TIMES == 1, reason="long")
+@pytest.mark.parametrize("name", victims.VICTIMS)
+def test_any_array_that_nobody_left_is_refused(tmp_path, name):
+    left, checkpoint = hostile.prepared(name, tmp_path)
+    variants = hostile.variants(checkpoint)
+    hostile.require_refused(name, left, checkpoint, random.Random(1).sample(variants, min(len(variants), 20 * TIMES)))

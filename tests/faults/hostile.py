@@ -168,19 +168,17 @@ def variants(path):
     return found
 
 
-def prepared(program, name, folder):
-    """Runs a victim, and stops it when its state is large. @return its folder, the path of its only checkpoint"""
+def prepared(name, folder):
+    """Runs a victim. @return its folder, the path of its only checkpoint"""
     out = folder / name.replace(" ", "-")
-    status, said = program.run([*victims.VICTIMS[name], "--threads", "1"], out)
-    if status not in victims.DONE:
-        raise RuntimeError(f"{name}: exit {status}: {said}")
+    victims.run_to_end([*victims.VICTIMS[name], "--threads", "1"], out)
     *older, last = sorted((out / "checkpoints").glob("*.h5"))
     for path in older:
         path.unlink()
     return out, last
 
 
-def require_refused(program, name, left, checkpoint, changes):
+def require_refused(name, left, checkpoint, changes):
     """Resumes from changed checkpoints, in copies of a folder. @return number of refusals"""
     good = checkpoint.read_bytes()
     out = left.with_name("resumed")
@@ -193,7 +191,7 @@ def require_refused(program, name, left, checkpoint, changes):
         with h5py.File(path, "r+") as file:
             change(file, array)
         make_right(path)
-        status, said = program.run([*victims.VICTIMS[name], "--resume", "--threads", "1"], out, timeout=TIME_LIMIT)
+        status, said = victims.run([*victims.VICTIMS[name], "--resume", "--threads", "1"], out, timeout=TIME_LIMIT)
         if status != 2 or str(path) not in said:
             wrong.append(f"{name}: {array}, {change.__name__}: exit {status}: {said.strip()[:300]}")
     if wrong:

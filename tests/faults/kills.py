@@ -14,7 +14,7 @@ def kill_at_random(program, name, folder, rng, kills, ranks=(1,)):
     arguments = {**victims.VICTIMS, **victims.WITHOUT_CHECKPOINTS}[name]
     expected, duration = victims.undisturbed(program, arguments, folder / "killed", name)  # pages name their folder
     out = folder / "killed"
-    victims.renew(program, name, out)
+    victims.renew(name, out)
     told = {"kills": 0, "files_read": 0, "runs": 0, "without_checkpoint": 0, "asked_to_stop": 0}
     while told["kills"] < kills:
         finished = advance(program, arguments, out, rng, duration, ranks, told)
@@ -22,7 +22,7 @@ def kill_at_random(program, name, folder, rng, kills, ranks=(1,)):
         if finished:
             compare(name, out, expected)
             told["runs"] += 1
-            victims.renew(program, name, out)
+            victims.renew(name, out)
         elif not list(out.glob("checkpoints/*.h5")):
             told["without_checkpoint"] += 1
     status, said = program.run(victims.resumed(arguments), out)

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "lattice/contact.h"
+#include "lattice/runge_kutta_chebyshev.h"
+#include "lattice/simulation.h"
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
 #include "tests/lattice/plane_modes.h"
@@ -183,6 +185,91 @@ TEST(ChebyshevStages, WouldAmplifyStiffContactsInTheStepOfTheBonds)
   const double limit = 2. / std::sqrt(2. * elastic.stiffness / site_mass(material, sheet));
   EXPECT_FALSE(amplifies_contact(0.999 * limit, sheet, material, elastic));
   EXPECT_TRUE(amplifies_contact(1.001 * limit, sheet, material, elastic));
+}
+
+// Damped waves in a periodic sheet, so small that they are linear, are multiplied by R(h lambda) in each step, to
+// round-off: all stages, their order, the images of the sites, the polynomial that stability is judged by.
+// theory.md, eq. (L.18).
+TEST(RungeKuttaChebyshev, MultipliesWavesByItsPolynomial)
+{
+  const TriangularLattice sheet(sheets::spacing, 8. * sheets::spacing, 8. * sheets::spacing,
+                                Orientation::rows_along_crack, {true, true});
+  const Material material = sheets::rubber();
+  const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
+  const Eigen::Vector2d K(2. * M_PI / sheet.length() * 2., 2. * M_PI / sheet.height());
+  const plane_modes::PlaneModes waves = plane_modes::of(sheet, material, F, K);
+  const double h = 3e-6;
+  const unsigned int n_stages = 7, steps = 5;
+  const ChebyshevStages stages(n_stages);
+  for (Eigen::Index mode = 0; mode < 4; ++mode)
+  {
+    const Complex factor = std::pow(stages.amplification(h * waves.rates(mode)), steps);
+    // As large as linearity allows; the fast modes are motions of high velocity.
+    const double amplitude = 1e-7 * sheets::spacing / waves.modes.col(mode).head<2>().norm();
+    const State rest = homogeneous_state(sheet, material, F, Edges::free);
+    State state = rest;
+    const auto wave = [&](std::size_t place, Eigen::Index component, Complex times)
+    {
+      const Complex phase = std::exp(Complex(0., K.dot(sheet.reference(place))));
+      return amplitude * (times * waves.modes(component, mode) * phase).real();
+    };
+    for (std::size_t place = 0; place < sheet.n_places(); ++place)
+      if (sheet.is_occupied(place))
+      {
+        state.x[place] += wave(place, 0, 1.);
+        state.y[place] += wave(place, 1, 1.);
+        state.vx[place] += wave(place, 2, 1.);
+        state.vy[place] += wave(place, 3, 1.);
+      }
+    Simulation simulation(sheet, material, std::move(state), {h, n_stages});
+    for (unsigned int step = 0; step < steps; ++step)
+      simulation.step();
+    // Quadratic terms are 1e-7 of the wave, rounding of positions of 10 d is 1e-15 over 1e-7, each times some tens.
+    const double tolerance = 1e-5 * amplitude * waves.modes.col(mode).tail<2>().norm();
+    for (const std::size_t place : sheets::sites(sheet))
+    {
+      EXPECT_NEAR(simulation.state().vx[place], wave(place, 2, factor), tolerance) << mode;
+      EXPECT_NEAR(simulation.state().vy[place], wave(place, 3, factor), tolerance) << mode;
+    }
+  }
+}
+
+// Shorter steps take as few stages as the same limit requires, and damp the same noise.
+TEST(RungeKuttaChebyshev, TakesFewerStagesInShorterSteps)
+{
+  struct Counter : SiteForces
+  {
+    const std::vector<SiteForce> &evaluate(State &, Field &, Field &) override
+    {
+      ++n;
+      return forces_;
+    }
+    unsigned int n = 0;
+  } counter;
+  const TriangularLattice sheet = sheets::square(30);
+  const Material material = sheets::rubber();
+  const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
+  double fastest = 0.;
+  for (const Complex &rate : plane_modes::rates(sheet, material, F))
+    fastest = support::largest_of({fastest, std::abs(rate)});
+  const double limit = ChebyshevStages(7).real_limit();
+  for (const double share : {1., 0.5, 0.25, 0.125, 1.})
+  {
+    State state = homogeneous_state(sheet, material, F, Edges::held);
+    add_noise(state, sheet, 1e-3 * sheets::spacing, 5);
+    Forces forces(sheet, material);
+    RungeKuttaChebyshev integrator(sheet, forces, limit / fastest, 7);
+    integrator.set_time_step(share * limit / fastest);
+    integrator.add(counter);
+    integrator.initialise(state);
+    integrator.step(state);
+    const double before = kinetic_energy(state, sheet);
+    counter.n = 0;
+    for (int step = 0; step < 100; ++step)
+      integrator.step(state);
+    EXPECT_EQ(counter.n, 100 * (share == 1. ? 7 : ChebyshevStages::needed(share * limit))) << share;
+    EXPECT_LT(kinetic_energy(state, sheet), before) << share;
+  }
 }
 
 } // namespace chebyshev_stages_test

@@ -188,17 +188,6 @@ TEST(Contact, OfBondedOrWholeSitesThereIsNone)
   EXPECT_EQ(n_touching(), 0u); // nor is one that was cut out
 }
 
-TEST(Contact, IsLikeANearestBond)
-{
-  const TriangularLattice sheet = sheets::square(10);
-  const Material material = sheets::rubber(60.);
-  const ContactLaw law = contact_like_nearest_bond(sheet, material, 1e-3, 2., 3.);
-  const double per_length = 2. / 3. * std::sqrt(3.) / 2.; // A0 / l
-  EXPECT_EQ(law.distance, 1e-3);
-  EXPECT_NEAR(law.stiffness, 2. * per_length * 3. * 2.5e5, 1e-6);
-  EXPECT_NEAR(law.viscosity, 3. * per_length * 60., 1e-10);
-}
-
 TEST(Contact, RefusesLawsOutOfRange)
 {
   const TriangularLattice sheet = sheets::square(10);
@@ -307,25 +296,6 @@ TEST(Contact, LedgerClosesWhereAPairOverlapsFromTheStart)
   EXPECT_NEAR(fine.contact / (-0.5 * stiffness * std::pow(0.2 * sheets::spacing, 2)), 1., 0.05);
   EXPECT_LT(std::abs(fine.imbalance()), 1e-3 * fine.initial);
   EXPECT_GT(std::abs(coarse.imbalance()), 8. * std::abs(fine.imbalance()));
-}
-
-// Contacts as of bonds leave the time step alone, stiffer or more viscous ones do not.
-// theory.md, eq. (L.14).
-TEST(TimeStepLimits, CountContactsThatOutweighBonds)
-{
-  const TriangularLattice sheet = sheets::square(10);
-  const Material material = sheets::nearest_only();
-  const TimeStepLimits bonds = time_step_limits(sheet, material, 1.);
-  const auto limits = [&](double stiffness, double viscosity)
-  {
-    return time_step_limits(sheet, material, 1.,
-                            contact_like_nearest_bond(sheet, material, sheets::spacing, stiffness, viscosity));
-  };
-  EXPECT_NEAR(limits(1., 1.).combined / bonds.combined, 1., 1e-14);
-  EXPECT_NEAR(limits(0.5, 0.5).combined / bonds.combined, 1., 1e-14);
-  // gamma = (6 + 6 * 3) / 12 of that of the bonds, omega likewise squared.
-  EXPECT_NEAR(limits(1., 3.).viscous / bonds.viscous, 0.5, 1e-14);
-  EXPECT_NEAR(limits(3., 1.).elastic / bonds.elastic, std::sqrt(0.5), 1e-14);
 }
 
 // Pairs and forces in the same order, with the same bits, for any number of threads that share them.

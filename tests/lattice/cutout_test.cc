@@ -1,10 +1,13 @@
-// Cut-outs are empty; the remaining rim is free, undamaged, and symmetric.
+// Cut-outs are empty, and the remaining rim is free, undamaged, and symmetric; seeds of cracks.
 #include "lattice/cutout.h"
+
+#include <cmath>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
 #include "lattice/relaxation.h"
-#include "lattice/site_fields.h"
+#include "lattice/seed.h"
 #include "tests/lattice/sheets.h"
 
 namespace cutout_test
@@ -84,51 +87,82 @@ TEST(Cutout, NotchLeavesNoBondAcrossItAndKeepsMirrorSymmetry)
       EXPECT_EQ(state.x[place], state.x[mirror]);
       EXPECT_EQ(state.y[place], -state.y[mirror]);
     }
-    // It opens: the lips are farther apart than they would be in the homogeneous state.
-    const auto lip = [&](double Y)
-    {
-      for (const std::size_t place : sheets::sites(sheet))
-        if (state.removed[place] == 0 && state.held[place] == 0 &&
-            std::abs(sheet.reference(place).x() - 4. * sheets::spacing) < 0.6 * sheets::spacing &&
-            sheet.reference(place).y() * Y > 0. && std::abs(sheet.reference(place).y()) < 1.1 * sheets::spacing)
-          return state.y[place] - 1.2 * sheet.reference(place).y();
-      return 0.;
-    };
-    EXPECT_GT(lip(1.), 0.2 * sheets::spacing);
-    EXPECT_LT(lip(-1.), -0.2 * sheets::spacing);
   }
 }
 
-// A free rim carries no load: the stress there is along it.
-TEST(Cutout, RelaxedHoleConcentratesStretchAtItsRim)
+// 21 columns; rows 0 to 22 at Y = (row - 11) sqrt3 / 2, odd ones (the middle among them) shifted by half a spacing.
+TriangularLattice along()
 {
-  const TriangularLattice sheet = sheets::square(60.);
-  const Eigen::Matrix2d F = sheets::stretched(1., 1.05);
-  State state = with(sheet, RoundHole{6. * sheets::spacing}, F);
-  relax(state, sheet, sheets::rubber(), 1e-10 * 5e5 * sheets::spacing);
-  const SiteFields fields = site_fields(state, sheet, sheets::rubber());
-  const SiteFields whole =
-    site_fields(homogeneous_state(sheet, sheets::rubber(), F, Edges::held), sheet, sheets::rubber());
-  double beside = 0., above = 1.;
-  const std::size_t middle = sheet.rows() / 2;
-  for (std::size_t column = 0; column < sheet.columns(); ++column)
+  return {1., 20., 19.1, Orientation::rows_along_crack};
+}
+
+std::vector<std::size_t> places_in_row(const TriangularLattice &sheet, std::size_t row, std::size_t first,
+                                       std::size_t n)
+{
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < n; ++i)
+    places.push_back(sheet.index(row, first + i));
+  return places;
+}
+
+TEST(Seed, LineTakesTheNearestRowFromTheNearestSite)
+{
+  const TriangularLattice sheet = along();
+  ASSERT_EQ(sheet.rows(), 23u);
+  EXPECT_EQ(seed_sites(sheet, SeedLine{3.1, 0., 4}), places_in_row(sheet, 11, 3, 4));  // X = 3.5, 4.5 ...
+  EXPECT_EQ(seed_sites(sheet, SeedLine{3., 0., 1}), places_in_row(sheet, 11, 3, 1));   // as near to 2.5: the larger
+  EXPECT_EQ(seed_sites(sheet, SeedLine{3.1, 0.8, 2}), places_in_row(sheet, 12, 3, 2)); // X = 3, 4
+  EXPECT_EQ(seed_sites(sheet, SeedLine{3.1, -0.5, 2}), places_in_row(sheet, 10, 3, 2));
+  EXPECT_EQ(seed_sites(sheet, SeedLine{3.1, std::sqrt(3.) / 4., 2}), places_in_row(sheet, 12, 3, 2)); // the larger
+}
+
+// Rows run along y, sqrt3 / 2 apart along x; a line along x has a site in every second one.
+TEST(Seed, LineAcrossRowsTakesASiteOfEverySecondRow)
+{
+  const TriangularLattice sheet(1., 20., 20., Orientation::rows_across_crack);
+  const std::size_t middle = sheet.columns() / 2;
+  ASSERT_EQ(sheet.reference(sheet.index(0, middle)).y(), 0.);
+  EXPECT_EQ(seed_sites(sheet, SeedLine{3.4, 0., 3}),
+            (std::vector<std::size_t>{sheet.index(4, middle), sheet.index(6, middle), sheet.index(8, middle)}));
+  // Half a spacing up stand the odd rows.
+  EXPECT_EQ(seed_sites(sheet, SeedLine{3.4, 0.4, 2}),
+            (std::vector<std::size_t>{sheet.index(3, middle), sheet.index(5, middle)}));
+}
+
+// Rows 10 to 12 are within 0.9 of Y = 0; X from 4 to 6, ends included.
+TEST(Seed, SlitTakesTheSitesOfAClosedRectangle)
+{
+  const TriangularLattice sheet = along();
+  EXPECT_EQ(seed_sites(sheet, SeedSlit{4., 0., 2., 1.8}),
+            (std::vector<std::size_t>{sheet.index(10, 4), sheet.index(12, 4), sheet.index(11, 4), sheet.index(10, 5),
+                                      sheet.index(12, 5), sheet.index(11, 5), sheet.index(10, 6), sheet.index(12, 6)}));
+  EXPECT_EQ(seed_sites(sheet, SeedSlit{4., 0., 2., 0.}), places_in_row(sheet, 11, 4, 2));
+  EXPECT_EQ(seed_sites(sheet, SeedSlit{4., std::sqrt(3.) / 2., 2., 0.}), places_in_row(sheet, 12, 4, 3));
+}
+
+// In a sheet of 1e12 sites, of which no list can be made.
+TEST(Seed, LooksOnlyWhereItIs)
+{
+  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
   {
-    const std::size_t place = sheet.index(middle, column);
-    const double x = std::abs(sheet.reference(place).x() - 0.5 * sheet.length()) / sheets::spacing;
-    if (x > 6.9 && x < 8.1)
-      beside = fields.deformation_gradient[place](1, 1);
+    const TriangularLattice sheet(1., 1e6, 1e6, orientation);
+    const std::vector<std::size_t> line = seed_sites(sheet, SeedLine{5e5, 0., 4});
+    ASSERT_EQ(line.size(), 4u);
+    EXPECT_NEAR(sheet.reference(line.front()).x(), 5e5, 1.);
+    EXPECT_EQ(sheet.reference(line.front()).y(), 0.);
+    EXPECT_EQ(seed_sites(sheet, SeedSlit{5e5, 0., 10., 10.}).size(), 115u);
+    EXPECT_THROW(seed_sites(sheet, SeedSlit{0., 0., 1e6, 1e5}), std::invalid_argument);
   }
-  for (std::size_t row = middle; row < sheet.rows(); ++row)
-  {
-    const std::size_t place = sheet.index(row, sheet.columns() / 2);
-    const double y = sheet.reference(place).y() / sheets::spacing;
-    if (y > 6.9 && y < 8.5)
-      above = std::min(above,
-                       fields.first_piola_stress[place](1, 1) / whole.first_piola_stress[sheet.index(middle, 5)](1, 1));
-  }
-  EXPECT_GT(beside - 1., 0.075); // stretched half as much again at least; three times at the rim of an endless sheet
-  EXPECT_LT(beside - 1., 0.2);
-  EXPECT_LT(above, 0.5); // in the shadow of the hole
+}
+
+TEST(Seed, RefusesWhatDoesNotFit)
+{
+  const TriangularLattice sheet = along();
+  EXPECT_THROW(seed_sites(sheet, SeedLine{18., 0., 4}), std::invalid_argument);
+  EXPECT_THROW(seed_sites(sheet, SeedLine{3., 9., 4}), std::invalid_argument);
+  EXPECT_THROW(seed_sites(sheet, SeedSlit{4., 0.3, 2., 0.1}), std::invalid_argument); // between two rows
+  EXPECT_THROW(seed_sites(sheet, SeedSlit{4., 0., 2., 16.}), std::invalid_argument);  // into the held rows
+  EXPECT_THROW(seed_sites(sheet, SeedSlit{30., 0., 2., 2.}), std::invalid_argument);
 }
 
 } // namespace cutout_test

@@ -1,12 +1,15 @@
-// Forces of all kinds of sheets against a plain implementation, on all threads and instruction sets.
+// Forces of all kinds of sheets against a plain implementation, with all instruction sets, and by hand.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <random>
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
+#include "lattice/energy.h"
 #include "lattice/forces.h"
+#include "support/largest_error.h"
 #include "tests/lattice/nonlocal_sheets.h"
 #include "tests/lattice/reference_forces.h"
 #include "tests/lattice/running_crack.h"
@@ -121,6 +124,7 @@ State random_state(const TriangularLattice &sheet, const Material &material, uns
 
 const std::vector<double> retraction{1.3, 1.35, 1.4, 1.3, 1.35, 1.4, 1.3, 1.35, 1.4};
 
+// With the memory of bonds: theory.md, eq. (L.27).
 TEST(Forces, AreThoseOfTheReference)
 {
   bool some_retract_alone = false;
@@ -226,37 +230,6 @@ TEST(Forces, FindRowsWithShortBonds)
   EXPECT_GT(n_others, 100u);
 }
 
-TEST(Forces, BitsDoNotDependOnThreads)
-{
-  const int before = omp_get_max_threads();
-  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
-    for (const Periodic periodic : {Periodic{}, Periodic{true, true}})
-      for (const auto &[rows, material] : {std::pair(20., sheets::rubber()),
-                                           {90., sheets::rubber()},
-                                           {20., sheets::rubber_from_outside()},
-                                           {20., sheets::disordered_rubber_of_three_shells()},
-                                           {20., sheets::disordered_rubber()}})
-      {
-        const TriangularLattice sheet = sheet_of({material, orientation, periodic, 5000. / rows}, rows);
-        ASSERT_GE(sheet.n_places(), min_places_for_threads);
-        const State state = random_state(sheet, material, 2);
-        Forces one(sheet, material), many(sheet, material);
-        omp_set_num_threads(1);
-        one.evaluate(state, state.vx, state.vy);
-        for (const int threads : {2, 3, 4, 40}) // at last more of them than rows
-        {
-          omp_set_num_threads(threads);
-          many.evaluate(state, state.vx, state.vy);
-          EXPECT_TRUE(same_bits(many.fx(), one.fx()));
-          EXPECT_TRUE(same_bits(many.fy(), one.fy()));
-          EXPECT_EQ(many.viscous_power(), one.viscous_power());
-          for (std::size_t row = 0; row < sheet.rows(); ++row)
-            EXPECT_EQ(many.row_has_events(row), one.row_has_events(row));
-        }
-      }
-  omp_set_num_threads(before);
-}
-
 TEST(Forces, BitsDoNotDependOnTheInstructionSet)
 {
   const std::vector<std::string> sets = kernels::instruction_sets();
@@ -288,16 +261,15 @@ TEST(Forces, BitsDoNotDependOnTheInstructionSet)
   kernels::use_instruction_set(sets.front());
 }
 
-// Bonds taken out one by one, in whatever order, leave the power of a sheet that never had them, and single sites feel
-// the forces of an evaluation of all, to the last bit.
+// Some time after an update of memories, bonds taken out one by one, in whatever order, leave the power of a sheet that
+// never had them, and single sites feel the forces of an evaluation of all, to the last bit.
 TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
 {
-  for (const Subject &subject : subjects())
+  const auto check = [](const TriangularLattice &sheet, const Material &material)
   {
-    const TriangularLattice sheet = sheet_of(subject);
-    const State before = random_state(sheet, subject.material, 3);
+    State state = random_state(sheet, material, 3);
     std::vector<Bond> bonds;
-    for_each_bond(before, sheet,
+    for_each_bond(state, sheet,
                   [&](const Bond &bond)
                   {
                     if ((7 * bond.near + bond.kind) % 10 < 3)
@@ -305,8 +277,9 @@ TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
                   });
     std::mt19937 random(4);
     std::shuffle(bonds.begin(), bonds.end(), random);
-    State state = before;
-    Forces forces(sheet, subject.material), without(sheet, subject.material);
+    Forces forces(sheet, material), without(sheet, material);
+    forces.set_elapsed(3e-5);
+    without.set_elapsed(3e-5);
     forces.evaluate(state, state.vx, state.vy);
     const double power = forces.viscous_power();
     for (const Bond &bond : bonds)
@@ -323,6 +296,156 @@ TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
     }
     ASSERT_LT(without.viscous_power(), 0.9 * power);
     ASSERT_NEAR(forces.viscous_power(), without.viscous_power(), 1e-12 * power);
+  };
+  for (const Subject &subject : subjects())
+    check(sheet_of(subject), subject.material);
+  for (const Periodic periodic : {Periodic{}, Periodic{true, true}})
+    for (const Material &material : {sheets::rubber_with_memory(), sheets::plastic_rubber()})
+      check(sheet_of({material, Orientation::rows_along_crack, periodic, 13.}), material);
+  for (const double scatter : {0., 0.5})
+    check(nonlocal_sheets::sheet(Grid::Kind::square, 2., 12., 10., 30., Orientation::rows_along_crack, scatter),
+          sheets::disordered_rubber());
+}
+
+// Ends a process that starts anew, since the variable of the environment is read once.
+void use_kernels()
+{
+  const TriangularLattice sheet = sheets::square(8);
+  const State state = homogeneous_state(sheet, sheets::rubber(), sheets::stretched(1.2, 1.3), Edges::held);
+  Forces forces(sheet, sheets::rubber());
+  forces.evaluate(state, state.vx, state.vy);
+  std::fprintf(stderr, "uses %s, best of %zu\n", kernels::instruction_set().c_str(),
+               kernels::instruction_sets().size());
+  std::exit(0);
+}
+
+TEST(InstructionSets, AreLimitedByTheEnvironment)
+{
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const std::string last = kernels::instruction_sets().back(); // the same in that process
+  const char *const name = "LATCON_INSTRUCTION_SET", *const before = std::getenv(name);
+  setenv(name, last.c_str(), 1);
+  EXPECT_EXIT(use_kernels(), testing::ExitedWithCode(0), "uses " + last + ", best of 1\n");
+  before != nullptr ? setenv(name, before, 1) : unsetenv(name);
+}
+
+TEST(Forces, AreMinusTheEnergyGradient)
+{
+  Material disordered = sheets::rubber();
+  disordered.disorder = sheets::disordered_rubber().disorder;
+  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
+    for (const Material &material : {sheets::rubber(), sheets::rubber_of_three_shells(), disordered})
+    {
+      const TriangularLattice sheet = sheets::square(14, orientation);
+      State state = homogeneous_state(sheet, material, sheets::stretched(2.3, 2.8), Edges::held);
+      add_noise(state, sheet, 0.1 * sheets::spacing, 1);
+      const Field rest(sheet.n_places(), 0.);
+      Forces forces(sheet, material);
+      forces.evaluate(state, rest, rest);
+      // Along a random direction the remainder of a central difference falls with h^2.
+      State direction = state;
+      add_noise(direction, sheet, sheets::spacing, 3);
+      double slope = 0.;
+      for (std::size_t i = 0; i < rest.size(); ++i)
+      {
+        direction.x[i] -= state.x[i];
+        direction.y[i] -= state.y[i];
+        slope -= forces.fx()[i] * direction.x[i] + forces.fy()[i] * direction.y[i];
+      }
+      const auto energy_at = [&](double h)
+      {
+        State moved = state;
+        for (std::size_t i = 0; i < rest.size(); ++i)
+        {
+          moved.x[i] += h * direction.x[i];
+          moved.y[i] += h * direction.y[i];
+        }
+        return elastic_energy(moved, sheet, material);
+      };
+      const auto error = [&](double h) { return std::abs((energy_at(h) - energy_at(-h)) / (2. * h) - slope); };
+      EXPECT_NEAR(std::log2(error(4e-2) / error(1e-2)) / 2., 2., 0.1);
+      EXPECT_LT(error(1e-2), 1e-3 * std::abs(slope));
+    }
+}
+
+// One bond along x drawn apart at a known speed: A0 (psi' + eta v / l), and the power is the viscous part times v.
+// theory.md, eqs. (L.3) and (L.4).
+TEST(Forces, AreTheBondLawAndDashpotOfOneBond)
+{
+  const TriangularLattice sheet = sheets::square(14);
+  const Material material = sheets::rubber();
+  State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free);
+  const std::size_t left = sheet.index(6, 6), right = left + 1;
+  state.bonds.clear(sheet.n_places());
+  state.bonds.add(left, 0);
+  state.x[right] += sheets::spacing; // stretch 2
+  state.vx[right] = 5.;
+  Forces forces(sheet, material);
+  forces.evaluate(state, state.vx, state.vy);
+  // A0 / h = 2/3 (sqrt3 / 2) d; psi'(2) = 7/4 a + 7/8 b.
+  const double section = 2. / 3. * std::sqrt(3.) / 2. * sheets::spacing;
+  const double viscous = section * 65.625 * 5. / sheets::spacing;
+  const double expected = section * (1.75 * 1e5 + 0.875 * 1.5e5) + viscous;
+  EXPECT_NEAR(forces.fx()[left], expected, 1e-12 * expected);
+  EXPECT_NEAR(forces.fx()[right], -expected, 1e-12 * expected);
+  EXPECT_EQ(forces.fy()[left], 0.);
+  EXPECT_NEAR(forces.viscous_power(), viscous * 5., 1e-12 * viscous * 5.);
+}
+
+// The smallest cell, two rows of two sites, is bonded to itself over and over. Laid out three times along and across
+// without anything repeating, it must feel the same forces.
+TEST(Forces, OfTheSmallestCellAreThoseOfItsCopiesInALargeSheet)
+{
+  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
+  {
+    const Material material = sheets::rubber();
+    const bool along_x = orientation == Orientation::rows_along_crack;
+    const double pitch = std::sqrt(3.) / 2.;
+    const auto sheet_of = [&](double columns, double rows)
+    {
+      const double d = sheets::spacing;
+      return along_x ? TriangularLattice(d, columns * d, rows * pitch * d, orientation, {true, true})
+                     : TriangularLattice(d, rows * pitch * d, columns * d, orientation, {true, true});
+    };
+    const TriangularLattice cell = sheet_of(2., 2.), large = sheet_of(6., 6.);
+    ASSERT_EQ(cell.n_sites(), 4u);
+    ASSERT_EQ(large.n_sites(), 36u);
+    const Eigen::Matrix2d F = sheets::stretched(1.3, 1.6);
+    State small = homogeneous_state(cell, material, F, Edges::held);
+    add_noise(small, cell, 0.1 * sheets::spacing, 3);
+    for (const std::size_t place : sheets::sites(cell))
+    {
+      small.vx[place] = 0.3 * static_cast<double>(place % 5);
+      small.vy[place] = -0.2 * static_cast<double>(place % 7);
+    }
+    update_images(small, cell);
+    State copies = homogeneous_state(large, material, F, Edges::held);
+    const auto original = [&](std::size_t place)
+    { return cell.index(large.row_of(place) % 2, large.column_of(place) % 2); };
+    for (const std::size_t place : sheets::sites(large))
+    {
+      const std::size_t from = original(place);
+      const Eigen::Vector2d at_rest = F * cell.reference(from);
+      copies.x[place] += small.x[from] - at_rest.x();
+      copies.y[place] += small.y[from] - at_rest.y();
+      copies.vx[place] = small.vx[from];
+      copies.vy[place] = small.vy[from];
+    }
+    update_images(copies, large);
+    Forces in_cell(cell, material), in_large(large, material);
+    in_cell.evaluate(small, small.vx, small.vy);
+    in_large.evaluate(copies, copies.vx, copies.vy);
+    double largest = 0.;
+    for (const std::size_t place : sheets::sites(cell))
+      largest = support::largest_of({largest, std::abs(in_cell.fx()[place])});
+    for (const std::size_t place : sheets::sites(large))
+    {
+      EXPECT_NEAR(in_large.fx()[place], in_cell.fx()[original(place)], 1e-12 * largest);
+      EXPECT_NEAR(in_large.fy()[place], in_cell.fy()[original(place)], 1e-12 * largest);
+    }
+    EXPECT_NEAR(in_large.viscous_power(), 9. * in_cell.viscous_power(), 1e-12 * in_large.viscous_power());
+    EXPECT_NEAR(elastic_energy(copies, large, material), 9. * elastic_energy(small, cell, material),
+                1e-12 * elastic_energy(copies, large, material));
   }
 }
 

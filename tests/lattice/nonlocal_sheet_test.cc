@@ -150,25 +150,6 @@ TEST_P(NonlocalSheet, ClosesItsLedger)
   EXPECT_GT(coarse / fine, 10.);
 }
 
-TEST_P(NonlocalSheet, AddsForcesOfASiteInTheOrderOfAnEvaluation)
-{
-  const TriangularLattice lattice = of(16., 12.);
-  const Material material = sheets::disordered_rubber();
-  State state = Crack::noisy(lattice, material);
-  relax_memory(state, lattice, material);
-  for (std::size_t row = 0; row < lattice.rows(); ++row)
-    state.vx[lattice.index(row, row % 7)] = 3.;
-  for (const auto &[place, kind] : bonds_across(lattice, 3. * d, 9. * d, 0.1 * d))
-    state.bonds.remove(place, kind);
-  Forces forces(lattice, material);
-  forces.evaluate(state, state.vx, state.vy);
-  for (const std::size_t place : sheets::sites(lattice))
-  {
-    ASSERT_EQ(forces.on_site(state, state.vx, state.vy, place),
-              Eigen::Vector2d(forces.fx()[place], forces.fy()[place]));
-  }
-}
-
 TEST_P(NonlocalSheet, CutsTheBondsThatCrossASegment)
 {
   const auto side = [](const Eigen::Vector2d &a, const Eigen::Vector2d &b, const Eigen::Vector2d &c)
@@ -247,54 +228,6 @@ TEST_P(NonlocalSheet, HasNoContactInAnUnloadedSlit)
     n_short += lattice.rest_length(kind) / lattice.length_ratio(near, kind) < 0.9 * d ? 1 : 0;
   EXPECT_LE(unloaded.contact()->n_touching(), n_short);
   EXPECT_GT(unloaded.contact()->n_candidates(), 0u);
-}
-
-TEST(NonlocalCrack, HasTheSameBitsOnAllThreadsAndInstructionSets)
-{
-  const int threads = omp_get_max_threads();
-  const std::string best = kernels::instruction_set();
-  const auto run = [](int n, const std::string &set, const TriangularLattice &lattice)
-  {
-    omp_set_num_threads(n);
-    kernels::use_instruction_set(set);
-    EXPECT_GE(lattice.rows() * lattice.stride(), min_places_for_threads);
-    Crack crack(lattice, sheets::disordered_rubber(),
-                lattice.scatter() > 0. ? Toughening(BehindTipToughening{8. * d, 1.6}) : RetractionToughening{0.8, 2.});
-    for (int step = 0; step < 3; ++step)
-      crack.simulation.step();
-    EXPECT_GT(crack.simulation.n_broken(), 0u);
-    return crack.values();
-  };
-  for (const TriangularLattice &lattice :
-       {sheet(Grid::Kind::square, 2., 40., 24.),
-        sheet(Grid::Kind::square, 2., 40., 24., 30., Orientation::rows_along_crack, 0.5)})
-  {
-    const std::vector<double> expected = run(1, best, lattice);
-    for (const int n : {2, 3})
-      EXPECT_EQ(run(n, best, lattice), expected) << n << " threads";
-    for (const std::string &set : kernels::instruction_sets())
-      EXPECT_EQ(run(1, set, lattice), expected) << set;
-  }
-  omp_set_num_threads(threads);
-  kernels::use_instruction_set(best);
-}
-
-TEST(NonlocalCrack, ContinuesFromASnapshotWithTheSameBits)
-{
-  const TriangularLattice lattice = sheet(Grid::Kind::triangular, 1.5, 40., 20.);
-  Crack crack(lattice);
-  crack.simulation.step();
-  Snapshot snapshot;
-  crack.simulation.save(snapshot);
-  const auto later = [&]
-  {
-    for (int step = 0; step < 30; ++step)
-      crack.simulation.step();
-    return crack.values();
-  };
-  const std::vector<double> expected = later();
-  crack.simulation.restore(snapshot);
-  EXPECT_EQ(later(), expected);
 }
 
 TEST(NonlocalCrack, RefusesWhatItCannotDo)

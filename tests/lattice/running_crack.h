@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lattice/seed.h"
 #include "lattice/simulation.h"
 #include "lattice/site_fields.h"
 #include "lattice/time_step.h"
@@ -42,15 +43,11 @@ inline std::unique_ptr<latcon::lattice::Simulation> start(const latcon::lattice:
                                                  Fracture(sheet, material, 3.05, BehindTipToughening{2.5e-3, 3.}, F));
   if (has_contact)
     simulation->enable_contact(contact_like_nearest_bond(sheet, material, 3. * sheets::spacing, 0.1, 0.1));
-  simulation->cut(sheets::middle_row(sheet, 4, 8));
+  if (sheet.is_triangular())
+    simulation->cut(sheets::middle_row(sheet, 4, 8));
+  else
+    simulation->cut_bonds(bonds_across(sheet, 4. * sheets::spacing, 12. * sheets::spacing, 0.1 * sheets::spacing));
   return simulation;
-}
-
-inline std::unique_ptr<latcon::lattice::Simulation> start(const latcon::lattice::TriangularLattice &sheet,
-                                                          const latcon::lattice::Material &material,
-                                                          unsigned int stages = 0, bool has_contact = false)
-{
-  return start(sheet, material, stepping(sheet, material, stages), has_contact);
 }
 
 inline bool same_bits(const latcon::lattice::Field &a, const latcon::lattice::Field &b)

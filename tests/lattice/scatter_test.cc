@@ -1,9 +1,15 @@
-// Scattered points and the weights of their bonds. Energies and waves: tests/verification/claims/nonlocal_test.cc.
+// Stencils of rings and scattered points: weights of their bonds. Energies and waves:
+// tests/verification/claims/nonlocal_test.cc.
 #include "lattice/scatter.h"
+
+#include <cmath>
+#include <functional>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
 #include "lattice/fracture.h"
+#include "lattice/stencil.h"
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
 #include "tests/lattice/nonlocal_sheets.h"
@@ -124,34 +130,82 @@ TEST(Scatter, CountsTheBondsOfEachPointForTheTip)
   EXPECT_EQ(fracture.tip(), place);
 }
 
-// Forces of a sheet without edges: of each site those of its bonds one by one, and none in sum.
-TEST(Scatter, HasNoEdgesInAPeriodicSheet)
+using Stencil = std::vector<HalfBond>;
+
+std::vector<Ring> all_directions()
 {
-  const Grid grid{Grid::Kind::square, d / 1.5};
-  const std::vector<Ring> rings = lattice_rings(d, Orientation::rows_along_crack, M_PI / 6.);
-  const TriangularLattice lattice(grid, ring_stencil(grid, rings), d, 16. * d, 16. * d, {true, true});
-  const Material material = sheets::rubber();
-  State state = homogeneous_state(lattice, material, sheets::stretched(1.6, 1.3), Edges::held);
-  const auto forces = [&](const State &at)
-  {
-    Forces forces(lattice, material);
-    forces.evaluate(at, at.vx, at.vy);
-    return std::pair(forces.fx(), forces.fy());
-  };
-  add_noise(state, lattice, 0.05 * d, 3);
-  const auto [fx, fy] = forces(state);
-  latcon::support::Extremes sizes;
-  double rest_x = 0., rest_y = 0.;
-  for (const std::size_t place : sheets::sites(lattice))
-  {
-    const Eigen::Vector2d force(fx[place], fy[place]);
-    sizes.add(force.norm());
-    rest_x += force.x();
-    rest_y += force.y();
-    EXPECT_LT((force - Forces(lattice, material).on_site(state, state.vx, state.vy, place)).norm(),
-              1e-12 * force.norm() + 1e-15);
-  }
-  EXPECT_LT(std::hypot(rest_x, rest_y), 1e-10 * sizes.largest());
+  return lattice_rings(d, Orientation::rows_along_crack, M_PI / 6.);
+}
+
+Stencil isotropic(Grid::Kind kind, double m, double rotation = 0.)
+{
+  return ring_stencil({kind, d / m, rotation}, all_directions());
+}
+
+double sum(const Stencil &stencil, std::size_t shell, const std::function<double(const HalfBond &)> &of_bond)
+{
+  double total = 0.;
+  for (const HalfBond &bond : stencil)
+    if (bond.shell == shell)
+      total += bond.weight * of_bond(bond);
+  return total;
+}
+
+/// Largest error of the second and fourth moments of directions.
+double error_of_moments(const Stencil &stencil)
+{
+  double error = 0.;
+  for (const std::size_t shell : {0, 1})
+    for (int x = 0; x <= 4; ++x)
+    {
+      const double mean = sum(stencil, shell,
+                              [&](const HalfBond &bond)
+                              {
+                                const double angle = std::atan2(bond.vector.y(), bond.vector.x());
+                                return std::pow(std::cos(angle), x) * std::pow(std::sin(angle), 4 - x);
+                              });
+      const double exact[] = {3. / 8., 0., 1. / 8., 0., 3. / 8.};
+      error = latcon::support::largest_of({error, std::abs(mean - exact[x])});
+    }
+  return error;
+}
+
+const struct
+{
+  const char *name;
+  Grid::Kind kind;
+  double rotation;
+} grids[] = {{"triangular", Grid::Kind::triangular, 0.},
+             {"turned triangular", Grid::Kind::triangular, 0.21},
+             {"square", Grid::Kind::square, 0.},
+             {"turned square", Grid::Kind::square, M_PI / 4.},
+             {"slightly turned square", Grid::Kind::square, 0.13}};
+
+TEST(Stencil, HasTheMomentsOfAllDirections)
+{
+  for (const auto &grid : grids)
+    for (const double m : {1.5, 2., 3., 4., 6.})
+      EXPECT_LT(error_of_moments(isotropic(grid.kind, m, grid.rotation)), 1e-13) << grid.name << ", m = " << m;
+  EXPECT_EQ(isotropic(Grid::Kind::square, 2.).size(), 30u);
+  EXPECT_EQ(isotropic(Grid::Kind::square, 3.).size(), 48u);
+  for (const double degrees : {10., 20.})
+    EXPECT_LT(error_of_moments(ring_stencil({Grid::Kind::square, d / 4., 0.},
+                                            lattice_rings(d, Orientation::rows_along_crack, degrees * M_PI / 180.))),
+              1e-13)
+      << degrees;
+}
+
+TEST(Stencil, RefusesWhatIsNoContinuum)
+{
+  const auto refuses = [](const Grid &grid, const std::vector<Ring> &rings)
+  { EXPECT_THROW(ring_stencil(grid, rings), std::invalid_argument); };
+  const auto narrow = lattice_rings(d, Orientation::rows_along_crack, 0.);
+  refuses({Grid::Kind::square, d, 0.}, narrow);           // no bonds in the arcs
+  refuses({Grid::Kind::triangular, 0.5 * d, 0.}, narrow); // four lattices in each other
+  refuses({Grid::Kind::square, 0., 0.}, all_directions());
+  refuses({Grid::Kind::square, d, 0.}, {{-d, 0., 0}});
+  refuses({Grid::Kind::square, d, 0.}, {{d, 0., n_shells}});
+  refuses({Grid::Kind::square, d, 0.}, {{d, 0., 0, 1.}});
 }
 
 } // namespace lattice_scatter_test

@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "lattice/site_fields.h"
 #include "tests/lattice/sheets.h"
 
 namespace simulation_test
@@ -19,61 +18,28 @@ using namespace lattice;
 
 const Eigen::Matrix2d loading = sheets::stretched(1.4, 1.4);
 
-// Objects keep a copy of their material, whatever happens to the caller's.
-TEST(Simulation, KeepsItsMaterial)
-{
-  const TriangularLattice sheet = sheets::square(8);
-  Material callers = sheets::rubber();
-  const State state = homogeneous_state(sheet, callers, loading, Edges::held);
-  Simulation simulation(sheet, callers, state, 1e-9, Fracture(sheet, callers, 1.3, NoToughening{}, loading));
-  const SiteEvaluator evaluator(sheet, callers);
-  const double elastic = simulation.energies().elastic;
-  const std::size_t middle = sheet.index(4, 3);
-  const double density = evaluator.at(state, middle).strain_energy_density;
-
-  callers.density = 1.;
-  callers.nearest.law = LinearBond(1.);
-  callers.nearest.area_factor = 7.;
-  callers.next_nearest->law = LinearBond(1.);
-  EXPECT_EQ(simulation.energies().elastic, elastic);
-  EXPECT_EQ(simulation.material().density, sheets::rubber().density);
-  EXPECT_EQ(evaluator.at(state, middle).strain_energy_density, density);
-  // All bonds are at 1.4 of 1.3: what they held is what they have lost, but for the work of one step.
-  simulation.step();
-  EXPECT_EQ(simulation.energies().elastic, 0.);
-  EXPECT_NEAR(simulation.energies().broken, elastic, 1e-6 * elastic);
-}
-
-TEST(Simulation, RefusesASecondContactAndSecondEndLoads)
+// Contact and loads are given once; sites at a cut lack bonds as those at an end do.
+TEST(Simulation, RefusesASecondContactAndLoadsOnABrokenSheet)
 {
   const TriangularLattice sheet = sheets::square(8);
   const Material material = sheets::rubber();
-  const ContactLaw law = contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 1.);
   const auto end = EndLoads::End::free;
-  const Edges edges{false, false, true, true};
-  Simulation simulation(sheet, material, homogeneous_state(sheet, material, loading, edges), 1e-9,
-                        Fracture(sheet, material, 3., NoToughening{}, loading));
-  simulation.load_ends(loading, end, end);
-  EXPECT_THROW(simulation.load_ends(loading, end, end), std::logic_error);
-  simulation.enable_contact(law);
-  EXPECT_THROW(simulation.enable_contact(law), std::logic_error);
-  EXPECT_NO_THROW(simulation.step());
-}
-
-// Sites at a cut lack bonds as those at an end do.
-TEST(Simulation, LoadsTheEndsOfAnUnbrokenSheetAlone)
-{
-  const TriangularLattice sheet = sheets::square(8);
-  const Material material = sheets::rubber();
-  const Edges edges{false, false, true, true};
-  const State state = homogeneous_state(sheet, material, loading, edges);
-  const auto end = EndLoads::End::free;
-  Simulation cut(sheet, material, state, 1e-9, Fracture(sheet, material, 3., NoToughening{}, loading));
+  const State state = homogeneous_state(sheet, material, loading, {false, false, true, true});
+  const auto start = [&](double breaking_stretch)
+  {
+    return Simulation(sheet, material, state, 1e-9,
+                      Fracture(sheet, material, breaking_stretch, NoToughening{}, loading));
+  };
+  Simulation whole = start(3.), cut = start(3.), broken = start(1.3);
+  whole.load_ends(loading, end, end);
   cut.cut(sheets::middle_row(sheet, 3, 2));
-  EXPECT_THROW(cut.load_ends(loading, end, end), std::logic_error);
-  Simulation broken(sheet, material, state, 1e-9, Fracture(sheet, material, 1.3, NoToughening{}, loading));
   EXPECT_GT(broken.step().size(), 0u);
-  EXPECT_THROW(broken.load_ends(loading, end, end), std::logic_error);
+  for (Simulation *simulation : {&whole, &cut, &broken})
+    EXPECT_THROW(simulation->load_ends(loading, end, end), std::logic_error);
+  const ContactLaw law = contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 1.);
+  whole.enable_contact(law);
+  EXPECT_THROW(whole.enable_contact(law), std::logic_error);
+  EXPECT_NO_THROW(whole.step());
 }
 
 // Sites that are cut out of a moving sheet take their motion with them.
@@ -219,43 +185,6 @@ TEST(Simulation, KeepsItsClockInDividedSteps)
   }
   EXPECT_GT(recoil.simulation->n_divided_steps(), 3u);
   EXPECT_GT(recoil.simulation->n_broken(), 10u);
-}
-
-// Fast motion sees the springs of all branches.
-TEST(TimeStepLimits, CountTheSpringsOfAllBranches)
-{
-  const TriangularLattice sheet = sheets::square(6);
-  Material material = sheets::nearest_only(0.);
-  material.nearest.law = LinearBond{2e5};
-  const double elastic = time_step_limits(sheet, material, 0.5).elastic;
-  material.nearest.memory = MaxwellMemory({{4e5, 1e-4}, {2e5, 1e-3}});
-  EXPECT_DOUBLE_EQ(time_step_limits(sheet, material, 0.5).elastic, 0.5 * elastic);
-  material.nearest.viscosity = 1e-3;
-  EXPECT_DOUBLE_EQ(chebyshev_step(sheet, material, 0.5), 1e-3 / 8e5);
-}
-
-// A sheet drawn out by its edges at 40 % a millisecond, dashpots at work: the edges' work goes into springs and
-// dashpots.
-TEST(EnergyBalance, ClosesWithMovingEdges)
-{
-  const TriangularLattice sheet = sheets::square(20);
-  const Material material = sheets::rubber();
-  const auto relative_imbalance = [&](double time_step)
-  {
-    State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
-    Simulation simulation(sheet, material, std::move(state), time_step);
-    simulation.constrain({held_sites(simulation.state(), sheet), true, true, steady(sheets::stretched(400., 200.))});
-    const auto steps = static_cast<std::size_t>(std::lround(2e-4 / time_step));
-    for (std::size_t step = 0; step < steps; ++step)
-      simulation.step();
-    const EnergyBalance e = simulation.energies();
-    EXPECT_GT(e.boundary_work, 0.);
-    EXPECT_GT(e.viscous, 0.1 * e.boundary_work);
-    return std::abs(e.imbalance()) / e.boundary_work;
-  };
-  const double fine = relative_imbalance(2.5e-8);
-  EXPECT_LT(fine, 1e-5);
-  EXPECT_NEAR(std::log2(relative_imbalance(1e-7) / fine) / 2., 2., 0.3);
 }
 
 } // namespace simulation_test

@@ -5,85 +5,66 @@
 
 #include <gtest/gtest.h>
 
+#include "lattice/energy.h"
+#include "lattice/forces.h"
 #include "lattice/relaxation.h"
-#include "lattice/simulation.h"
 #include "tests/lattice/sheets.h"
 
 namespace site_fields_test
 {
 
-using namespace latcon;
+using namespace latcon::lattice;
 
-using namespace lattice;
-
-// Uniaxial stretch of a lattice of linear bonds, nearest neighbours alone: the sums over 0, 60, 120 degrees by hand.
-TEST(SiteFields, AreTheHandSumsOfAHomogeneousStretch)
+// Of a site in a sheet that was at rest in the reference configuration and is stretched at once, in motion: sums over
+// its bonds. theory.md, eq. (L.31).
+TEST(SiteFields, AreSumsOverTheBondsOfASite)
 {
-  const TriangularLattice sheet = sheets::square(12);
-  const Material material{944., {LinearBond{2e5}, 0.5, 10.}, std::nullopt};
-  const State state = homogeneous_state(sheet, material, sheets::stretched(1.2, 1.), Edges::held);
-  const SiteFields fields = site_fields(state, sheet, material);
-  const std::size_t middle = sheet.index(sheet.rows() / 2, 5);
-  // A0 l / V = s for nearest neighbours. Stretches: 1.2 along the row, l = sqrt(0.6^2 + 3/4) at +-60 degrees.
-  const double l = std::sqrt(0.36 + 0.75);
-  const double energy = 0.5 * 0.5 * 2e5 * (0.04 + 2. * (l - 1.) * (l - 1.));
-  EXPECT_NEAR(fields.strain_energy_density[middle], energy, 1e-10 * energy);
-  const double pxx = 0.5 * 2e5 * (0.2 + 2. * (l - 1.) * (0.6 / l) * 0.5);
-  const double pyy = 0.5 * 2e5 * 2. * (l - 1.) * 0.75 / l;
-  const Eigen::Matrix2d P = fields.first_piola_stress[middle];
-  EXPECT_NEAR(P(0, 0), pxx, 1e-10 * pxx);
-  EXPECT_NEAR(P(1, 1), pyy, 1e-10 * pxx);
-  EXPECT_NEAR(P(0, 1), 0., 1e-10 * pxx);
-  EXPECT_NEAR(fields.deformation_gradient[middle](0, 0), 1.2, 1e-12);
-  EXPECT_NEAR(fields.deformation_gradient[middle](1, 1), 1., 1e-12);
-  EXPECT_NEAR(fields.cauchy_stress[middle](0, 0), pxx, 1e-9 * pxx);       // P F^T / J = pxx 1.2 / 1.2
-  EXPECT_NEAR(fields.cauchy_stress[middle](1, 1), pyy / 1.2, 1e-9 * pxx); // pyy 1 / 1.2
-  EXPECT_EQ(fields.damage[middle], 0.);
-}
-
-TEST(SiteFields, DeformationGradientIsThatOfAnyHomogeneousState)
-{
-  const TriangularLattice sheet = sheets::square(12, Orientation::rows_across_crack);
-  const Material material = sheets::rubber();
-  Eigen::Matrix2d F;
-  F << 2.1, 0.4, -0.3, 1.7;
-  const SiteFields fields = site_fields(homogeneous_state(sheet, material, F, Edges::free), sheet, material);
-  for (const std::size_t place : sheets::sites(sheet))
-  {
-    // Round-off of positions, 1e-16 of the sheet's size, over d.
-    EXPECT_NEAR((fields.deformation_gradient[place] - F).norm(), 0., 1e-13);
-  }
-}
-
-// A sheet at rest in the reference configuration that is stretched at once. theory.md, eq. (L.31), at the start:
-// P = P_law + sum A0 l / V E (lam - 1) n N.
-TEST(BondMemoryStress, IsThatOfTheOverstress)
-{
-  const TriangularLattice sheet = sheets::square(12);
-  const Material material = sheets::rubber_with_memory();
-  const Eigen::Matrix2d F = sheets::stretched(1.4, 1.3);
-  State at_rest = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
-  relax_memory(at_rest, sheet, material);
-  State stretched = homogeneous_state(sheet, material, F, Edges::held);
-  stretched.history = at_rest.history;
-  const Simulation simulation(sheet, material, std::move(stretched), 2e-7);
-  State without = simulation.state();
-  without.history = {};
-
-  const std::size_t middle = sheet.index(sheet.rows() / 2, sheet.columns() / 2);
-  Eigen::Matrix2d overstress = Eigen::Matrix2d::Zero();
-  for (std::size_t kind = 0; kind < 2 * n_kinds_per_shell; ++kind)
-  {
-    const Eigen::Vector2d R = sheet.bond_vector(kind), r = F * R;
-    const double modulus = TriangularLattice::is_nearest(kind) ? 3e5 : 1.5e5; // as in rubber_with_memory()
-    overstress += cross_section(*material.shell(kind), sheet) / sheet.site_area() * modulus *
-                  (r.norm() / R.norm() - 1.) * r.normalized() * R.transpose();
-  }
-  const SiteEvaluator evaluator(sheet, material);
-  const Eigen::Matrix2d found =
-    evaluator.at(simulation.state(), middle).first_piola_stress - evaluator.at(without, middle).first_piola_stress;
-  // Sums over twelve bonds, the stress of the laws being several times that of the memories.
-  EXPECT_LT((found - overstress).norm(), 1e-13 * overstress.norm());
+  const Eigen::Matrix2d F{{2.1, 0.4}, {-0.3, 1.7}}, rate{{20., -90.}, {30., 50.}};
+  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
+    for (const Material &material : {sheets::rubber(), sheets::disordered_rubber_of_three_shells()})
+    {
+      const TriangularLattice sheet = sheets::square(12, orientation);
+      State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
+      relax_memory(state, sheet, material);
+      const State stretched = homogeneous_state(sheet, material, F, Edges::held);
+      state.x = stretched.x;
+      state.y = stretched.y;
+      for (const std::size_t place : sheets::sites(sheet))
+      {
+        state.vx[place] = (rate * sheet.reference(place)).x();
+        state.vy[place] = (rate * sheet.reference(place)).y();
+      }
+      Forces(sheet, material).update_memory(state);
+      const std::size_t middle = sheet.index(sheet.rows() / 2, sheet.columns() / 2);
+      Eigen::Matrix2d stress = Eigen::Matrix2d::Zero();
+      double density = 0.;
+      for_each_bond_of_site(state, sheet, middle,
+                            [&](const Bond &bond)
+                            {
+                              const Shell &shell = *material.shell(bond.kind);
+                              const Eigen::Vector2d R = sheet.bond_vector(bond.kind), n = (F * R).normalized();
+                              const double l = R.norm(), stretch = (F * R).norm() / l;
+                              double pull = force(shell.law, stretch) + shell.viscosity * n.dot(rate * R) / l;
+                              if (const auto *memory = std::get_if<MaxwellMemory>(&shell.memory))
+                                for (const MaxwellMemory::Branch &branch : memory->branches())
+                                  pull += branch.modulus * (stretch - 1.);
+                              const double half = 0.5 * state.stiffness.of(bond.near, bond.kind) *
+                                                  cross_section(shell, sheet) / sheet.site_area();
+                              stress += half * pull * n * R.transpose();
+                              density += half * l * energy(shell.law, stretch);
+                            });
+      const SiteFields fields = site_fields(state, sheet, material);
+      // Sums over up to 18 bonds; positions have the round-off of the sheet's size.
+      EXPECT_NEAR(fields.strain_energy_density[middle], density, 1e-13 * density);
+      EXPECT_LT((fields.first_piola_stress[middle] - stress).norm(), 1e-13 * stress.norm());
+      EXPECT_LT((fields.cauchy_stress[middle] - stress * F.transpose() / F.determinant()).norm(),
+                1e-13 * stress.norm());
+      EXPECT_EQ(fields.damage[middle], 0.);
+      for (const std::size_t place : sheets::sites(sheet))
+      {
+        EXPECT_LT((fields.deformation_gradient[place] - F).norm(), 1e-13);
+      }
+    }
 }
 
 // A held sheet shaken by noise relaxes to the homogeneous state: the only equilibrium near it.
@@ -115,6 +96,56 @@ TEST(Relaxation, SaysWhenItDoesNotGetThere)
   State state = homogeneous_state(sheet, material, sheets::stretched(2.3, 2.8), Edges::held);
   add_noise(state, sheet, 0.1 * sheets::spacing, 3);
   EXPECT_THROW(relax(state, sheet, material, 1e-11, 10), std::runtime_error);
+}
+
+constexpr Orientation orientations[] = {Orientation::rows_along_crack, Orientation::rows_across_crack};
+
+// A periodic sheet holds per area of a site one bond of each of nine directions: lengths and directions written out.
+// Its sites have no edge: all bonds, no force, the same energy and stress. theory.md, eq. (L.6).
+TEST(ThirdShell, HomogeneousSheetHasTheEnergyAndStressOfItsNineDirections)
+{
+  for (const Orientation orientation : orientations)
+  {
+    const double d = sheets::spacing, n = 8.;
+    const TriangularLattice sheet(d, n * d, n * d, orientation, {true, true});
+    const Material material = sheets::rubber_of_three_shells();
+    Eigen::Matrix2d F;
+    F << 1.4, 0.3, -0.2, 1.7;
+    const State state = homogeneous_state(sheet, material, F, Edges::held);
+    double energy = 0.;
+    Eigen::Matrix2d stress = Eigen::Matrix2d::Zero();
+    const double first = orientation == Orientation::rows_along_crack ? 0. : 30.; // degrees
+    const auto add = [&](const Shell &shell, double length, double degrees)
+    {
+      const Eigen::Vector2d N(std::cos(degrees * M_PI / 180.), std::sin(degrees * M_PI / 180.));
+      const Eigen::Vector2d now = F * N;
+      const double weight = shell.area_factor * length; // A0 l / V in units of d
+      energy += weight * latcon::lattice::energy(shell.law, now.norm());
+      stress += weight * force(shell.law, now.norm()) * now.normalized() * N.transpose();
+    };
+    for (const double turn : {0., 60., 120.})
+    {
+      add(material.nearest, 1., first + turn);
+      add(*material.next_nearest, std::sqrt(3.), first + turn + 30.);
+      add(*material.third_nearest, 2., first + turn);
+    }
+    const double area = sheet.length() * sheet.height();
+    EXPECT_NEAR(elastic_energy(state, sheet, material) / area, energy, 1e-12 * energy);
+    const SiteEvaluator evaluator(sheet, material);
+    Forces forces(sheet, material);
+    forces.evaluate(state, state.vx, state.vy);
+    for (const std::size_t place : sheets::sites(sheet))
+    {
+      const SiteValues values = evaluator.at(state, place);
+      EXPECT_EQ(values.bonds, 18u);
+      EXPECT_EQ(state.held[place], 0);
+      EXPECT_LT((values.deformation_gradient - F).norm(), 1e-12);
+      EXPECT_NEAR(values.strain_energy_density, energy, 1e-12 * energy);
+      EXPECT_LT((values.first_piola_stress - stress).norm(), 1e-12 * stress.norm());
+      // Of 18 forces, each 2.5e5 Pa times a section of about d.
+      EXPECT_LT(std::hypot(forces.fx()[place], forces.fy()[place]), 18. * 1e-13 * 2.5e5 * d);
+    }
+  }
 }
 
 } // namespace site_fields_test

@@ -7,7 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "lattice/simulation.h"
-#include "tests/lattice/smooth_motion.h"
+#include "lattice/time_step.h"
+#include "tests/lattice/sheets.h"
 
 namespace lattice_symmetry_test
 {
@@ -181,57 +182,6 @@ TEST(Objectivity, CrackInASheetOnItsSideIsTheSameCrack)
     }
     expect_same_energies(upright.simulation->energies(), turned.simulation->energies());
   }
-}
-
-// Forces on a random state and on its mirror images in x and in y, to the last bit, in both orientations: the order in
-// which a site adds its bonds keeps both mirrors.
-TEST(Mirror, MirroredStateFeelsTheMirroredForces)
-{
-  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
-    for (const bool in_rows : {true, false}) // exchanges the two ends of each row, or the rows
-    {
-      const double d = sheets::spacing, rows = 13. * std::sqrt(0.75) * d;
-      const bool along = orientation == Orientation::rows_along_crack;
-      // Thirteen rows and thirteen columns.
-      const TriangularLattice sheet(d, along ? 12. * d : 12. / 13. * rows, along ? 12. / 13. * rows : 12. * d,
-                                    orientation);
-      ASSERT_EQ(sheet.rows() % 2, 1u);
-      const Material material = sheets::rubber();
-      State state = homogeneous_state(sheet, material, F, Edges::free);
-      add_noise(state, sheet, 0.1 * d, 1);
-      State mirrored = state;
-      const Eigen::Vector2d signs = in_rows == along ? Eigen::Vector2d(-1., 1.) : Eigen::Vector2d(1., -1.);
-      const auto image = [&](std::size_t place)
-      {
-        const std::size_t row = sheet.row_of(place), column = sheet.column_of(place);
-        return in_rows ? sheet.index(row, sheet.sites_in_row(row) - 1 - column)
-                       : sheet.index(sheet.rows() - 1 - row, column);
-      };
-      const auto for_each_site = [&](const auto &visit)
-      {
-        for (const std::size_t place : sheets::sites(sheet))
-          visit(place, image(place));
-      };
-      for_each_site(
-        [&](std::size_t place, std::size_t other)
-        {
-          state.vx[place] = 10. * std::sin(1e3 * state.y[place]);
-          state.vy[place] = 10. * std::cos(1e3 * state.x[place]);
-          mirrored.x[other] = signs.x() * state.x[place];
-          mirrored.y[other] = signs.y() * state.y[place];
-          mirrored.vx[other] = signs.x() * state.vx[place];
-          mirrored.vy[other] = signs.y() * state.vy[place];
-        });
-      Forces one(sheet, material), two(sheet, material);
-      one.evaluate(state, state.vx, state.vy);
-      two.evaluate(mirrored, mirrored.vx, mirrored.vy);
-      for_each_site(
-        [&](std::size_t place, std::size_t other)
-        {
-          ASSERT_EQ(two.fx()[other], signs.x() * one.fx()[place]) << place;
-          ASSERT_EQ(two.fy()[other], signs.y() * one.fy()[place]) << place;
-        });
-    }
 }
 
 } // namespace lattice_symmetry_test

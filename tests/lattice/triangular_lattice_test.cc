@@ -84,38 +84,6 @@ TEST_P(BothOrientations, SheetIsItsOwnMirrorImage)
   }
 }
 
-// About the centre line along y, to round-off: with an odd number of rows. With an even one, which rows across the
-// crack may have, the first row has a site more than the last.
-TEST_P(BothOrientations, SheetIsItsOwnMirrorImageInXIfItsNumberOfRowsIsOdd)
-{
-  const bool along = GetParam() == Orientation::rows_along_crack;
-  for (const double length : {11., 12.})
-  {
-    const TriangularLattice sheet(sheets::spacing, length * sheets::spacing, 11. * sheets::spacing, GetParam());
-    if (sheet.rows() % 2 == 0)
-    {
-      EXPECT_FALSE(along);
-      EXPECT_EQ(sheet.sites_in_row(sheet.rows() - 1), sheet.sites_in_row(0) - 1);
-      continue;
-    }
-    for (std::size_t row = 0; row < sheet.rows(); ++row)
-      for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
-      {
-        const Eigen::Vector2d X = sheet.reference(sheet.index(row, column));
-        const std::size_t mirror_row = along ? row : sheet.rows() - 1 - row;
-        const std::size_t mirror_column = along ? sheet.sites_in_row(row) - 1 - column : column;
-        const Eigen::Vector2d mirror = sheet.reference(sheet.index(mirror_row, mirror_column));
-        EXPECT_NEAR(mirror.x(), sheet.length() - X.x(), 1e-15 * sheet.length());
-        EXPECT_EQ(mirror.y(), X.y());
-      }
-  }
-  // Both numbers occur among these lengths.
-  const TriangularLattice odd(1., 12., 11., Orientation::rows_across_crack);
-  const TriangularLattice even(1., 11., 11., Orientation::rows_across_crack);
-  EXPECT_EQ(odd.rows() % 2, 1u);
-  EXPECT_EQ(even.rows() % 2, 0u);
-}
-
 TEST_P(BothOrientations, ExtentIsThatOfTheOutermostSites)
 {
   const TriangularLattice sheet(sheets::spacing, 0.02, 0.01, GetParam());
@@ -132,6 +100,31 @@ TEST_P(BothOrientations, ExtentIsThatOfTheOutermostSites)
   EXPECT_NEAR(high.x(), sheet.length(), 1e-15);
   EXPECT_NEAR(high.y() - low.y(), sheet.height(), 1e-15);
   EXPECT_EQ(high.y(), -low.y());
+}
+
+// Held edges are those that are asked for, where the sheet is not periodic.
+TEST_P(BothOrientations, HeldSitesAreThoseAtTheEdges)
+{
+  using lattice::Edges;
+  using lattice::Periodic;
+  for (const auto &[periodic, held] : {std::pair(Periodic{true, false}, Edges::held),
+                                       {Periodic{false, true}, Edges::held},
+                                       {Periodic{}, Edges{false, true, false, false}}})
+  {
+    const double side = 12. * sheets::spacing;
+    const TriangularLattice sheet(sheets::spacing, side, side, GetParam(), periodic);
+    const lattice::State state = lattice::homogeneous_state(sheet, sheets::rubber(), Eigen::Matrix2d::Identity(), held);
+    for (const std::size_t place : sheets::sites(sheet))
+    {
+      const Eigen::Vector2d X = sheet.reference(place);
+      const double from_right = sheet.length() - X.x();
+      const double from_edge = periodic.x   ? 0.5 * sheet.height() - std::abs(X.y())
+                               : periodic.y ? std::min(X.x(), from_right)
+                                            : from_right;
+      // Bonds reach sqrt3 d across rows that run along the edge, 1.5 d across those that do not.
+      EXPECT_EQ(state.held[place] != 0, from_edge < 1.4 * sheets::spacing);
+    }
+  }
 }
 
 TEST(TriangularLattice, RefusesWhatIsNoSheet)

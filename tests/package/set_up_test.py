@@ -85,23 +85,6 @@ def test_shows_the_steps_of_the_first_build_alone(clone, tmp_path):
     assert "main.c" in failed.stderr
 
 
-def builds_tests(clone):
-    return "BUILD_TESTING:BOOL=ON" in (clone / "build" / "release" / "CMakeCache.txt").read_text()
-
-
-def test_builds_tests_once_they_are_asked_for(clone, tmp_path):
-    set_up(tmp_path, clone)
-    assert not builds_tests(clone)
-    for configured in (True, False):
-        result = run_in(tmp_path, clone / "cmake" / "set-up.sh", "--with", "tests", "release", "latcon")
-        assert result.returncode == 0, result.stderr
-        assert result.stderr.startswith("Configuring (release)\n") == configured
-        assert (result.stderr == "") == (not configured)
-        assert builds_tests(clone)
-    assert set_up(tmp_path, clone) == ""
-    assert builds_tests(clone)
-
-
 def test_a_copied_clone_builds_in_its_own_place(clone, tmp_path):
     set_up(tmp_path, clone)
     copy = tmp_path / "copy"

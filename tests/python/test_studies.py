@@ -10,7 +10,7 @@ import pytest
 import latcon
 from conftest import tiny_case
 
-STRAINS = np.linspace(1.5, 1.9, 3)
+STRAINS = np.array([1.5, 1.9])
 
 
 class Future:
@@ -49,7 +49,7 @@ def test_a_sweep_has_the_numbers_of_its_runs(swept):
         assert at["pattern"] == run.crack.pattern and at["state"] == "measured"
         assert at["speed_lagrangian"] == run.crack.speed_lagrangian.value
     table = latcon.open_study(directory).table
-    assert len(table) == 6 and table.attrs["units"]["wavelength"] == "m"
+    assert len(table) == 4 and table.attrs["units"]["wavelength"] == "m"
     np.testing.assert_array_equal(table["speed_lagrangian"], data["speed_lagrangian"].values.ravel())
 
 
@@ -64,7 +64,7 @@ def test_a_repeated_sweep_uses_its_runs_again(swept):
 def test_any_executor_gives_the_same_numbers(swept, tmp_path, executor, tasks):
     lines = []
     assert sweep(tmp_path / "out", executor=executor, tasks=tasks, progress=lines.append).equals(swept[1])
-    assert lines[-1] == ("5 of 6 tasks" if tasks is None else "1 of 2 tasks")
+    assert lines[-1] == ("3 of 4 tasks" if tasks is None else "1 of 2 tasks")
 
 
 @pytest.mark.parametrize("code, error", [(3, None), (4, None), (5, latcon.OutputFailed), (130, latcon.Interrupted)])

@@ -1,6 +1,4 @@
 """The claims in the report: their sections, plots and error metrics, from tables with known orders and errors."""
-import contextlib
-import io
 import json
 import math
 import re
@@ -8,14 +6,13 @@ import shutil
 
 import numpy as np
 import pytest
-from PIL import Image
 
 import made_up_claims
 from made_up_claims import DECAY, FIRST_ROW, RUN_ERROR, write_claims
+from made_up_runs import check_row, drawn, pixels, write_verification
 
 from latcon.errors import UnreadableFile
 from latcon.files import read_columns
-from latcon.report.__main__ import main
 from latcon.report.claim_plots import MODULES, all_plots
 from latcon.report.claim_tables import Table, fitted_order, groups, largest_text, range_text
 
@@ -27,30 +24,20 @@ CLAIMS = ("energy", "wave-speeds", "viscoelastic-waves", "relaxation", "intrinsi
           "steady-crack", "running-crack")
 
 
-def check_row(claim, number, verdict="holds"):
+def row(claim, number, verdict="holds"):
     """A row of results.json."""
-    empty = dict.fromkeys(("lattice", "continuum", "theory"))
-    error = {"holds": 1e-3, "fails": 1.0}[verdict]
-    return {"claim": claim, "quantity": f"{claim} {verdict} {number}", "unit": "1", **empty, "error": error,
-            "tolerance": 1e-2, "verdict": verdict}
+    return check_row(claim, f"{claim} {verdict} {number}", verdict, error={"holds": 1e-3, "fails": 1.0}[verdict], tolerance=1e-2)
 
 
 def write_run(folder, rows):
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "results.json").write_text(json.dumps({"claims": rows}))
+    write_verification(folder, rows)
     (folder / "claims.json").write_text(json.dumps({"claims": [
         {"name": claim, "title": f"Title of {claim}", "statement": f"Statement of {claim}."} for claim in CLAIMS]}))
-    (folder / "run.json").write_text(json.dumps({"version": "1.2.3", "exit_code": 0}))
-    (folder / "case.prm").write_text("subsection Sheet\nend\n")
 
 
-def drawn_report(tmp_path, expect=0):
-    """Runs the script. Returns the page and its messages on stderr."""
-    errors = io.StringIO()
-    with contextlib.redirect_stderr(errors):
-        assert main(["report", str(tmp_path), "--quiet"]) == expect, errors.getvalue()
-    page = tmp_path / "report.html"
-    return page.read_text(encoding="utf-8") if page.exists() else "", errors.getvalue()
+def drawn_html(folder, expect=0):
+    drawn(folder, "--quiet", expect=expect)
+    return (folder / "report.html").read_text(encoding="utf-8")
 
 
 def section_of(html, claim):
@@ -59,9 +46,9 @@ def section_of(html, claim):
 
 
 def test_each_claim_has_its_text_plots_and_error_metrics(tmp_path):
-    write_run(tmp_path, [check_row(claim, 0) for claim in CLAIMS])
+    write_run(tmp_path, [row(claim, 0) for claim in CLAIMS])
     write_claims(tmp_path)
-    html, _ = drawn_report(tmp_path)
+    html = drawn_html(tmp_path)
     metrics = {
         "energy": ("order of the local energy 2.0", "order of the filtered energy 4.00",
                    "elastic energy of the finite elements off the lattice&#39;s by up to 1.0e-03",
@@ -96,18 +83,17 @@ def test_each_claim_has_its_text_plots_and_error_metrics(tmp_path):
             assert plot.claimed in section.replace("&#39;", "'")
     assert {path.stem for path in tmp_path.glob("*.csv")} == set(TABLES)
     for plot in all_plots():
-        pixels = np.asarray(Image.open(tmp_path / f"{plot.name}.png").convert("RGB"), dtype=float)
-        assert pixels.shape[1] == 1600
-        assert (np.ptp(pixels[::4, ::4], axis=2) > 60).mean() > 1e-3, f"{plot.name} has no colours"
+        colours = pixels((tmp_path / f"{plot.name}.png").read_bytes())
+        assert (np.ptp(colours[::4, ::4], axis=2) > 60).mean() > 1e-3, f"{plot.name} has no colours"
 
 
 def test_what_is_missing_is_left_out(tmp_path):
-    write_run(tmp_path, [check_row("energy", 0), check_row("homemade", 0)])
+    write_run(tmp_path, [row("energy", 0), row("homemade", 0)])
     write_claims(tmp_path)
     for name in TABLES:
         if name not in ("edge_layer", "dispersion_runs"):
             (tmp_path / f"{name}.csv").unlink()
-    html, _ = drawn_report(tmp_path)
+    html = drawn_html(tmp_path)
     assert re.findall(r'<section id="claim-([^"]*)"', html) == ["energy", "intrinsic-length", "homemade"]
     assert html.count("<img ") == 1
     # Claims that were not checked are not shown.
@@ -130,7 +116,7 @@ def test_values_that_were_not_computed_leave_gaps(tmp_path, monkeypatch):
         rows = [",".join(cell if column in kept else "nan" for column, cell in zip(header, line.split(",")))
                 for line in lines[1:]]
         (tmp_path / f"{name}.csv").write_text("\n".join([lines[0], *rows]) + "\n")
-    html, _ = drawn_report(tmp_path)
+    html = drawn_html(tmp_path)
     assert html.count("<img ") == len(all_plots())
 
 
@@ -148,22 +134,22 @@ def test_damaged_table_is_named(tmp_path, plot):
         header, first = whole.splitlines()[:2]
         damaged = [whole.replace(header.split(",")[-1] + "\n", "other\n", 1), whole[:whole.rindex(",")],
                    header + "\n" + first.rpartition(",")[0] + ",many\n"]
-        drawn = {"wave_speeds": "bloch [m/s]", "disorder": "reuss [1]", "running_crack": "v_x [m/s]"}
-        if name in drawn:
-            damaged[0] = whole.replace(drawn[name], "other", 1)  # the last column is not drawn
+        plotted = {"wave_speeds": "bloch [m/s]", "disorder": "reuss [1]", "running_crack": "v_x [m/s]"}
+        if name in plotted:
+            damaged[0] = whole.replace(plotted[name], "other", 1)  # the last column is not drawn
         if name == "wave_speeds":
             damaged[2] = whole.replace(",L,", ",P,", 1)
         for text in damaged:
             path.write_text(text)
-            assert re.search(rf"\Aerror: .*{name}\.csv: .+\n\Z", drawn_report(folder, expect=2)[1])
+            assert re.search(rf"\Aerror: .*{name}\.csv: .+\n\Z", drawn(folder, "--quiet", expect=2)[1])
         path.write_text(whole)
 
 
 def test_failing_rows_are_never_folded(tmp_path):
-    rows = [check_row("energy", number) for number in range(30)] + [check_row("wave-speeds", 0, "fails")]
-    rows += [check_row("wave-speeds", number) for number in range(1, 30)]
+    rows = [row("energy", number) for number in range(30)] + [row("wave-speeds", 0, "fails")]
+    rows += [row("wave-speeds", number) for number in range(1, 30)]
     write_run(tmp_path, rows)
-    html, _ = drawn_report(tmp_path, expect=3)
+    html = drawn_html(tmp_path, expect=3)
     section = section_of(html, "wave-speeds")
     assert html.index("claim-wave-speeds\">") < html.index("claim-energy\">")
     assert html.index('<section id="claim-wave-speeds"') < html.index('<section id="claim-energy"')

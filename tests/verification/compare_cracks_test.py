@@ -3,7 +3,6 @@ import json
 import math
 import re
 import shutil
-import types
 
 import numpy as np
 import pytest
@@ -12,19 +11,19 @@ from program import latcon, read_csv
 
 from latcon import UnreadableFile
 from latcon.compare import _read_crack as read_crack
+from latcon.quantities import number_text
 from latcon.study.program import InputError
 
 RUN = ["fracture", "quick", "--skip-verification", "--no-report", "--quiet", "--set", "Sheet/length=3 cm", "--set", "Sheet/height=1.5 cm"]
 
 
 @pytest.fixture(scope="module")
-def once(module_path):
-    made = types.SimpleNamespace()
-    made.one, made.other = (module_path / name for name in ("one", "other"))
-    for folder, *entries in [(made.one,), (made.other, "--set", "Loading/strain y=1.9", "--set", "Lattice/noise seed=3")]:
-        run = latcon(*RUN, "--output-dir", folder, *entries)
+def pair(module_path):
+    """Folders of two cracks."""
+    for name, *entries in (("one",), ("other", "--set", "Loading/strain y=1.9", "--set", "Lattice/noise seed=3")):
+        run = latcon(*RUN, "--output-dir", module_path / name, *entries)
         assert run.returncode == 0, run.stderr
-    return made
+    return module_path / "one", module_path / "other"
 
 
 def compare(out, *arguments):
@@ -39,14 +38,14 @@ def refused(*arguments):
     return run.stderr
 
 
-def test_quantities_are_those_of_the_runs(once, out):
-    text, found = compare(out, once.one, once.other)
+def test_quantities_are_those_of_the_runs(pair, out):
+    text, found = compare(out, *pair)
     rows = {row["name"]: row for row in found["quantities"]}
     table = {row["quantity"]: row for row in read_csv(out / "compare.csv")}
     assert list(rows) == list(table)
     for file, names in [("crack.json", ["speed_lagrangian", "speed_laboratory", "bonds_broken"]),
                         ("near_tip.json", ["wedge_angle"])]:
-        first, second = (json.loads((run / file).read_text()) for run in (once.one, once.other))
+        first, second = (json.loads((run / file).read_text()) for run in pair)
         for name in names:
             row = rows[name]
             assert (row["first"], row["second"]) == (first[name], second[name])
@@ -62,16 +61,16 @@ def test_quantities_are_those_of_the_runs(once, out):
     assert re.search(r"(?m)^pattern ", text)
 
 
-def test_entries_that_differ_are_listed(once, out):
-    text, found = compare(out, once.one, once.other)
+def test_entries_that_differ_are_listed(pair, out):
+    text, found = compare(out, *pair)
     assert found["entries"] == [{"key": "Lattice/noise seed", "unit": "", "first": "1", "second": "3"},
                       {"key": "Loading/strain y", "unit": "1", "first": "1.8", "second": "1.9"}]
     assert re.search(r"(?m)^Loading/strain y +1\.8 +1\.9$", text)
 
 
-def test_distance_of_the_paths_is_numpys(once, out):
-    _, found = compare(out, once.one, once.other)
-    paths = [np.genfromtxt(run / "crack.csv", delimiter=",", names=True) for run in (once.one, once.other)]
+def test_distance_of_the_paths_is_numpys(pair, out):
+    _, found = compare(out, *pair)
+    paths = [np.genfromtxt(run / "crack.csv", delimiter=",", names=True) for run in pair]
     begin, end = max(path["X"][0] for path in paths), min(path["X"][-1] for path in paths)
     assert (found["paths"]["X_begin"], found["paths"]["X_end"]) == (begin, end)
     X = np.linspace(begin, end, 200001)
@@ -82,53 +81,48 @@ def test_distance_of_the_paths_is_numpys(once, out):
     assert found["paths"]["largest_distance_over_d"] == pytest.approx(found["paths"]["largest_distance"] / 0.625e-3, abs=5e-8)
 
 
-def test_a_run_does_not_differ_from_itself(once, out):
-    text, found = compare(out, once.one, once.one)
+def test_a_run_does_not_differ_from_itself(pair, out):
+    text, found = compare(out, pair[0], pair[0])
     assert {row["difference"] for row in found["quantities"]} == {0.}
     assert (found["entries"], found["paths"]["rms_distance"], found["paths"]["largest_distance"]) == ([], 0., 0.)
     assert "The cases have the same entries." in text
     assert json.loads((out / "run.json").read_text())["exit_code"] == 0
 
 
-def test_the_page_shows_both_runs(once, out):
-    run = latcon("compare", once.one, once.other, "--output-dir", out)
-    assert (run.returncode, run.stderr) == (0, "")
-    assert f"{out}/compare.json, compare.csv, compare.html" in run.stdout
-    found = json.loads((out / "compare.json").read_text())
-    for side, folder in (("first", once.one), ("second", once.other)):
-        assert (out / found[f"{side}_folder"]).resolve() == folder.resolve()
-    html = (out / "compare.html").read_text(encoding="utf-8")
-    assert html.count('class="viewer"') == 2
-    assert "Loading/strain y" in html
-    assert "failed its checks" not in html
-    shutil.rmtree(out)
-    compare(out, once.one, once.other)
-    assert not (out / "compare.html").exists()
-
-
-def test_the_page_says_which_run_failed_its_checks(tmp_path, once, out):
+def test_the_page_shows_both_runs_and_which_failed_its_checks(tmp_path, pair, out):
     failed = tmp_path / "failed"
-    shutil.copytree(once.one, failed)
+    shutil.copytree(pair[0], failed)
     info = json.loads((failed / "run.json").read_text())
     info |= {"exit_code": 3, "failed_rows": {"fracture: energy imbalance over energy exchanged": "ledger"}}
     (failed / "run.json").write_text(json.dumps(info))
-    latcon("compare", failed, once.other, "--output-dir", out)
+    run = latcon("compare", failed, pair[1], "--output-dir", out)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert f"{out}/compare.json, compare.csv, compare.html" in run.stdout
+    found = json.loads((out / "compare.json").read_text())
+    for side, folder in (("first", failed), ("second", pair[1])):
+        assert (out / found[f"{side}_folder"]).resolve() == folder.resolve()
     html = (out / "compare.html").read_text(encoding="utf-8")
+    assert html.count('class="viewer"') == 2
+    speed = next(row for row in found["quantities"] if row["name"] == "speed_lagrangian")
+    for words in ("Loading/strain y", found["pattern"]["first"], "speed lagrangian", number_text(speed["first"], speed["first_uncertainty"])):
+        assert words in html
     assert re.search(r'failed its checks</b>: [^<]*energy imbalance over energy exchanged \(ledger\)', html)
     assert html.count("failed its checks") == 1
+    compare(out, *pair)
+    assert not (out / "compare.html").exists()
 
 
-def test_what_is_no_pair_of_cracks_is_refused(tmp_path, once):
+def test_what_is_no_pair_of_cracks_is_refused(tmp_path, pair):
     empty = tmp_path / "empty"
     empty.mkdir()
-    for pair in [(once.one, empty), (empty, once.one)]:
-        assert re.search(f"{empty} holds no crack.json.*give two output directories of cracks, or a lattice", refused(*pair))
-    assert "are for frames" in refused(once.one, once.other, "--overlap")
-    assert "is one of the runs" in refused(once.one, once.other, "--output-dir", once.other)
+    for folders in [(pair[0], empty), (empty, pair[0])]:
+        assert re.search(f"{empty} holds no crack.json.*give two output directories of cracks, or a lattice", refused(*folders))
+    assert "are for frames" in refused(*pair, "--overlap")
+    assert "is one of the runs" in refused(*pair, "--output-dir", pair[1])
     damaged = tmp_path / "damaged"
-    shutil.copytree(once.one, damaged)
+    shutil.copytree(pair[0], damaged)
     (damaged / "crack.csv").write_text("t,X,Y\n0,1,2\n0,1\n")
-    assert "damaged/crack.csv: line 3 has 2 fields, the header has 3" in refused(once.one, damaged)
+    assert "damaged/crack.csv: line 3 has 2 fields, the header has 3" in refused(pair[0], damaged)
     info = json.loads((damaged / "run.json").read_text())
     del info["entries"]
     for file, text, message in (

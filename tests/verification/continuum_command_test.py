@@ -1,7 +1,6 @@
 """Tests of finite element cases from the command line: closed forms, files, refusals."""
 import json
 import math
-import types
 
 import numpy as np
 import pytest
@@ -114,24 +113,23 @@ def test_is_the_mean_of_the_bonds_and_close_to_the_lattice(tmp_path):
 
 @pytest.fixture(scope="module")
 def once(module_path):
-    made = types.SimpleNamespace()
-    made.out = module_path / "out"
-    made.run_ = latcon("continuum", HOLE, "--output-dir", made.out)
-    return made
+    """Folder of the sheet with a hole."""
+    run = latcon("continuum", HOLE, "--output-dir", module_path / "out", *settings("Continuum/adaptive cycles=6"))
+    assert run.returncode == 0, run.stderr
+    assert "cycle 6" in run.stdout
+    return module_path / "out"
 
 
-def test_ends_well_with_every_file(once):
-    assert once.run_.returncode == 0, once.run_.stderr
-    names = {path.name for path in once.out.iterdir()}
+def test_leaves_every_file(once):
+    names = {path.name for path in once.iterdir()}
     assert {"case.prm", "run.json", "results.json", "results.csv", "energy.csv", "reactions.csv",
-                          "newton.csv", "meshes.csv", "continuum.pvd"} <= names
+            "newton.csv", "meshes.csv", "continuum.pvd"} <= names
     assert not [name for name in names if name.endswith(".part")]
-    assert "cycle 8" in once.run_.stdout
 
 
 def test_reactions_settle_as_the_mesh_grows(once):
-    meshes = numbers(once.out / "meshes.csv")
-    assert len(meshes["cells"]) == 9
+    meshes = numbers(once / "meshes.csv")
+    assert len(meshes["cells"]) == 7
     assert (np.diff(meshes["cells"]) > 0).all()
     assert (np.diff(meshes["unknowns"]) > 0).all()
     largest = meshes["top_y"]  # equal to the bottom except for sign and round-off
@@ -139,7 +137,7 @@ def test_reactions_settle_as_the_mesh_grows(once):
     assert change[-1] < 1e-5
     # Once a mesh resolves the rim, the changes decrease by an order of magnitude or more.
     assert change[-1] < 0.1 * change.max()
-    row = read_csv(once.out / "results.csv")[-1]
+    row = read_csv(once / "results.csv")[-1]
     # Newton stops at 1e-10 of the reactions.
     assert float(row["error"]) == pytest.approx(change[-1], abs=1e-9)
     assert row["verdict"] == "holds"
@@ -147,26 +145,26 @@ def test_reactions_settle_as_the_mesh_grows(once):
 
 
 def test_tables_tell_one_story(once):
-    meshes, newton = numbers(once.out / "meshes.csv"), numbers(once.out / "newton.csv")
-    reactions, energy = numbers(once.out / "reactions.csv"), numbers(once.out / "energy.csv")
+    meshes, newton = numbers(once / "meshes.csv"), numbers(once / "newton.csv")
+    reactions, energy = numbers(once / "reactions.csv"), numbers(once / "energy.csv")
     assert list(energy) == ["load_factor", "elastic"]
     assert (reactions["load_factor"][-1], energy["load_factor"][-1]) == (1., 1.)
     # The row at full load is that of the last mesh.
     assert energy["elastic"][-1] == meshes["elastic"][-1]
     assert reactions["top_y"][-1] == meshes["top_y"][-1]
-    assert results(once.out)["elastic energy per thickness"] == meshes["elastic"][-1]
+    assert results(once)["elastic energy per thickness"] == meshes["elastic"][-1]
     for axis in "xy":
         sides = [meshes[f"{edge}_{axis}"] for edge in ("bottom", "top")]
         # Newton stops at 1e-10 of the reactions.
         assert abs(sum(sides)).max() < 1e-9 * meshes["top_y"][0]
     ends = np.append(newton["iteration"][1:] == 0, True)
-    assert ends.sum() == 9
-    assert newton["mesh"][ends].tolist() == list(range(9))
+    assert ends.sum() == 7
+    assert newton["mesh"][ends].tolist() == list(range(7))
     assert (newton["residual"][ends] <= newton["tolerance"][ends]).all()
 
 
 def test_fields_open_outside_latcon(once):
-    mesh = last_mesh(once.out)
+    mesh = last_mesh(once)
     assert mesh.GetFieldData().GetArray("TimeValue").GetValue(0) == 1.
     points = mesh.GetPointData()
     components = {points.GetArrayName(i): points.GetArray(i).GetNumberOfComponents() for i in range(points.GetNumberOfArrays())}
@@ -186,7 +184,7 @@ def test_fields_open_outside_latcon(once):
 
 
 def test_cells_are_small_at_the_rim(once):
-    mesh = last_mesh(once.out)
+    mesh = last_mesh(once)
     middle, area = cells_of(mesh)
     points = points_of(mesh)
     distance = np.linalg.norm(middle - 0.5 * (points.min(axis=0) + points.max(axis=0)), axis=1) - 5e-3
@@ -200,12 +198,13 @@ def test_cells_are_small_at_the_rim(once):
 
 
 def test_reaction_that_does_not_settle_is_3(once):
-    out = once.out.parent / "absurd"
+    out = once.parent / "absurd"
     run = latcon("continuum", HOLE, "--output-dir", out,
                  *settings("Continuum/adaptive cycles=1", "Continuum/reaction tolerance=1e-12"))
     assert run.returncode == 3, run.stderr
     assert "fails" in run.stdout
     assert json.loads((out / "run.json").read_text())["exit_code"] == 3
+
 
 # Strains of Fig. 1: the sheet around the hole is stretched by 2.3 and 2.8, its rim compressed across.
 FIG1 = ("Loading/strain x=1.3", "Loading/strain y=1.8")
@@ -213,7 +212,7 @@ FIG1 = ("Loading/strain x=1.3", "Loading/strain y=1.8")
 
 def test_large_strain_is_carried_with_gradient_energy(once):
     for law, gradient in (("cauchy-born", "lattice"), ("mooney-rivlin-network", "network")):
-        out = once.out.parent / law
+        out = once.parent / law
         run = latcon("continuum", HOLE, "--output-dir", out,
                      *settings(*FIG1, f"Continuum/law={law}", f"Continuum/gradient={gradient}",
                                "Continuum/adaptive cycles=5"))
@@ -222,57 +221,10 @@ def test_large_strain_is_carried_with_gradient_energy(once):
 
 
 def test_loading_that_cannot_be_carried_is_4(once):
-    run = latcon("continuum", HOLE, "--output-dir", once.out.parent / "torn",
+    run = latcon("continuum", HOLE, "--output-dir", once.parent / "torn",
                  *settings(*FIG1, "Continuum/law=mooney-rivlin", "Continuum/gradient=none",
                            "Continuum/refinements=2", "Continuum/adaptive cycles=0"))
     assert run.returncode == 4, run.stderr
     for part in ["equilibrium was found beyond load factor 0.", "rejected", "converged", "iteration  0  residual"]:
         assert part in run.stdout + run.stderr
     assert "no static equilibrium was found" in run.stderr
-
-
-def refused(out, command, case, parts, *entries):
-    """Checks exit code 2, a message with the given parts, and that no file is changed."""
-    out.mkdir(exist_ok=True)
-    (out / "case.prm").write_text("of an earlier run")
-    run = latcon(command, case, "--output-dir", out, *settings(*entries))
-    assert run.returncode == 2, (entries, run.stdout, run.stderr)
-    for part in parts:
-        assert part in run.stderr
-    assert [path.name for path in out.iterdir()] == ["case.prm"]
-    assert (out / "case.prm").read_text() == "of an earlier run"
-    return run
-
-
-def test_conditions_that_contradict_each_other(out):
-    for case, parts, *entries in [
-            (LAYER, ["Left edge/condition", "Right edge/condition", "shear_layer.prm:"], "Left edge/condition=held"),
-            (LAYER, ["Bottom edge/normal gradient", "Continuum/gradient"], "Continuum/gradient=none"),
-            (LAYER, ["Top edge/double traction x", "Top edge/normal gradient"], "Top edge/double traction x=1"),
-            (LAYER, ["Continuum/degree"], "Continuum/degree=1"),
-            (HOLE, ["Sheet/notch length", "Sheet/hole radius"], "Sheet/notch length=1 cm"),
-            (HOLE, ["Continuum/mesh file", "Sheet/hole radius"], "Continuum/mesh file=a.msh")]:
-        refused(out, "continuum", case, parts, *entries)
-
-
-def test_expression_that_cannot_be_read(out):
-    run = refused(out, "continuum", LAYER, ["Top edge/displacement x", "sin(z)", "column 5"], "Top edge/displacement x=sin(z)")
-    assert len(run.stderr.splitlines()) == 1
-
-
-def test_mesh_file_that_is_not_there_or_none(tmp_path, out):
-    nowhere = tmp_path / "none.msh"
-    whole = "Sheet/hole radius=0"
-    refused(out, "continuum", HOLE, [str(nowhere)], whole, f"Continuum/mesh file={nowhere}")
-    text = tmp_path / "text.msh"
-    text.write_text("no mesh\n")
-    refused(out, "continuum", HOLE, [str(text)], whole, f"Continuum/mesh file={text}")
-
-
-def test_cracks_run_in_whole_held_sheets(out):
-    refused(out, "fracture", HOLE, ["Sheet/hole radius", "Left edge/condition", "latcon fracture"])
-
-
-def test_lattice_is_told_no_more_than_it_can_do(out):
-    refused(out, "lattice", LAYER, ["Top edge/normal gradient", "Bottom edge/normal gradient", "latcon lattice"])
-    refused(out, "lattice", HOLE, ["Top edge/displacement x"], "Top edge/displacement x=0.01*y")

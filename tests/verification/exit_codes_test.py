@@ -52,6 +52,12 @@ def test_standard_output_that_is_full(out):
     assert code_in_file(out) == OUTPUT_FAILED
 
 
+def test_streams_that_are_closed():
+    for closed in (">&-", "<&- >&- 2>&-"):
+        ended = subprocess.run(["bash", "-c", f'"$0" --version {closed}', LATCON], stderr=subprocess.DEVNULL, check=False)
+        assert ended.returncode == OUTPUT_FAILED, closed
+
+
 def test_instruction_set_that_there_is_not(out):
     for command in (TINY, ["verify", "energy", "--quick"]):
         run = latcon(*command, "--output-dir", out, env=dict(os.environ, LATCON_INSTRUCTION_SET="MMX"))

@@ -37,22 +37,3 @@ class ForkServer:
         self.process.wait()
         self.process.stdout.close()
         self.temporary.cleanup()
-
-
-class Forked:
-    """Program like victims.Program, for uninterrupted runs on one thread."""
-
-    def __init__(self, server):
-        # Other verdicts than those of the user.
-        self.cache = tempfile.TemporaryDirectory()
-        self.server = ForkServer(server, dict(os.environ, XDG_CACHE_HOME=self.cache.name))
-
-    def run(self, arguments, out, timeout=600):
-        """@return exit status, minus the number of a signal, or "hangs"; standard error"""
-        how, _, number = self.server.run([*arguments, "--output-dir", str(out)], pathlib.Path.cwd(), timeout).partition(" ")
-        status = {"exit": lambda: int(number), "signal": lambda: -int(number), "limit": lambda: "hangs"}[how]()
-        return status, self.server.stderr()
-
-    def close(self):
-        self.server.close()
-        self.cache.cleanup()

@@ -1,6 +1,4 @@
 """Tests of the frames of a crack: reduced frames of its motion, and the default view of the others in ParaView."""
-
-import types
 import numpy as np
 import pytest
 import vtk
@@ -25,20 +23,18 @@ def points_of(sheet, name):
 
 @pytest.fixture(scope="module")
 def once(module_path):
-    made = types.SimpleNamespace()
-    made.out = module_path / "out"
-    made.run_ = latcon(*STRIP, "--set", f"Output/motion frames={MOTION_FRAMES}", "--output-dir", made.out)
-    return made
+    run = latcon(*STRIP, "--set", f"Output/motion frames={MOTION_FRAMES}", "--output-dir", module_path / "out")
+    assert run.returncode == 0, run.stderr
+    return module_path / "out"
 
 
 def test_motion_follows_the_tip(once):
-    assert once.run_.returncode == 0, once.run_.stderr
-    motion = frames(once.out / "motion.pvd")
+    motion = frames(once / "motion.pvd")
     times = [time for time, _ in motion]
     assert times == sorted(set(times))
     assert times[0] == 0.0
-    assert times[-1] == frames(once.out / "lattice.pvd")[-1][0]  # to the last digit
-    tip = read_csv(once.out / "crack.csv")
+    assert times[-1] == frames(once / "lattice.pvd")[-1][0]  # to the last digit
+    tip = read_csv(once / "crack.csv")
     reached = [max(float(row["X"]) for row in tip if float(row["t"]) <= time) for time in times]
     assert reached[-1] > STOP  # so it passed all positions
     # One frame each time the tip passes another tenth of its way; a jump may skip some of them.
@@ -50,7 +46,7 @@ def test_motion_follows_the_tip(once):
 
 
 def test_motion_is_that_of_the_sheet_and_light(once):
-    motion, lattice = frames(once.out / "motion.pvd"), frames(once.out / "lattice.pvd")
+    motion, lattice = frames(once / "motion.pvd"), frames(once / "lattice.pvd")
     for light_file, whole_file in ((motion[0][1], lattice[0][1]), (motion[-1][1], lattice[-1][1])):
         light, whole = sheet_of(light_file), sheet_of(whole_file)
         assert light.GetNumberOfPoints() == whole.GetNumberOfPoints()
@@ -66,23 +62,23 @@ def test_motion_is_that_of_the_sheet_and_light(once):
 
 
 def test_none_are_written_if_none_are_wanted(once):
-    out = once.out.parent / "none"
+    out = once.parent / "none"
     run = latcon(*STRIP, "--set", "Output/motion frames=0", "--output-dir", out)
     assert run.returncode == 0, run.stderr
     assert list(out.glob("motion*")) == []
 
 
 def test_paraview_shows_stretch_and_warps_by_displacement(once):
-    sheet = sheet_of(frames(once.out / "lattice.pvd")[-1][1])
+    sheet = sheet_of(frames(once / "lattice.pvd")[-1][1])
     assert sheet.GetCellData().GetScalars().GetName() == "stretch"
     assert sheet.GetPointData().GetVectors().GetName() == "displacement"
-    motion = sheet_of(frames(once.out / "motion.pvd")[-1][1])
+    motion = sheet_of(frames(once / "motion.pvd")[-1][1])
     assert motion.GetPointData().GetScalars().GetName() == "displacement"
     assert motion.GetPointData().GetVectors().GetName() == "displacement"
 
 
 def test_a_site_has_the_mean_stretch_of_its_bonds(once):
-    sheet = sheet_of(frames(once.out / "lattice.pvd")[-1][1])
+    sheet = sheet_of(frames(once / "lattice.pvd")[-1][1])
     count = sheet.GetNumberOfVerts()
     stretch = vtk_to_numpy(sheet.GetCellData().GetArray("stretch"))
     ends = vtk_to_numpy(sheet.GetLines().GetConnectivityArray()).reshape(-1, 2)

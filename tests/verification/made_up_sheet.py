@@ -3,7 +3,7 @@ import json
 
 import numpy as np
 
-from report_test import HOLDS, PUBLISHED, write_frame, write_fracture, write_series, write_table
+from made_up_runs import HOLDS, PUBLISHED, opening, write_fracture, write_series, write_sites, write_table
 
 SPACING, COLUMNS, ROWS, FRAMES = 1e-3, 60, 21, 12
 STRAIN = 0.8  # along y
@@ -48,24 +48,22 @@ def write_torn_sheet(folder):
     def fields(time, number):
         open_by = np.where(above, 1, -1) * 4e-3 * np.clip((time / 1e-3 * end - reference[:, 0]) / end, 0, None)
         moved = np.column_stack((0.1 * reference[:, 0], STRAIN * reference[:, 1] + open_by))
-        velocity = np.column_stack((5 * np.cos(number + 300 * reference[:, 0]), 20 * open_by / 4e-3, 0 * open_by))
+        velocity = np.column_stack((5 * np.cos(number + 300 * reference[:, 0]), 20 * open_by / 4e-3))
         lost = [b for b in across if breaks[b] <= time or b in seed]
         gone = np.bincount(bonds[lost].ravel(), minlength=len(reference))
-        return {"displacement": np.column_stack((moved, 0 * open_by)), "velocity": velocity, "damage": gone / degree,
-                "site": site, "cauchy_stress": np.outer(1e4 + open_by, np.eye(9)[4])}
+        return {"displacement": moved, "velocity": velocity, "damage": gone / degree, "site": site, "cauchy_stress": opening(1e4 + open_by)}
 
-    flat = np.column_stack((reference, 0 * site))
     whole = {}
     for name, time, number in (("lattice-0000.vtp", 0.0, 0), ("lattice-0001.vtp", times[-1], FRAMES - 1)):
         values = fields(time, number)
         kept = [b for b in range(len(bonds)) if b not in seed and (b not in breaks or breaks[b] > time)]
-        place = reference + values["displacement"][:, :2]
-        length = [np.hypot(*(place[a] - place[b])) / np.hypot(*(reference[a] - reference[b])) for a, b in bonds[kept]]
-        write_frame(folder / name, flat, values, bonds[kept].tolist(), np.concatenate((np.ones(len(site)), length)))
+        now, before = (np.linalg.norm(np.diff(place[bonds[kept]], axis=1)[:, 0], axis=1)
+                       for place in (reference + values["displacement"], reference))
+        write_sites(folder / name, reference, values, bonds[kept], now / before)
         whole[name] = float(time)
     write_series(folder / "lattice.pvd", whole)
     names = {f"motion-{number:04}.vtp": float(time) for number, time in enumerate(times)}
     for number, (name, time) in enumerate(names.items()):
         values = fields(time, number)
-        write_frame(folder / name, flat, {key: values[key] for key in ("displacement", "velocity")})
+        write_sites(folder / name, reference, {key: values[key] for key in ("displacement", "velocity")})
     write_series(folder / "motion.pvd", names)

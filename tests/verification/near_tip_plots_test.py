@@ -1,12 +1,11 @@
 """Tests of pictures of synthetic fields around a tip: their contents for a known field, and rejected files."""
-import types
-
 import numpy as np
 import pytest
-from PIL import Image
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+
+from made_up_runs import pixels
 
 from latcon.errors import UnreadableFile
 from latcon.report.near_tip_plots import opening_stress_picture, read_near_tip, triangulation, velocity_picture
@@ -52,26 +51,19 @@ def write_field(path, backward=3.0, without=()):
 
 
 @pytest.fixture
-def made(tmp_path):
-    made = types.SimpleNamespace()
-    made.vti, made.png = tmp_path / "near_tip.vti", tmp_path / "picture.png"
-    return made
+def vti(tmp_path):
+    write_field(tmp_path / "near_tip.vti")
+    return tmp_path / "near_tip.vti"
 
 
-def pixels(made):
-    picture = np.asarray(Image.open(made.png).convert("RGB"), dtype=float)
-    assert picture.shape[1] == 1600
-    return picture
+def colours(draw, vti, **options):
+    """Pixels of a picture of a field."""
+    draw(vti, vti.with_suffix(".png"), **options)
+    return pixels(vti.with_suffix(".png").read_bytes())
 
 
-def green(made):
-    """Number of pixels in the colour of the outline."""
-    return np.count_nonzero(np.abs(pixels(made) - GREEN).max(axis=2) < 30)
-
-
-def test_reads_places_and_components(made):
-    write_field(made.vti)
-    tip = read_near_tip(made.vti)
+def test_reads_places_and_components(vti):
+    tip = read_near_tip(vti)
     assert tip.samples == 7
     row, column = HALF + 4, BEHIND + 3
     np.testing.assert_allclose(tip.position[row, column], (3e-3 * STRETCH, 4e-3 * STRETCH), rtol=1e-12)
@@ -83,20 +75,18 @@ def test_reads_places_and_components(made):
     assert len(triangulation(tip).triangles) == 2 * cells
 
 
-def test_outlines_what_moves_back(made):
-    write_field(made.vti)
-    velocity_picture(made.vti, made.png, crack_speed=50.0)
-    outlined = green(made)
+def test_outlines_what_moves_back(vti):
+    def green():
+        """Number of pixels in the colour of the outline."""
+        return np.count_nonzero(np.abs(colours(velocity_picture, vti, crack_speed=50.0) - GREEN).max(axis=2) < 30)
+    outlined = green()
     assert outlined > 500  # a circle with a radius of about 300 pixels
-    write_field(made.vti, backward=0.4)  # slower than 1 % of the crack
-    velocity_picture(made.vti, made.png, crack_speed=50.0)
-    assert green(made) < outlined / 20
+    write_field(vti, backward=0.4)  # slower than 1 % of the crack
+    assert green() < outlined / 20
 
 
-def test_shows_the_stress_where_it_is(made):
-    write_field(made.vti)
-    opening_stress_picture(made.vti, made.png)
-    picture = pixels(made)
+def test_shows_the_stress_where_it_is(vti):
+    picture = colours(opening_stress_picture, vti)
     # The peak is at the tip in yellow, the far field is another colour.
     yellow = (picture[..., 0] > 200) & (picture[..., 1] > 200) & (picture[..., 2] < 120)
     rows, columns = np.nonzero(yellow[:int(0.75 * len(picture))])
@@ -106,10 +96,10 @@ def test_shows_the_stress_where_it_is(made):
     assert np.median(columns) == pytest.approx(tip_column, abs=0.06 * width)
 
 
-def test_names_what_is_wrong(made):
-    made.vti.write_bytes(b"nothing of the kind")
+def test_names_what_is_wrong(vti):
+    vti.write_bytes(b"nothing of the kind")
     with pytest.raises(UnreadableFile):
-        read_near_tip(made.vti)
-    write_field(made.vti, without=("velocity",))
+        read_near_tip(vti)
+    write_field(vti, without=("velocity",))
     with pytest.raises(UnreadableFile, match="velocity"):
-        read_near_tip(made.vti)
+        read_near_tip(vti)

@@ -8,13 +8,11 @@ import subprocess
 import numpy as np
 import pytest
 from PIL import Image
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import VTK_QUAD, vtkCellArray, vtkPolyData, vtkUnstructuredGrid
-from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
+from made_up_runs import opening, write_series, write_sites
 from near_tip_plots_test import write_field
-from report_test import write_frame, write_series
+
+from latcon.frames import Frame, write_frame
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "verification" / "paraview"
 MODULES = pathlib.Path(os.environ["LATCON_PARAVIEW"])
@@ -34,20 +32,15 @@ def write_run(folder):
     """A sheet of 40 by 30 sites, stretched 2 by 1.5 times, its bonds ever more stretched to the right, and at the last
     time torn between two rows; fields around a tip."""
     columns, rows = np.meshgrid(np.arange(40), np.arange(30))
-    reference = np.column_stack((columns.ravel(), rows.ravel() - 14.5, np.zeros(1200))) * 1e-3
-    number = np.arange(1200).reshape(30, 40)
-    along = np.column_stack((number[:, :-1].ravel(), number[:, 1:].ravel()))
-    across = np.column_stack((number[:-1].ravel(), number[1:].ravel()))
+    reference = np.column_stack((columns.ravel(), rows.ravel() - 14.5)) * 1e-3
+    along, across = grid_bonds(40, 30)
     for name, torn in (("lattice-0000.vtp", 0), ("lattice-0001.vtp", 30)):
         holds = ~((across[:, 0] // 40 == 14) & (across[:, 0] % 40 < torn))
         bonds = np.concatenate((along, across[holds]))
-        stretch = 1.0 + 2.4 * reference[bonds[:, 0], 0] / 0.04  # up to 3.34
-        stretch = np.concatenate((np.ones(1200), stretch))
         speed = np.linspace(0, 40, 1200)
-        fields = {"displacement": reference * (1.0, 0.5, 0.0),
-                  "velocity": np.column_stack((speed, 0 * speed, 0 * speed)),
-                  "cauchy_stress": np.outer(1e4 * speed, np.eye(9)[4]), "damage": speed / 40}
-        write_frame(folder / name, reference, fields, bonds, stretch)
+        fields = {"displacement": reference * (1.0, 0.5), "velocity": np.column_stack((speed, 0 * speed)),
+                  "cauchy_stress": opening(1e4 * speed), "damage": speed / 40}
+        write_sites(folder / name, reference, fields, bonds, 1.0 + 2.4 * reference[bonds[:, 0], 0] / 0.04)  # up to 3.34
     write_series(folder / "lattice.pvd", {"lattice-0000.vtp": 0.0, "lattice-0001.vtp": 2e-3})
     (folder / "run.json").write_text(json.dumps({"entries": {"Fracture/breaking stretch": str(BREAKING)}}))
     (folder / "crack.csv").write_text("t,X,Y,x,y\n0,0.001,0,0.002,0\n0.001,0.03,0,0.06,0\n")
@@ -56,71 +49,37 @@ def write_run(folder):
     write_field(folder / "near_tip_folded.vti")
 
 
+def grid_bonds(columns, rows):
+    """Bonds along x and along y of a square grid of sites."""
+    number = np.arange(columns * rows).reshape(rows, columns)
+    return [np.column_stack((a.ravel(), b.ravel())) for a, b in ((number[:, :-1], number[:, 1:]), (number[:-1], number[1:]))]
+
+
 WIDTH, HEIGHT = 0.06, 0.03  # of the sheet [m]
 SPACING = 0.5e-3  # [m]
 
 
-def write(writer, data, path):
-    writer.SetFileName(str(path))
-    writer.SetInputData(data)
-    assert writer.Write() == 1
-
-
-def add(data, name, values):
-    array = numpy_to_vtk(np.ascontiguousarray(values, dtype=float), deep=True)
-    array.SetName(name)
-    data.GetPointData().AddArray(array)
-
-
-def vectors(x):
-    return np.column_stack((x, 0 * x, 0 * x))
-
-
-def set_points(data, position):
-    points = vtkPoints()
-    points.SetDataTypeToDouble()
-    points.SetData(numpy_to_vtk(np.column_stack((position, np.zeros(len(position)))), deep=True))
-    data.SetPoints(points)
-
-
 def write_difference(folder):
     """Displacement along x that increases with x, equal on both sides except in the upper right quarter."""
+    def vectors(x):
+        return np.column_stack((x, 0 * x))
     nx, ny = round(WIDTH / SPACING) + 1, round(HEIGHT / SPACING) + 1
     x, y = np.meshgrid(SPACING * np.arange(nx), SPACING * np.arange(ny))
     position = np.column_stack((x.ravel(), y.ravel()))
     off = np.where((position[:, 0] > 0.5 * WIDTH) & (position[:, 1] > 0.5 * HEIGHT), 1e-4, 0.0)
-    sites = vtkPolyData()
-    set_points(sites, position)
-    number = np.arange(nx * ny).reshape(ny, nx)
-    bonds = np.concatenate([np.stack((a.ravel(), b.ravel()), axis=1)
-                            for a, b in ((number[:, :-1], number[:, 1:]), (number[:-1], number[1:]))])
-    lines = vtkCellArray()
-    for a, b in bonds:
-        lines.InsertNextCell(2, (a, b))
-    sites.SetLines(lines)
     u = 0.1 * position[:, 0]
-    add(sites, "displacement", vectors(u + off))
-    add(sites, "displacement_continuum", vectors(u))
-    add(sites, "displacement_difference", vectors(off))
     # The stress of sites that lack bonds is meaningless.
     complete = (position[:, 1] > 0.25 * HEIGHT) & (position[:, 1] < 0.75 * HEIGHT)
-    stress = np.zeros((nx * ny, 9))
-    stress[:, 4] = np.where(complete, 1e5 + position[:, 0], -1e9)
-    add(sites, "cauchy_stress", stress)
-    add(sites, "cauchy_stress_continuum", np.where(complete[:, np.newaxis], stress, 0.0))
-    add(sites, "cauchy_stress_difference", 0.0 * stress)
-    add(sites, "complete", complete)
-    write(vtkXMLPolyDataWriter(), sites, folder / "difference_sites.vtp")
-
-    cells = vtkUnstructuredGrid()
+    stress = 1e5 + position[:, 0]
+    bonds = np.concatenate(grid_bonds(nx, ny))
+    write_sites(folder / "difference_sites.vtp", position, {
+        "displacement": vectors(u + off), "displacement_continuum": vectors(u), "displacement_difference": vectors(off),
+        "cauchy_stress": opening(np.where(complete, stress, -1e9)), "cauchy_stress_continuum": opening(np.where(complete, stress, 0.0)),
+        "cauchy_stress_difference": opening(0.0 * stress), "complete": complete.astype(float)}, bonds, np.ones(len(bonds)))
     corners = np.array([(0, 0), (WIDTH, 0), (WIDTH, HEIGHT), (0, HEIGHT)], dtype=float)
-    set_points(cells, corners)
-    cells.InsertNextCell(VTK_QUAD, 4, (0, 1, 2, 3))
-    add(cells, "displacement", vectors(0.1 * corners[:, 0]))
-    stress = np.zeros((4, 9))
-    stress[:, 4] = 1e5 + corners[:, 0]
-    add(cells, "cauchy_stress", stress)
-    write(vtkXMLUnstructuredGridWriter(), cells, folder / "difference_continuum.vtu")
+    write_frame(folder / "difference_continuum.vtu", Frame(
+        0.0, corners, corners, np.empty((0, 2), int), np.empty(0),
+        {"displacement": vectors(0.1 * corners[:, 0]), "cauchy_stress": opening(1e5 + corners[:, 0])}, {}, {}, np.array([[0, 1, 2, 3]])))
 
 
 @pytest.fixture(scope="module")

@@ -22,11 +22,11 @@ quick_only = pytest.mark.skipif(FULL, reason="once is enough")
 full_only = pytest.mark.skipif(not FULL, reason="long")
 
 
-def fig1(out, integrator, seed, *settings, report=False):
+def fig1(out, integrator, seed, *settings):
     """@return exit code, crack.json with the area of near_tip.json"""
     entries = (f"Lattice/noise seed={seed}", "Output/frame interval=0", f"Time/integrator={integrator}", *settings)
-    run = latcon("fracture", CASES / "fig1.prm", "--quiet", "--threads", 1, "--output-dir", out, "--skip-verification",
-                 *([] if report else ["--no-report"]), *(word for entry in entries for word in ("--set", entry)))
+    run = latcon("fracture", CASES / "fig1.prm", "--quiet", "--threads", 1, "--output-dir", out, "--skip-verification", "--no-report",
+                 *(word for entry in entries for word in ("--set", entry)))
     crack, near = (json.loads((out / name).read_text()) for name in ("crack.json", "near_tip.json"))
     return run.returncode, {**crack, "zone": near["negative_zone_area_of_samples"]}
 
@@ -34,7 +34,7 @@ def fig1(out, integrator, seed, *settings, report=False):
 @quick_only
 def test_fig1_is_one_of_the_ten_seeds_of_the_tutorial(out):
     """Perturbations grow along the path, so longer steps are another sample: within two standard deviations of ten seeds."""
-    code, crack = fig1(out, "runge-kutta-chebyshev", 6, report=True)
+    code, crack = fig1(out, "runge-kutta-chebyshev", 6)
     assert (code, crack["pattern"]) == (0, "oscillating")
     assert crack["energy_imbalance"] < 5e-3
     tip = np.loadtxt(out / "crack.csv", delimiter=",", skiprows=1, usecols=(1, 2))
@@ -49,7 +49,6 @@ def test_fig1_is_one_of_the_ten_seeds_of_the_tutorial(out):
         mean, deviation = map(float, re.search(words, page, re.M).groups())
         assert crack[name] / unit == pytest.approx(mean, abs=2. * deviation), name
     assert crack["zone"] > ZONE
-    assert 0 < (out / "report.html").stat().st_size < 8_000_000
 
 
 @full_only

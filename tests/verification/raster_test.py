@@ -1,6 +1,4 @@
 """Tests of the rasterisation of a synthetic sheet: filled pixels, openings where bonds break, omitted parts."""
-import types
-
 import numpy as np
 import pytest
 
@@ -27,54 +25,49 @@ def broken_bonds(frame):
     return {"t": np.full(len(ends), BREAKS), "site": ends[:, 0].astype(float), "other_site": ends[:, 1].astype(float)}
 
 
-@pytest.fixture
-def made():
-    made = types.SimpleNamespace()
-    made.frame = made_up_frame()
-    made.mesh = Mesh(made.frame, broken_bonds(made.frame))
-    made.raster = Raster((-1.0, COLUMNS + 0.5, -1.0, ROWS * np.sqrt(0.75)), 460)
-    made.pixel_area = made.raster.pixels_per_unit**-2
-    return made
+FRAME = made_up_frame()
+MESH = Mesh(FRAME, broken_bonds(FRAME))
+RASTER = Raster((-1.0, COLUMNS + 0.5, -1.0, ROWS * np.sqrt(0.75)), 460)
+PIXEL_AREA = RASTER.pixels_per_unit**-2
 
 
-def draw(made, position=None, time=-np.inf, values=None):
-    values = made.frame.reference[:, 0] if values is None else values
-    return made.raster.draw(made.mesh, made.frame.position if position is None else position, values, time)
+def draw(position=FRAME.position, time=-np.inf, values=FRAME.reference[:, 0]):
+    return RASTER.draw(MESH, position, values, time)
 
 
-def test_a_whole_sheet_is_filled(made):
-    picture = draw(made)
+def test_a_whole_sheet_is_filled():
+    picture = draw()
     triangles = 2 * (COLUMNS - 1) * (ROWS - 1)
-    assert len(made.mesh.triangles) == triangles
-    area = np.count_nonzero(~np.isnan(picture)) * made.pixel_area
+    assert len(MESH.triangles) == triangles
+    area = np.count_nonzero(~np.isnan(picture)) * PIXEL_AREA
     assert area / (triangles * np.sqrt(3) / 4) == pytest.approx(1.0, abs=0.03)
 
 
-def test_values_are_where_they_belong(made):
-    picture = draw(made, values=made.frame.reference[:, 0] + 100 * made.frame.reference[:, 1])
+def test_values_are_where_they_belong():
+    picture = draw(values=FRAME.reference[:, 0] + 100 * FRAME.reference[:, 1])
     rows, columns = np.nonzero(~np.isnan(picture))
-    x = -1.0 + (columns + 0.5) / made.raster.pixels_per_unit
-    y = -1.0 + (made.raster.height - rows - 0.5) / made.raster.pixels_per_unit
-    np.testing.assert_allclose(picture[rows, columns], x + 100 * y, atol=101 / made.raster.pixels_per_unit)
+    x = -1.0 + (columns + 0.5) / RASTER.pixels_per_unit
+    y = -1.0 + (RASTER.height - rows - 0.5) / RASTER.pixels_per_unit
+    np.testing.assert_allclose(picture[rows, columns], x + 100 * y, atol=101 / RASTER.pixels_per_unit)
 
 
-def test_a_crack_opens_when_its_bonds_break(made):
-    opened = made.frame.position + np.where(np.arange(len(made.frame.position)) // COLUMNS > 4, 0.3, 0.0)[:, None]
-    before, after = (np.count_nonzero(~np.isnan(draw(made, opened, time))) for time in (0.9 * BREAKS, BREAKS))
-    strip = (2 * (COLUMNS - 1) * np.sqrt(3) / 4) / made.pixel_area
+def test_a_crack_opens_when_its_bonds_break():
+    opened = FRAME.position + np.where(np.arange(len(FRAME.position)) // COLUMNS > 4, 0.3, 0.0)[:, None]
+    before, after = (np.count_nonzero(~np.isnan(draw(opened, time))) for time in (0.9 * BREAKS, BREAKS))
+    strip = (2 * (COLUMNS - 1) * np.sqrt(3) / 4) / PIXEL_AREA
     assert before - after > 0.9 * strip
 
 
-def test_what_flew_away_is_left_out(made):
-    away = made.frame.position.copy()
+def test_what_flew_away_is_left_out():
+    away = FRAME.position.copy()
     away[0] = (-50.0, 1e6)
-    lost = np.count_nonzero(np.isnan(draw(made, away))) - np.count_nonzero(np.isnan(draw(made)))
+    lost = np.count_nonzero(np.isnan(draw(away))) - np.count_nonzero(np.isnan(draw()))
     # One or two triangles of a site in a corner.
-    assert lost > 0.9 * np.sqrt(3) / 4 / made.pixel_area
-    assert lost < 1.1 * 2 * np.sqrt(3) / 4 / made.pixel_area
+    assert lost > 0.9 * np.sqrt(3) / 4 / PIXEL_AREA
+    assert lost < 1.1 * 2 * np.sqrt(3) / 4 / PIXEL_AREA
 
 
-def test_bonds_without_triangles_are_lines(made):
-    chain = Frame(0.0, made.frame.reference, made.frame.position, np.array([(0, 1), (1, 2)]), np.ones(2), {}, {}, {})
-    picture = made.raster.draw(Mesh(chain), chain.position, np.ones(len(chain.position)))
-    assert np.count_nonzero(~np.isnan(picture)) == pytest.approx(2 * made.raster.pixels_per_unit, abs=2)
+def test_bonds_without_triangles_are_lines():
+    chain = Frame(0.0, FRAME.reference, FRAME.position, np.array([(0, 1), (1, 2)]), np.ones(2), {}, {}, {})
+    picture = RASTER.draw(Mesh(chain), chain.position, np.ones(len(chain.position)))
+    assert np.count_nonzero(~np.isnan(picture)) == pytest.approx(2 * RASTER.pixels_per_unit, abs=2)

@@ -1,233 +1,62 @@
-"""Tests of the report with synthetic runs: text, pictures, rejected files and exit codes."""
-import base64
-import contextlib
+"""Tests of the report with made-up runs: text, pictures, animation, rejected files and exit codes."""
+import functools
 import io
 import json
+import math
+import os
 import re
 import shutil
-from html.parser import HTMLParser
-from pathlib import Path
 from unittest import mock
 
 import numpy as np
 import pytest
 from PIL import Image
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-FOLDER = Path(__file__).resolve().parents[2] / "python" / "latcon" / "report"
+from made_up_runs import (
+    BEGIN, END, FAILS, HOLDS, MOTION_FRAMES, PUBLISHED, REPORTED, check_row, drawn, path_of_tip, pixels, read_page, write_fracture, write_verification)
 
-from latcon.report import pages
-from latcon.report.__main__ import main
+from latcon.quantities import number_text
+from latcon.report import animation, pages, report
+from latcon.report.crack_path import measured_sinusoid
+from latcon.report.runs import read_run
+from latcon.rows import text_table
 
-# The crack of the made-up run [m].
-WAVELENGTH, AMPLITUDE, PHASE, OFFSET, SLOPE = 0.02, 0.0012, 0.7, 0.0003, 0.004
-BEGIN, END = 0.03, 0.09
 PICTURES = ("sheet.png", "sheet_fields.png", "crack_path.png", "energy.png")
-MOTION_FRAMES = 5
-VOID = {"meta", "br", "hr", "img", "link", "input", "source"}
 
 
-def path_of_tip(X):
-    """The sinusoid of the made-up run about the middle of the window."""
-    return OFFSET + SLOPE * X + AMPLITUDE * np.sin(2 * np.pi * X / WAVELENGTH + PHASE)
-
-
-def check_row(claim, quantity, verdict, **numbers):
-    """A row of results.json."""
-    empty = dict.fromkeys(("lattice", "continuum", "theory", "error", "tolerance"))
-    return {"claim": claim, "quantity": quantity, "unit": "m", **empty, **numbers, "verdict": verdict}
-
-
-HOLDS = check_row("energy", "c^2 <of> a wave", "holds", lattice=1.25, error=2e-3, tolerance=1e-2)
-FAILS = check_row("prestretch", "traction", "fails", lattice=3.5, continuum=3.0, error=0.17, tolerance=1e-2)
-REPORTED = check_row("energy", "residual", "reported", continuum=0.042, error=0.042)
-PUBLISHED = check_row("fracture", "wavelength, undeformed", "holds", lattice=WAVELENGTH, theory=0.021, error=0.048, tolerance=0.2)
-
-
-def write_verification(folder, rows):
-    """A run without a crack."""
-    folder.mkdir(parents=True)
-    (folder / "results.json").write_text(json.dumps({"claims": rows, "verdict": "holds"}))
-    (folder / "run.json").write_text(json.dumps({"version": "1.2.3", "exit_code": 0,
-                                                 "entries": {"Fracture/breaking stretch": "3"}}))
-    (folder / "case.prm").write_text("subsection Fracture\n  set breaking stretch = 3 # default: auto\nend\n")
-
-
-def write_table(path, header, columns):
-    """A CSV file."""
-    np.savetxt(path, np.column_stack(columns), delimiter=",", header=header, comments="", fmt="%.17g")
-
-
-def write_fracture(folder, rows, has_sheet=True):
-    """A run with an oscillating crack; its sheet takes most of the time of a page."""
-    write_verification(folder, rows)
-    X = np.linspace(0.01, 0.095, 300)
-    t = X / 20
-    Y = path_of_tip(X)
-    write_table(folder / "crack.csv", "t,X,Y,x,y,speed,bonds_broken", (t, X, Y, 2 * X, 3 * Y, 0 * t + 20, 10 * X))
-    write_table(folder / "broken_bonds.csv", "t,site,other_site,X,Y,stretch", (t, 0 * t, 0 * t + 1, X, Y, 0 * t + 3))
-    write_table(folder / "energy.csv", "t,elastic,kinetic,viscous,broken,boundary_work,contact,imbalance",
-                (t, 100 - 1e4 * t, 2e3 * t, 5e3 * t, 3e3 * t, 0 * t, 0 * t, 1e-6 * t))
-    crack = {"pattern": "oscillating", "reason": "it winds", "window_begin": BEGIN,
-             "window_end": END, "speed_lagrangian": 20.0, "speed_lagrangian_uncertainty": 0.2,
-             "wavelength": WAVELENGTH, "wavelength_uncertainty": 1.5e-4, "amplitude": AMPLITUDE,
-             "amplitude_uncertainty": 1e-4, "sinusoid_offset": OFFSET, "sinusoid_slope": SLOPE, "sinusoid_phase": PHASE}
-    (folder / "crack.json").write_text(json.dumps(crack))
-    near_tip = {"samples": 84, "reason": "", "negative_zone_area": 1.4546e-5, "negative_zone_area_uncertainty": 1.88e-6,
-                "samples_with_vortex": 0.25, "samples_with_vortex_uncertainty": 0.13,
-                "opening_stress_peak_4d": 660930.0, "opening_stress_peak_4d_uncertainty": None, "wedge_angle": None,
-                "wedge_angle_uncertainty": None, "units": "SI"}
-    (folder / "near_tip.json").write_text(json.dumps(near_tip))
-    if has_sheet:
-        write_sheet(folder)
-
-
-def write_sheet(folder):
-    """A frame of 12 by 8 sites with the file that names it and its time, and frames of the motion."""
-    columns, rows = np.meshgrid(np.arange(12), np.arange(8))
-    reference = np.column_stack((columns.ravel(), rows.ravel(), np.zeros(96))) * 1e-2
-    ends = [(i, i + 1) for i in range(96) if i % 12 < 11]
-    speed = np.linspace(0, 30, 96)
-    fields = {"displacement": 1.3 * reference, "velocity": np.column_stack((speed, 0 * speed, 0 * speed)),
-              "cauchy_stress": np.outer(1e4 * speed, np.eye(9)[4]), "damage": speed / 40, "site": np.arange(96)}
-    stretch = np.concatenate((np.ones(96), np.linspace(1.5, 4.0, len(ends))))
-    write_frame(folder / "lattice-0000.vtp", reference, fields, ends, stretch)
-    write_series(folder / "lattice.pvd", {"lattice-0000.vtp": 0.004})
-    names = {f"motion-{i:04}.vtp": 1e-3 * i for i in range(MOTION_FRAMES)}
-    for name, time in names.items():
-        fields = {"displacement": (1.3 + 20 * time) * reference, "velocity": (0.5 + 1e3 * time) * fields["velocity"]}
-        write_frame(folder / name, reference, fields)
-    write_series(folder / "motion.pvd", names)
-
-
-def write_frame(path, reference, fields, ends=(), stretch=()):
-    """A vtp file of sites, and of bonds with their stretch where there are any."""
-    sheet, points, vertices, lines = vtkPolyData(), vtkPoints(), vtkCellArray(), vtkCellArray()
-    points.SetData(numpy_to_vtk(reference, deep=True))
-    for site in range(len(reference)):
-        vertices.InsertNextCell(1, (site,))
-    for bond in ends:
-        lines.InsertNextCell(2, bond)
-    sheet.SetPoints(points)
-    sheet.SetVerts(vertices)
-    sheet.SetLines(lines)
-    for data, arrays in ((sheet.GetPointData(), fields), (sheet.GetCellData(), {"stretch": stretch} if len(ends) else {})):
-        for name, values in arrays.items():
-            array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
-            array.SetName(name)
-            data.AddArray(array)
-    writer = vtkXMLPolyDataWriter()
-    writer.SetFileName(bytes(path))
-    writer.SetInputData(sheet)
-    writer.EncodeAppendedDataOff()
-    writer.Write()
-
-
-def write_series(path, times):
-    """A .pvd: {file name: time}."""
-    frames = "".join(f'<DataSet timestep="{time!r}" file="{name}"/>' for name, time in times.items())
-    path.write_text(f'<VTKFile type="Collection"><Collection>{frames}</Collection></VTKFile>')
-
-
-class Page(HTMLParser):
-    """Reads a page: its text, its references, and whether its elements are properly nested."""
-
-    def __init__(self, html):
-        super().__init__()
-        self.open, self.images, self.references, self.headings, self.text = [], [], [], [], ""
-        self.alternatives = []  # of the images
-        self.kinds = []  # classes of open elements
-        self.feed(html)
-        self.close()
-
-    def handle_starttag(self, tag, attributes):
-        self.references += [value for name, value in attributes if name in ("src", "href", "srcset", "data")]
-        if tag == "img":
-            self.images.append(dict(attributes)["src"])
-            self.alternatives.append(dict(attributes).get("alt") or "")
-        if re.fullmatch("h[1-6]", tag):
-            self.headings.append(int(tag[1]))
-        if tag in ("table", "pre") and not any("scroll" in (kind or "") for kind in self.kinds):
-            raise AssertionError(f"<{tag}> would make the page scroll")
-        if tag not in VOID:
-            self.open.append(tag)
-            self.kinds.append(dict(attributes).get("class"))
-
-    def handle_endtag(self, tag):
-        if not self.open or self.open.pop() != tag:
-            raise AssertionError(f"</{tag}> closes nothing")
-        self.kinds.pop()
-
-    def handle_data(self, data):
-        if not {"style", "script"} & set(self.open):
-            self.text += data + " "
-
-
-def drawn(folder, *options, expect):
-    """Runs the script in this process. @return (stdout, stderr)"""
-    streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(2)]
-    with contextlib.redirect_stdout(streams[0]), contextlib.redirect_stderr(streams[1]):
-        exit_code = main(["report", str(folder), *options])
-    texts = []
-    for stream in streams:
-        stream.seek(0)
-        texts.append(stream.read())
-    assert exit_code == expect, texts
-    return tuple(texts)
-
-
-def read_page(folder):
-    html = (folder / "report.html").read_text(encoding="utf-8")
-    page = Page(html)
-    assert page.open == []
-    return html, page
-
-
-# One page with everything, for all these tests.
-@pytest.fixture(scope="module")
-def whole(module_path):
-    whole = module_path / "runs"
-    write_fracture(whole, [HOLDS, PUBLISHED])
-    assert main(["report", str(whole), "--quiet"]) == 0
-    return whole
-
-
-def test_needs_nothing_beside_it(whole):
-    html, page = read_page(whole)
+def test_needs_nothing_beside_it_and_shows_pictures(runs):
+    write_fracture(runs, [HOLDS, PUBLISHED])
+    drawn(runs, "--quiet")
+    html, page = read_page(runs)
     own = ("data:image/png;base64,", "data:image/gif;base64,", "#")
     assert [r[:30] for r in page.references if not r.startswith(own)] == []
     bare = re.sub(r"base64,[^\"]*|^/\*! @license .*?\*/", "", html, flags=re.M)
     assert not re.search(r"https?://|@import|url\(|<script[^>]* src|<link|sourceMappingURL", bare)
     assert "@license https://github.com/danvk/dygraphs" in html  # the MIT licence requires its notice
-    assert len(page.images) == len(PICTURES)
-
-
-def test_pictures_show_something(whole):
-    _, page = read_page(whole)
-    for name in PICTURES:
-        png = (whole / name).read_bytes()
-        assert png in [base64.b64decode(source.partition(",")[2]) for source in page.images]
-        pixels = np.asarray(Image.open(io.BytesIO(png)).convert("RGB"), dtype=float)
-        assert pixels.shape[1] == 1600
-        assert pixels.shape[0] > 500
-        coloured = np.ptp(pixels[:len(pixels) // 2:4, ::4], axis=2) > 60  # colour bars are below
-        assert coloured.mean() > 2e-3, f"{name} has no colours"
-        assert pixels.std() > 10, f"{name} is blank"
+    assert sorted(page.images) == sorted((runs / name).read_bytes() for name in PICTURES)
+    for png in page.images:
+        colours = pixels(png)
+        assert len(colours) > 500
+        assert (np.ptp(colours[:len(colours) // 2:4, ::4], axis=2) > 60).mean() > 2e-3  # colour bars are below
+        assert colours.std() > 10
+    with mock.patch.object(pages, "DYGRAPHS", runs):  # without the library of the plots
+        drawn(runs, "--quiet")
+    html, _ = read_page(runs)
+    assert "new Dygraph" not in html
+    assert 'class="viewer"' in html
+    for name in ("The crack in the undeformed sheet", "Energy balance per metre of sheet thickness"):
+        assert html.index(f'alt="runs: {name}') < html.index('id="stills-0"')
 
 
 def test_says_what_was_checked_measured_and_given(runs):
     write_verification(runs / "verify", [HOLDS, REPORTED])
     write_fracture(runs / "fig", [HOLDS, PUBLISHED])
-    out, err = drawn(runs, expect=0)
+    out, err = drawn(runs)
     assert err == ""
     _, page = read_page(runs)
-    assert re.search(r"· measured Lagrangian crack speed 20.00 ± 0.20 – m/s –", " ".join(page.text.split()))
     for words in ("c² <of> a wave", "1.25", "✓ holds", "2.00e-03", "0.01", "· reported", "0.042", "oscillating",
                   "it winds", "2.1", "2.000 ± 0.015", "-4.8 %", "breaking stretch", "1.2.3", "verify, fig",
-                  "Holds: all 3 checks"):
+                  "Holds: all 3 checks", "· measured Lagrangian crack speed 20.00 ± 0.20 – m/s –"):
         assert words in page.text
     assert "fails" not in page.text.replace("#fails", "").replace("holds fails reported", "")
     lines = out.splitlines()
@@ -241,35 +70,31 @@ def test_leaves_out_studies_beside_runs(runs):
     write_verification(runs, [FAILS])
     (runs / "study.json").write_text("{}")
     write_verification(runs / "verify", [HOLDS])
-    out, _ = drawn(runs, expect=0)
+    out, _ = drawn(runs)
     assert "energy" in out
     assert "prestretch" not in out
-    (runs / "verify" / "results.json").unlink()
-    (runs / "verify" / "run.json").unlink()
-    out, _ = drawn(runs, expect=3)  # there is nothing else
-    assert "prestretch" in out
+    shutil.rmtree(runs / "verify")
+    assert "prestretch" in drawn(runs, expect=3)[0]  # there is nothing else
 
 
 def test_shows_what_was_measured_near_the_tip(runs):
+    def text():
+        drawn(runs)
+        return read_page(runs)[1].text
     write_fracture(runs, [HOLDS], has_sheet=False)
-    drawn(runs, expect=0)
-    text = " ".join(read_page(runs)[1].text.split())
-    assert "Near the tip, from 84 samples" in text
-    for row in ("negative velocity, area 14.5 ± 1.9 mm²", "samples with a vortex 25 ± 13 %",
+    whole = text()
+    for row in ("Near the tip, from 84 samples", "negative velocity, area 14.5 ± 1.9 mm²", "samples with a vortex 25 ± 13 %",
                 "opening stress, peak 0.6609 MPa", "wedge angle – degrees"):
-        assert row in text
-    assert "asymmetry 0" not in text  # not in the file
-    for samples, words in ((0, "Nothing was measured: it <rested>."),
-                           (3, "Not all quantities could be measured: it <rested>.")):
+        assert row in whole
+    assert "asymmetry 0" not in whole  # not in the file
+    for samples, words in ((0, "Nothing was measured: it <rested>."), (3, "Not all quantities could be measured: it <rested>.")):
         (runs / "near_tip.json").write_text(json.dumps({"samples": samples, "reason": "it <rested>"}))
-        drawn(runs, expect=0)
-        assert words in read_page(runs)[1].text
+        assert words in text()
     for damaged in ({"samples": 84}, {"samples": 84, "reason": "", "wedge_angle": "wide"}):
         (runs / "near_tip.json").write_text(json.dumps(damaged))
         assert re.search(r"near_tip.json: (\"reason\" is missing|wedge_angle is 'wide')", drawn(runs, expect=2)[1])
     (runs / "near_tip.json").unlink()
-    drawn(runs, expect=0)
-    assert "Near the tip" not in read_page(runs)[1].text
+    assert "Near the tip" not in text()
 
 
 def test_a_failing_row_is_first_and_exits_3(runs):
@@ -282,65 +107,48 @@ def test_a_failing_row_is_first_and_exits_3(runs):
     assert re.search(r"energy: lost +inf\n", out)
 
 
-def test_a_side_that_is_no_number_fails(runs):
-    for side in ("lattice", "continuum", "theory", "error", "tolerance"):
-        for value in ("nan", "inf", "-inf"):
-            row = check_row("energy", "side", "fails", **{"error": 0.0, "tolerance": 1.0, side: value})
-            write_verification(runs, [row])
-            assert re.search(r"energy: side +inf\n", drawn(runs, expect=3)[0])
-            (runs / "results.json").write_text(json.dumps({"claims": [{**row, "verdict": "holds"}]}))
-            assert "contradicts its numbers" in drawn(runs, expect=2)[1]
-            shutil.rmtree(runs)
-
-
-def test_without_the_library_of_the_plots_pictures_take_their_place(runs):
-    write_fracture(runs, [HOLDS])
-    with mock.patch.object(pages, "DYGRAPHS", runs):
-        drawn(runs, "--quiet", expect=0)
-    html, _ = read_page(runs)
-    assert "new Dygraph" not in html
-    assert 'class="viewer"' in html
-    stills = html.index('id="stills-0"')
-    for name in ("The crack in the undeformed sheet", "Energy balance per metre of sheet thickness"):
-        assert html.index(f'alt="runs: {name}') < stills
+@pytest.mark.parametrize("side", ["lattice", "continuum", "theory", "error", "tolerance"])
+def test_a_side_that_is_no_number_fails(runs, side):
+    for value in ("nan", "inf", "-inf"):
+        row = check_row("energy", "side", "fails", **{"error": 0.0, "tolerance": 1.0, side: value})
+        write_verification(runs, [row])
+        assert re.search(r"energy: side +inf\n", drawn(runs, expect=3)[0])
+        write_verification(runs, [{**row, "verdict": "holds"}])
+        assert "row 1 of \"claims\": the verdict 'holds' contradicts its numbers" in drawn(runs, expect=2)[1]
 
 
 def test_an_interrupted_run_is_shown_as_far_as_it_went(runs):
-    write_fracture(runs / "cut", [HOLDS])
+    write_fracture(runs / "cut", [HOLDS], exit_code=None)
     for name in ("results.json", "crack.json", "lattice-0000.vtp"):
         (runs / "cut" / name).unlink()
-    (runs / "cut" / "run.json").write_text(json.dumps({"version": "1.2.3", "exit_code": None}))
-    assert "unfinished" in drawn(runs, expect=0)[0]
+    assert "unfinished" in drawn(runs)[0]
     _, page = read_page(runs)
-    assert "Not complete" in page.text
-    assert "no crack.json" in page.text
-    assert "has no data for it: sheet.png, sheet_fields.png" in page.text
+    for words in ("Not complete", "no crack.json", "has no data for it: sheet.png, sheet_fields.png"):
+        assert words in page.text
     assert len(page.images) == 2
 
 
 def test_a_skipped_verification_is_said(runs):
-    write_fracture(runs, [PUBLISHED], has_sheet=False)
-    (runs / "run.json").write_text(json.dumps({"exit_code": 0, "skip_verification": True}))
-    out, _ = drawn(runs, expect=0)
-    html, page = read_page(runs)
-    assert "without verification of its material and pre-stretch" in page.text
-    assert "Not verified: all checks made hold" in page.text
+    write_fracture(runs / "fig", [PUBLISHED], has_sheet=False, skip_verification=True)
+    assert "not verified" in drawn(runs / "fig")[0]
+    html, page = read_page(runs / "fig")
+    for words in ("without verification of its material and pre-stretch", "Not verified: all checks made hold", "holds, not verified"):
+        assert words in page.text
     assert 'class="banner warns"' in html
-    assert "holds, not verified" in page.text
     assert not re.search(r'class="[^"]*\bholds\b', html)  # nothing is green
-    assert "not verified" in out
     # Together with a verified run as well.
-    write_verification(runs.parent / "both" / "verify", [HOLDS])
-    write_fracture(runs.parent / "both" / "fig", [PUBLISHED], has_sheet=False)
-    (runs.parent / "both" / "fig" / "run.json").write_text(json.dumps({"exit_code": 0, "skip_verification": True}))
-    drawn(runs.parent / "both", "--quiet", expect=0)
-    assert 'class="banner holds"' not in read_page(runs.parent / "both")[0]
+    write_verification(runs / "verify", [HOLDS])
+    drawn(runs, "--quiet")
+    assert 'class="banner holds"' not in read_page(runs)[0]
 
 
-def test_refuses_a_folder_without_a_run(runs):
+def test_what_cannot_be_shown_or_written_has_its_exit_code(runs):
     runs.mkdir()
     assert "no run found" in drawn(runs, expect=2)[1]
     assert "missing" in drawn(runs / "missing", expect=2)[1]
+    write_fracture(runs / "fig", [HOLDS])
+    (runs / "file").touch()
+    assert "cannot write" in drawn(runs, "--output-dir", str(runs / "file"), expect=5)[1]
 
 
 def test_names_the_damaged_file(runs):
@@ -360,7 +168,7 @@ def test_names_the_damaged_file(runs):
         assert re.search(rf"cannot be read, not shown : .*{re.escape(name)}: ", page.text)
         assert "Holds: all" not in page.text
         (runs / name).write_bytes(intact[name])
-    drawn(runs, "--quiet", expect=0)
+    drawn(runs, "--quiet")
 
 
 def test_one_unreadable_run_does_not_cost_the_others(runs):
@@ -386,19 +194,84 @@ def test_shows_runs_of_the_continuum(runs):
         write_verification(runs / name, [check_row("continuum", f"energy of the {name}", "reported")])
         (runs / name / "energy.csv").write_text(energies)
     write_fracture(runs / "fig", [HOLDS, PUBLISHED])
-    out, err = drawn(runs, expect=0)
+    out, err = drawn(runs)
     assert err == ""
     assert "fig" in out
     for name in ("equilibrium", "motion"):
         assert f"energy of the {name}" in read_page(runs)[1].text
 
 
-def test_does_not_believe_a_verdict_against_its_numbers(runs):
-    write_verification(runs, [{**FAILS, "verdict": "holds"}])
-    assert re.search("results.json: row 1 .* verdict 'holds' contradicts", drawn(runs, expect=2)[1])
+def test_animation_has_all_frames_and_is_small(runs):
+    write_fracture(runs, [HOLDS])
+    drawn(runs, "--quiet", "--animation")
+    gif, still = ((runs / f"animation.{kind}").read_bytes() for kind in ("gif", "png"))
+    html, page = read_page(runs)
+    assert "image/gif" not in html  # the viewer shows more in fewer bytes; its last picture is among the still ones
+    assert still in page.images
+    with Image.open(io.BytesIO(gif)) as film:
+        assert (film.n_frames, film.info["loop"]) == (MOTION_FRAMES, 0)  # repeated for ever
+        pictures, shown = [], []
+        for number in range(film.n_frames):
+            film.seek(number)
+            pictures.append(np.asarray(film.convert("RGB"), dtype=float))
+            shown.append(film.info["duration"])
+    assert shown == [1250] * (MOTION_FRAMES - 1) + [2000]
+    for before, after in zip(pictures, pictures[1:]):
+        assert np.count_nonzero(np.abs(before - after).max(axis=2) > 60) > 500
+    assert np.abs(np.asarray(Image.open(io.BytesIO(still)).convert("RGB"), dtype=float) - pictures[-1]).mean() < 3
+    most = len(gif) // 3
+    with (mock.patch.object(animation, "draw_animation", functools.partial(animation.draw_animation, largest=most)),
+          mock.patch.object(report, "LARGEST_SHEETS", 0)):  # no viewer
+        drawn(runs, "--quiet", "--animation")
+    html, page = read_page(runs)
+    assert 'class="viewer"' not in html
+    assert re.search(r'<source media="print, [^"]*" srcset="data:image/png;base64,', html)
+    smaller = (runs / "animation.gif").read_bytes()
+    assert page.images[0] == smaller and len(smaller) <= most
+    with Image.open(io.BytesIO(smaller)) as film:
+        assert film.n_frames == MOTION_FRAMES
 
 
-def test_a_file_that_cannot_be_written_exits_5(runs):
-    write_verification(runs, [HOLDS])
-    (runs / "report.html").mkdir()
-    assert "report.html" in drawn(runs, expect=5)[1]
+def test_page_and_pictures_are_written_elsewhere(runs):
+    write_fracture(runs / "fig", [HOLDS])
+    write_fracture(runs / "other", [HOLDS], has_sheet=False)
+    before = {path: path.read_bytes() for path in runs.rglob("*") if path.is_file()}
+    elsewhere = runs.parent / "a" / "b"
+    out, _ = drawn(runs, "--output-dir", str(elsewhere))
+    assert out.splitlines()[-1] == f"{elsewhere}/report.html"
+    assert {path: path.read_bytes() for path in runs.rglob("*") if path.is_file()} == before
+    assert {str(path.relative_to(elsewhere)) for path in elsewhere.rglob("*") if path.is_file()} == (
+        {"report.html", *(f"fig/{name}" for name in PICTURES), *(f"other/{name}" for name in PICTURES[2:])})
+    drawn(runs, "--quiet")
+    assert read_page(runs)[0] == read_page(elsewhere)[0]
+
+
+def test_a_name_that_is_no_text_is_shown_with_a_question_mark(runs):
+    folder = runs.parent / os.fsdecode(b"lat\xe41n")
+    write_fracture(folder, [HOLDS], has_sheet=False)
+    assert "lat?1n/report.html" in drawn(folder)[0]
+    assert "latcon report: lat?1n" in read_page(folder)[1].text
+
+
+def test_draws_the_sinusoid_that_was_measured(runs):
+    write_fracture(runs, [HOLDS], has_sheet=False)
+    X = np.linspace(BEGIN, END, 500)
+    assert np.array_equal(measured_sinusoid(read_run(runs))(X), path_of_tip(X))
+    crack = json.loads((runs / "crack.json").read_text())
+    (runs / "crack.json").write_text(json.dumps({**crack, "sinusoid_phase": None}))
+    assert measured_sinusoid(read_run(runs)) is None
+
+
+def test_tables_of_text_wrap_the_second_column_and_cut_nothing_off():
+    long = "z" * 150
+    assert long in text_table(["a", "b", "c"], [["x", "y", long]], ())
+    lines = text_table(["a", "b", "c"], [["x", "words " * 40, "1"]], (2,)).splitlines()
+    assert max(map(len, lines)) <= 120 and " ".join(lines).count("words") == 40
+
+
+def test_gives_the_digits_that_the_uncertainty_leaves():
+    assert number_text(20.0576, 0.2328) == "20.06 ± 0.23"
+    assert number_text(2.34468, 0.0225) == "2.345 ± 0.022"
+    assert number_text(1234.5, 120.0) == "1234 ± 120"
+    for unknown in (None, 0.0, math.nan):
+        assert number_text(20.0576, unknown) == "20.06"

@@ -4,17 +4,16 @@ import json
 import re
 import time
 from dataclasses import replace
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from browser import Browser
 from made_up_sheet import FRAMES, SPACING, write_torn_sheet
-from report_test import HOLDS, REPORTED, main, write_verification
+from made_up_runs import HOLDS, REPORTED, main, write_verification
 
+from latcon.files import read_series
+from latcon.frames import read_frame
 from latcon.report import sheet_data
 from latcon.report.runs import read_motion, read_run
 
@@ -23,36 +22,20 @@ SCREEN = 800  # height of a window [pixels]
 PLACE = (0.5e-6, SPACING / 2000 / 2)  # [m]
 SPEED = 0.5e-2  # [m/s]
 STRETCH = (0.5e-3, 2**0.5 / 2000)
-MARK = (0xab, 0x1f, 0x14)  # colour of the selection, --fails of style.css
 VALUES = re.compile(r"site (\d+): X (\S+) cm, Y (\S+) cm, x (\S+) cm, y (\S+) cm, speed (\S+) m/s, damage (\S+?)"
                     r"(?:; bond (\d+)–(\d+): stretch (\S+))?$")
 
 
 class File:
-    """A .vtp as VTK reads it, values by the number of the site."""
+    """A frame, values by the number of the site."""
 
-    def __init__(self, path, site):
-        reader = vtkXMLPolyDataReader()
-        reader.SetFileName(str(path))
-        reader.Update()
-        sheet = reader.GetOutput()
-        points = sheet.GetPointData()
-        self.reference = vtk_to_numpy(sheet.GetPoints().GetData())[:, :2].astype(float)
-        self.place = self.reference + vtk_to_numpy(points.GetArray("displacement"))[:, :2]
-        self.speed = np.linalg.norm(vtk_to_numpy(points.GetArray("velocity")), axis=1)
-        self.damage = None if points.GetArray("damage") is None else vtk_to_numpy(points.GetArray("damage"))
-        site = vtk_to_numpy(points.GetArray("site")) if site is None else site
-        self.site, self.point = site, {int(number): point for point, number in enumerate(site)}
-        self.stretch = {}
-        if sheet.GetNumberOfLines():
-            ends = self.site[vtk_to_numpy(sheet.GetLines().GetConnectivityArray())].reshape(-1, 2)
-            values = vtk_to_numpy(sheet.GetCellData().GetArray("stretch"))[sheet.GetNumberOfVerts():]
-            self.stretch = {frozenset(pair): value for pair, value in zip(ends.tolist(), values)}
-
-
-def series(path):
-    """Files that a .pvd names, with their times."""
-    return [(float(d.attrib["timestep"]), path.parent / d.attrib["file"]) for d in ElementTree.parse(path).iter("DataSet")]
+    def __init__(self, path, site=None):
+        frame = read_frame(path, 0.0)
+        self.reference, self.place, self.damage = frame.reference, frame.position, frame.fields.get("damage")
+        self.speed = np.linalg.norm(frame.fields["velocity"], axis=1)
+        self.site = frame.fields["site"] if site is None else site
+        self.point = {int(number): point for point, number in enumerate(self.site)}
+        self.stretch = {frozenset(pair): value for pair, value in zip(self.site[frame.bonds].tolist(), frame.stretch)}
 
 
 class TestViewer:
@@ -107,7 +90,7 @@ class TestViewer:
                            "s.dispatchEvent(new Event('change', {bubbles: true})); })()")
 
     def test_the_slider_moves_the_sheet(self):
-        times = [time for time, _ in series(self.runs / "torn" / "motion.pvd")]
+        times = [time for time, _ in read_series(self.runs / "torn" / "motion.pvd")]
         assert self.text("time") == f"{1e3 * times[-1]:.3f} ms"
         self.browser.value("document.querySelector('.viewer .slider').focus()")
         shown = {"sheet": [self.canvas()], "near-tip": [self.canvas("near-tip")]}
@@ -140,7 +123,7 @@ class TestViewer:
 
     def check_values(self, file, full, found, configuration):
         """Checks that each number is that of the file, and that sites are at the pointer, on one scale for x and y."""
-        fastest = max(File(path, file.site).speed.max() for _, path in series(self.runs / "torn" / "motion.pvd"))
+        fastest = max(File(path, file.site).speed.max() for _, path in read_series(self.runs / "torn" / "motion.pvd"))
         speed_step = fastest / 65535 / 2
         pointers, places = [], []
         for pointer, match in found:
@@ -171,10 +154,10 @@ class TestViewer:
     @pytest.mark.parametrize("number, configuration, canvas", [
         (FRAMES - 1, "deformed", "sheet"), (FRAMES - 1, "deformed", "near-tip"), (5, "undeformed", "sheet"), (0, "deformed", "sheet")])
     def test_values_below_the_pointer_are_those_of_the_file(self, number, configuration, canvas):
-        whole = File(self.runs / "torn" / "lattice-0001.vtp", None)
+        whole = File(self.runs / "torn" / "lattice-0001.vtp")
         self.choose("configuration", configuration)
         self.browser.value(f"document.querySelector('.viewer').viewer.show({number})")
-        file = File(series(self.runs / "torn" / "motion.pvd")[number][1], whole.site)
+        file = File(read_series(self.runs / "torn" / "motion.pvd")[number][1], whole.site)
         self.check_values(file, whole if number == FRAMES - 1 else None, self.hover(canvas), configuration)
 
     def test_colours_and_configurations_differ(self):
@@ -216,18 +199,15 @@ def test_both_sheets_show_the_same_time(tmp_path):
     for run in ("one", "other"):
         write_torn_sheet(folder / run)
     record = folder / "other" / "run.json"
-    record.write_text(record.read_text().replace('"3"', '"3.5"'))
+    record.write_text(record.read_text().replace('"3"', '"3.5"'))  # the breaking stretch
     listed = folder / "other" / "motion.pvd"
     frames = re.findall(r"<DataSet[^>]*>", listed.read_text())
     fewer = [frame for i, frame in enumerate(frames) if i % 3 != 1]
     listed.write_text("<VTKFile><Collection>" + "".join(fewer) + "</Collection></VTKFile>")
-    times = [[time for time, _ in series(folder / run / "motion.pvd")] for run in ("one", "other")]
-    quantity = {"name": "wavelength", "unit": "m", "first": 0.02, "first_uncertainty": 1e-4, "second": 0.0212,
-                "second_uncertainty": None, "difference": 0.0012, "difference_over_uncertainty": None}
+    times = [[time for time, _ in read_series(folder / run / "motion.pvd")] for run in ("one", "other")]
     document = {"first": "one", "second": "other", "first_folder": "../one", "second_folder": "../other",
-                "failed_checks": {"first": "", "second": "energy"},
-                "pattern": {"first": "oscillating", "second": "straight"}, "quantities": [quantity],
-                "entries": [{"key": "Loading/strain y", "unit": "1", "first": "1.8", "second": "1.9"}], "paths": None}
+                "failed_checks": {"first": "", "second": ""}, "pattern": {"first": "oscillating", "second": "straight"},
+                "quantities": [], "entries": [], "paths": None}
     (folder / "compare").mkdir()
     (folder / "compare" / "compare.json").write_text(json.dumps(document))
     assert main(["compare", str(folder / "compare"), "--quiet"]) == 0
@@ -253,11 +233,8 @@ def test_both_sheets_show_the_same_time(tmp_path):
         for name, (low, high) in ranges[0].items():
             assert [low, high] == [min(one[name][0] for one in own), max(one[name][1] for one in own)]
             assert ranges[1][name] == [low, high]
-        text = browser.value("document.body.innerText")
+        assert f"{len(fewer)} frames" in browser.value("document.body.innerText")
         assert browser.said == []
-    for words in (f"{len(fewer)} frames", "2.000 ± 0.010", "2.12", "oscillating", "straight", "Loading/strain y",
-              "other failed its checks"):
-        assert words in text
 
 
 def test_a_damaged_comparison_is_bad_input(tmp_path):

@@ -2,6 +2,7 @@
 
 Kills at arbitrary times are tested in tests/faults.
 """
+import functools
 import json
 import os
 import pathlib
@@ -31,6 +32,7 @@ BY_MULTIGRID = {**WAVES, "Left edge/condition": "held", "Right edge/condition": 
 # Two sides thrown at each other, faster than Newton's method follows in steps of that length.
 COLLISION = {**WAVES, "Initial state/velocity x": "0", "Initial state/velocity y": "-3000*sin(2*pi*y/0.02)",
              "Continuum/time step": "0.5 us", "Time/end": "20 us", "Checkpoints/steps": 0}
+CASE = {"direct": WAVES, "multigrid": BY_MULTIGRID}
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 
 
@@ -54,10 +56,9 @@ def run_to_end(out, *more, case=WAVES, ranks=1):
     return run
 
 
-def stop(out, which, case=WAVES, ranks=1, victim=None):
-    """Sends the signal `which` once there are checkpoints, to mpirun, or to that rank alone. @return exit code"""
-    launcher = [] if ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(ranks)]
-    with subprocess.Popen([*launcher, LATCON, *command(case, out)], stdout=subprocess.DEVNULL,
+def stop(out, which, case=WAVES, victim=None):
+    """Sends the signal `which` once two ranks have written checkpoints, to mpirun, or to that rank alone. @return exit code"""
+    with subprocess.Popen(["mpirun", "--oversubscribe", "-n", "2", LATCON, *command(case, out)], stdout=subprocess.DEVNULL,
                           stderr=subprocess.PIPE, env=ENVIRONMENT) as run:
         while not checkpoints(out):
             assert run.poll() is None, "it ended too soon"
@@ -66,7 +67,7 @@ def stop(out, which, case=WAVES, ranks=1, victim=None):
         if victim is not None:
             [target] = [pid for pid in children(run.pid) if f"OMPI_COMM_WORLD_RANK={victim}\0".encode()
                         in pathlib.Path(f"/proc/{pid}/environ").read_bytes()]
-        started = children(run.pid) if launcher else []
+        started = children(run.pid)
         os.kill(target, which)
         run.communicate(timeout=600)
         # The ranks outlive an mpirun that was killed for a moment.
@@ -77,45 +78,36 @@ def stop(out, which, case=WAVES, ranks=1, victim=None):
 
 @pytest.fixture(scope="module")
 def undisturbed(module_path):
-    """Returns the folder of a run to the end of a case on a number of ranks, which tests leave as it is."""
-    made = {}
-
-    def of(case, ranks):
-        key = f"{'multigrid' if case is BY_MULTIGRID else 'direct'}-{ranks}"
-        if key not in made:
-            made[key] = module_path / key
-            run_to_end(made[key], case=case, ranks=ranks)
-        return made[key]
+    """Returns the folder of a run of a case on two ranks to its end, which tests leave as it is."""
+    @functools.cache
+    def of(name):
+        run_to_end(module_path / name, case=CASE[name], ranks=2)
+        return module_path / name
     return of
 
 
-# mpirun returns the exit code of a rank.
-@pytest.mark.parametrize("which, case, ranks, victim, status", [
-    (signal.SIGTERM, WAVES, 1, None, {130}), (signal.SIGKILL, BY_MULTIGRID, 1, None, {-9}),
-    (signal.SIGTERM, WAVES, 2, 1, {130}), (signal.SIGKILL, BY_MULTIGRID, 2, 1, set(range(1, 256)))],
-    ids=["signal", "kill with multigrid", "signal to one rank", "killed rank"])
-def test_goes_on_to_the_same_files(out, undisturbed, which, case, ranks, victim, status):
-    expected = files(undisturbed(case, ranks))
-    ended = stop(out, which, case, ranks, victim)
+# mpirun returns the exit code of a rank. A run on one rank that is killed: tests/faults.
+@pytest.mark.parametrize("which, name, status", [(signal.SIGTERM, "direct", {130}), (signal.SIGKILL, "multigrid", set(range(1, 256)))])
+def test_goes_on_to_the_same_files(out, undisturbed, which, name, status):
+    expected, case = files(undisturbed(name)), CASE[name]
+    ended = stop(out, which, case, victim=1)
     assert ended in status
     with h5py.File(checkpoints(out)[-1], "r") as file:
         step = int(file["run/step"][0])
-    assert step < 20
-    if ended == 130:
-        # The instant of the signal is in a frame, in the table and in a checkpoint.
-        with h5py.File(checkpoints(out)[-1], "r") as file:
-            assert file["solver/time"][0] == frames(out / "continuum.pvd")[-1][0]
-            assert file["solver/time"][0] == float(read_csv(out / "energy.csv")[-1]["t"])
-        assert run_json(out)["exit_code"] == 130
-    run = run_to_end(out, "--resume", case=case, ranks=ranks)
+        assert step < 20
+        if ended == 130:
+            # The instant of the signal is in a frame, in the table and in a checkpoint.
+            assert file["solver/time"][0] == frames(out / "continuum.pvd")[-1][0] == float(read_csv(out / "energy.csv")[-1]["t"])
+            assert run_json(out)["exit_code"] == 130
+    run = run_to_end(out, "--resume", case=case, ranks=2)
     assert f"step {step}," in run.stdout
     assert run_json(out)["resumed_from"]["step"] == step
     expect_same(out, expected)
 
 
 def test_on_another_number_of_ranks(out, undisturbed):
-    whole = undisturbed(WAVES, 1)
-    stop(out, signal.SIGKILL, ranks=2)
+    whole = undisturbed("direct")
+    stop(out, signal.SIGKILL)
     run_to_end(out, "--resume")
     assert [time for time, _ in frames(out / "continuum.pvd")] == [time for time, _ in frames(whole / "continuum.pvd")]
     for _, file in frames(out / "continuum.pvd"):
@@ -132,26 +124,21 @@ def test_equilibrium_starts_from_the_beginning(out):
     assert "starting from the beginning" in run.stdout
 
 
-def test_last_good_state_is_left(out, tmp_path):
-    for ranks in (1, 2):
-        out = tmp_path / str(ranks)
-        run = latcon_on_ranks(ranks, *command(COLLISION, out))
-        assert run.returncode == 4, run.stderr
-        assert re.search(r"the time step from [\d.e-]+ s failed", run.stderr)
-        assert re.search(r"X = \([-\d.e]+, [-\d.e]+\) m", run.stderr)
-        last = float(run.stderr.split("the time step from ")[1].split(" s ")[0])
-        rows = read_csv(out / "energy.csv")
-        assert float(rows[-1]["t"]) == pytest.approx(last, abs=1e-6)
-        assert float(rows[-1]["t"]) > 0.
-        time_, file = frames(out / "continuum.pvd")[-1]
-        assert time_ == float(rows[-1]["t"])
-        assert file.exists()
-        assert not list(out.rglob("*.part"))
+def test_last_good_state_is_left(out):
+    run = latcon(*command(COLLISION, out))
+    assert run.returncode == 4, run.stderr
+    assert re.search(r"X = \([-\d.e]+, [-\d.e]+\) m", run.stderr)
+    last = float(re.search(r"the time step from ([\d.e-]+) s failed", run.stderr)[1])
+    time_, file = frames(out / "continuum.pvd")[-1]
+    assert time_ == float(read_csv(out / "energy.csv")[-1]["t"]) == pytest.approx(last, abs=1e-6)
+    assert time_ > 0.
+    assert file.exists()
+    assert not list(out.rglob("*.part"))
 
 
 def test_output_that_fails_on_one_rank_ends_all(out):
     out.mkdir()
-    for which in ("continuum_0001.1.vtu", "continuum_0002.pvtu", "energy.csv"):
+    for which in ("continuum_0001.1.vtu", "energy.csv"):
         (out / which).unlink(missing_ok=True)  # of the run before, which wrote its tables with each frame
         (out / which).mkdir()
         (out / which / "mine").write_text("")

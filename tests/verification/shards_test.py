@@ -1,7 +1,6 @@
 """latcon study --shard and --collect, and latcon batch: files, exit codes, signals, and a job array of a real Slurm."""
 import json
 import os
-import pathlib
 import signal
 import subprocess
 import time
@@ -10,7 +9,7 @@ import pytest
 
 from program import FULL, LATCON, latcon
 from slurm import Slurm, missing
-from studies import TINY, Studies, files_in, run, write_study
+from studies import Studies, files_in, run, write_study
 
 RUNS = 4  # of TINY: base twice, low, thin
 

@@ -8,6 +8,8 @@ import signal
 import subprocess
 import time
 
+import pytest
+
 from program import CASES, LATCON, catches, children, latcon, wait_for
 
 QUICK = str(CASES / "quick.prm")
@@ -54,18 +56,12 @@ def test_verify_keeps_the_claims_that_are_done(out, start):
     assert info(out)["verdict"] is None
 
 
-def test_relaxation(out, start):
-    ends_at_once(start, out, "lattice", QUICK, "--set", "Sheet/length=25 cm", "--set", "Sheet/height=15 cm",
-                  begun=(out / "lattice-0000.vtp").exists)
-
-
-def test_finite_element_equilibrium(out, start):
-    ends_at_once(start, out, "continuum", CASES / "hole.prm", "--set", "Continuum/refinements=3",
-                  begun=(out / "continuum.pvd").exists)
-
-
-def test_claims_before_a_crack(out, start):
-    ends_at_once(start, out, "fracture", QUICK)
+@pytest.mark.parametrize("command, begun", [
+    (["lattice", QUICK, "--set", "Sheet/length=25 cm", "--set", "Sheet/height=15 cm"], "lattice-0000.vtp"),
+    (["continuum", CASES / "hole.prm", "--set", "Continuum/refinements=3"], "continuum.pvd"), (["fracture", QUICK], "run.json")],
+    ids=["relaxation", "equilibrium", "claims before a crack"])
+def test_what_has_no_state_to_save_ends_at_once(out, start, command, begun):
+    ends_at_once(start, out, *command, begun=(out / begun).exists)
     assert not (out / "crack.json").exists()
 
 
@@ -169,11 +165,6 @@ def test_every_signal_saves_and_draws_no_report(start, out):
         is_saved(out, process)
         assert not (out / "report.html").exists()
         shutil.rmtree(out)
-
-
-def test_the_limit_of_the_processor_time(start, out):
-    process = start(*motion(out), preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (2, 60)))
-    is_saved(out, process)
 
 
 def test_a_signal_to_one_of_two_ranks(start, out):

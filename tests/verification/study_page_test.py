@@ -1,7 +1,4 @@
-"""Tests of the page and the gallery of a synthetic study: checks, pictures of runs, numbers, choice of the cracks."""
-import contextlib
-import csv
-import io
+"""Tests of the page of a made-up study: checks, pictures of runs, numbers, maps. The gallery: tests/docs/gallery_test.py."""
 import json
 import re
 from unittest import mock
@@ -11,9 +8,8 @@ import pytest
 from matplotlib.collections import LineCollection
 from PIL import Image
 
-import gallery
 from near_tip_plots_test import write_field
-from report_test import Page, main, write_fracture
+from made_up_runs import drawn, read_page, write_fracture
 
 from latcon.report import phase_map, study, study_plots
 from latcon.report.study_plots import MEASURED, NEAR_TIP, PATH, asked_quantities, draw_sweep
@@ -21,7 +17,6 @@ from latcon.report.study_runs import read_study
 
 QUANTITIES = {quantity: None for quantity, *_ in MEASURED + NEAR_TIP} | {"speed_laboratory": 40.0, "end_time": 3e-3}
 WITHOUT = {"Next-nearest neighbours/present": "false"}
-BLUE = np.array((0x00, 0x72, 0xB2))
 
 
 def made_up_seed(run, seed, pattern, state="measured", **values):
@@ -76,10 +71,8 @@ class MadeUpStudy:
         """The parsed page with the pictures of some runs, and its HTML."""
         self.document["pictures"] = list(pictures)
         self.read()
-        assert main(["study", str(self.folder), "--quiet"]) == 0
-        html = (self.folder / "study.html").read_text(encoding="utf-8")
-        page = Page(html)
-        assert page.open == []
+        drawn(self.folder, "--quiet", kind="study")
+        html, page = read_page(self.folder, "study.html")
         return page, html
 
 
@@ -227,34 +220,3 @@ class TestMaps(MadeUpStudy):
         del self.document["varied"][2]
         self.document["swept"] = []  # named runs, which happen to vary two entries
         assert "Patterns over" not in self.page()[0].text
-
-
-class TestGallery(MadeUpStudy):
-    def gallery(self, expect=0, options=()):
-        """@return the page, and what was printed as an error"""
-        error = io.StringIO()
-        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(error):
-            assert gallery.main([str(self.folder), str(self.folder / "docs"), *options]) == expect
-        path = self.folder / "docs" / "gallery.md"
-        return path.read_text(encoding="utf-8") if path.exists() else "", error.getvalue()
-
-    def test_states_the_numbers_of_the_study(self):
-        self.read()
-        text, _ = self.gallery()
-        text = " ".join(text.split())
-        for words in ("## Oscillating: `wavy`", "The wavy one.", "Pictures of seed 2: oscillating",
-                      "wavelength 2.1 cm (2.20 ± 0.14 cm)", "bridged length 1.75 cm",
-                      "area of the negative-velocity zone 13 mm² (14.0 ± 1.4 mm²)",
-                      "peak of the opening stress at 4 d over the value straight ahead 1.07", "wedge angle 33°", "exponent 0.77"):
-            assert words in text
-        assert "| It winds | holds | calm …, `wavelength`: exponent 0.77" in text
-        with (self.folder / "docs" / "gallery-paper.csv").open(encoding="utf-8", newline="") as file:
-            rows = [[row["statement"], row["verdict"], row["runs"], row["quantity"], row["measured"]] for row in csv.DictReader(file)]
-        assert rows == (
-            [[claim["claim"], row["verdict"], ", ".join(row["runs"]), row["quantity"], row["measured"]] for claim in self.document["claims"] for row in claim["rows"]])
-
-    def test_without_a_study_it_says_what_makes_one(self):
-        text, error = self.gallery(expect=2)
-        assert text == ""
-        assert "study.json: No such file or directory; `latcon study paper` makes one" in error
-        assert not (self.folder / "docs").exists()

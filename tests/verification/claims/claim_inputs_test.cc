@@ -82,30 +82,11 @@ std::optional<Case> with_another(const std::string &key, const std::string &valu
   catch (const std::invalid_argument &)
   {
   }
-  for (const char *other : {"1e-12",
-                            "1",
-                            "0.5",
-                            "2",
-                            "false",
-                            "true",
-                            "rows-across-crack",
-                            "linear",
-                            "motion",
-                            "behind-tip",
-                            "rate-stretch",
-                            "slit",
-                            "triangular",
-                            "mooney-rivlin",
-                            "isotropic",
-                            "generalised-alpha",
-                            "free",
-                            "held",
-                            "clamped",
-                            "undeformed",
-                            "other.msh",
-                            "runge-kutta-chebyshev",
-                            "uniform"})
-    candidates.emplace_back(other);
+  std::istringstream others("1e-12 1 0.5 2 false true rows-across-crack linear motion behind-tip rate-stretch slit "
+                            "triangular mooney-rivlin isotropic generalised-alpha free held clamped undeformed "
+                            "other.msh runge-kutta-chebyshev uniform");
+  for (std::string other; others >> other;)
+    candidates.push_back(other);
   for (const std::string &candidate : candidates)
   {
     Case changed = some_case();

@@ -1,7 +1,13 @@
+// Without a fault claims hold.
+#include <algorithm>
+#include <functional>
+#include <tuple>
+
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/faults.h"
 #include "tests/verification/claims/parts.h"
+#include "verification/commands/command.h"
 
 namespace claims_test
 {
@@ -12,6 +18,7 @@ using namespace bridge;
 using namespace claims;
 using namespace input;
 using namespace output;
+using faults::holding;
 
 TEST(Energy, HoldsForBothShellSetsOrientationsAndLaws)
 {
@@ -28,14 +35,115 @@ TEST(Energy, HoldsForBothShellSetsOrientationsAndLaws)
         // Strong ellipticity of the calibrated law is judged for rubber alone: springs are another material.
         for (const Result &row : results.rows())
           EXPECT_TRUE(row.verdict() != Verdict::fails) << row.quantity;
-        EXPECT_GE(faults::holding(results), 10u);
+        EXPECT_GE(holding(results), 10u);
       }
     }
 }
 
-TEST(Prestretch, HoldsForBothShellSetsAcrossTheCrack)
+using Check = std::function<Results(const Case &, const Subject &)>;
+
+class HeldClaim : public testing::TestWithParam<std::pair<const char *, Check>>
 {
-  faults::expect_holds([](const Case &, const Subject &subject) { return parts::prestretch.check(subject); });
+};
+
+// The excess is there, with its sign: the gradient continuum holds more energy than the local one, the lattice less.
+void expect_that_the_local_energy_is_between(const Table &table)
+{
+  const auto column = [&](const std::string &name)
+  {
+    const auto found = std::find(table.columns().begin(), table.columns().end(), name);
+    return static_cast<std::size_t>(found - table.columns().begin());
+  };
+  EXPECT_EQ(table.rows().size(), 2u * 2u * 2u); // directions, kd, waves
+  for (const auto &row : table.rows())
+  {
+    EXPECT_LT(std::get<double>(row[column("lattice")]), 1. - 1e-3);
+    EXPECT_GT(std::get<double>(row[column("gradient")]), 1. + 1e-3);
+  }
+}
+
+Results energy_of_waves(const Case &input, const Subject &subject)
+{
+  const ClaimOutcome outcome = parts::energy_of_waves(subject, {faults::state_for(input, subject)});
+  EXPECT_EQ(outcome.results.count(Verdict::reported), 0u);
+  if (subject.material.next_nearest) // nearest neighbours alone leave less than it judges
+    expect_that_the_local_energy_is_between(outcome.tables.at("sinusoidal_energy"));
+  return outcome.results;
+}
+
+Results wave_speeds(const Case &input, const Subject &subject)
+{
+  const ClaimOutcome outcome = wave_speeds_claim(subject, parts::waves({faults::state_for(input, subject)}));
+  EXPECT_EQ(outcome.tables.at("wave_speeds").rows().size(), 4u * 2u * 2u); // directions, kd, waves
+  return outcome.results;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+  Claims, HeldClaim,
+  testing::Values(std::pair("energy of waves", Check(energy_of_waves)), std::pair("wave-speeds", Check(wave_speeds)),
+                  std::pair("prestretch", [](const Case &, const Subject &s) { return parts::prestretch.check(s); }),
+                  std::pair("intrinsic-length",
+                            [](const Case &, const Subject &s) { return parts::intrinsic_length.check(s); }),
+                  std::pair("nonlocal", [](const Case &, const Subject &s)
+                            { return nonlocal_claim(s, parts::nonlocal_options(s)); })));
+
+// Among them theory-comparison.md, eqs. (W.4) and (W.5).
+TEST_P(HeldClaim, HoldsForBothShellSetsAcrossTheCrack)
+{
+  faults::expect_holds(GetParam().second);
+}
+
+// theory-comparison.md, eq. (H.9).
+TEST(Claims, HoldForDampedWaves)
+{
+  const Case input = subjects::weakly_damped_case();
+  const Results results = wave_speeds_claim(subject(input), parts::waves({}, {input.deformation()})).results;
+  EXPECT_EQ(holding(results), 9u) << results.verdict_text(9);
+  EXPECT_EQ(results.rows().size(), 9u);
+}
+
+// Free edges have no layer without next-nearest neighbours.
+TEST(Claims, HoldForThreeShellsInBothOrientations)
+{
+  for (const auto &[orientation, has_next_nearest] :
+       {std::pair(lattice::Orientation::rows_along_crack, true), {lattice::Orientation::rows_across_crack, false}})
+  {
+    Case input = subjects::with_third_shell(subjects::paper_case());
+    input.orientation = orientation;
+    input.has_next_nearest = has_next_nearest;
+    const Subject three = subject(input);
+    EXPECT_EQ(three.name, has_next_nearest ? "NN+NNN+3NN" : "NN+3NN");
+    EXPECT_EQ(three.material.coordination(), has_next_nearest ? 18u : 12u);
+    for (const Results &results : {contact_rows(three, input), parts::energy.check(three),
+                                   parts::prestretch.check(three), parts::intrinsic_length.check(three)})
+      EXPECT_TRUE(results.all_hold()) << results.verdict_text(5);
+  }
+}
+
+// Which claims are checked without names, and before a crack of the lattice and of the continuum, for which materials.
+TEST(Claims, AreThoseOfTheMaterial)
+{
+  Case plain = subjects::paper_case(), with_branches = plain, with_disorder = plain;
+  with_branches.nearest.branch_moduli = {2e5};
+  with_branches.nearest.relaxation_times = {2e-5};
+  with_disorder.disorder.strength.kind = lattice::Distribution::Kind::weibull;
+  const std::tuple<const char *, Case, bool> cases[] = {{"disorder", with_disorder, false},
+                                                        {"relaxation", with_branches, true},
+                                                        {"viscoelastic-waves", with_branches, true}};
+  for (const auto &[name, input, is_before_fracture] : cases)
+  {
+    const Claim claim = commands::selected_claims({name}, input.material()).front();
+    EXPECT_TRUE(claim.is_default_for(input.material())) << name;
+    EXPECT_EQ(claim.is_before_fracture(input.material()), is_before_fracture) << name;
+    EXPECT_FALSE(claim.is_default_for(plain.material())) << name;
+    EXPECT_FALSE(claim.is_before_fracture(plain.material())) << name;
+  }
+  for (const bool on_continuum : {false, true})
+  {
+    const std::vector<Claim> claims = commands::claims_before_fracture(plain.material(), on_continuum);
+    EXPECT_EQ(std::any_of(claims.begin(), claims.end(), [](const Claim &claim) { return claim.name == "nonlocal"; }),
+              on_continuum);
+  }
 }
 
 // The strain-controlled test of rubber, and a loading on whose way the fitted law loses ellipticity.
@@ -80,6 +188,18 @@ TEST(Energy, RatioAtTheEndOfItsIntervalIsSaidToBe)
   const Subject interior = subject(subjects::paper_case());
   EXPECT_LT(std::abs(interior.mooney_rivlin->ratio), 0.89);
   EXPECT_EQ(row_with(energy_claim(interior, 10), "error: slope of the residual there").verdict(), Verdict::holds);
+}
+
+// The ratio of the constants of a bond is not that of the sheet.
+TEST(Energy, FailsForTheRatioOfTheBondConstants)
+{
+  const Case input = subjects::paper_case();
+  Subject wrong = subject(input);
+  wrong.mooney_rivlin = with_ratio(input.lattice(), input.material(), input.deformation(), 0.6);
+  EXPECT_EQ(faults::failing(energy_claim(wrong, 10), "calibrated ratio"), 1u);
+  // As a choice of the user's it is nothing to judge.
+  wrong.ratio_is_calibrated = false;
+  EXPECT_EQ(row_with(energy_claim(wrong, 10), "given ratio r").verdict(), Verdict::reported);
 }
 
 TEST(Prestretch, SheetThatBucklesFailsAndIsNotCompared)

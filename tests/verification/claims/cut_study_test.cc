@@ -82,17 +82,6 @@ TEST(EquivalentSheet, RimRecedesMoreWhereItIsStretched)
   }
 }
 
-// Turning the lattice by 90 degrees with the sheet changes nothing.
-TEST(EquivalentSheet, IsTheSameInBothOrientations)
-{
-  const Subject along = paper_subject(orientations[0]), across = paper_subject(orientations[1]);
-  const double R = 8. * along.spacing;
-  const lattice::TriangularLattice a(along.spacing, 5. * R, 4. * R, along.orientation);
-  const lattice::TriangularLattice b(along.spacing, 4. * R, 5. * R, across.orientation);
-  EXPECT_NEAR(held_depth(a, along.material, {1., 0.}), held_depth(b, along.material, {0., 1.}), 1e-12 * R);
-  EXPECT_NEAR(held_depth(a, along.material, {0., 1.}), held_depth(b, along.material, {1., 0.}), 1e-12 * R);
-}
-
 // theory-comparison.md, eq. (H.12).
 TEST(CutStudy, HoldsWithAHoleInBothOrientationsAndForBothShellSets)
 {
@@ -150,27 +139,6 @@ TEST(CutStudy, NetworkLiesMidwayBetweenTheLatticeAndTheTurnedOne)
   EXPECT_NEAR(network.from_local->displacement, first_order, 0.2 * first_order);
   ASSERT_TRUE(network.from_middle);
   EXPECT_LT(network.from_middle->displacement, 0.2 * first_order);
-}
-
-// Columns that the report reads by name.
-TEST(CutStudy, TablesHaveTheirColumns)
-{
-  CutStudy study = hole_study(true);
-  study.sizes = {6., 8., 10., 12.};
-  study.n_judged = 1;
-  study.other_sizes = {6.};
-  const ClaimOutcome outcome = cut_claim(paper_subject(), study);
-  const Table &table = outcome.tables.at("hole");
-  const std::vector<std::string> first = {"shells",       "F_xx",   "F_yy",   "law",      "R/d",
-                                          "displacement", "stress", "energy", "reaction", "shape"};
-  ASSERT_GE(table.columns().size(), first.size());
-  EXPECT_TRUE(std::equal(first.begin(), first.end(), table.columns().begin()));
-  EXPECT_EQ(table.rows().size(), 4u + 2u * 2u + 2u); // of "local", of the network, and with gradient energies
-  for (const auto &row : table.rows())
-  {
-    EXPECT_EQ(std::get<std::string>(row[0]), "NN+NNN");
-    EXPECT_LT(std::get<double>(row[5]), 0.1);
-  }
 }
 
 // Positions and directions of the lattice with x and y exchanged, as a comparison would see them that mixes them up.

@@ -8,7 +8,6 @@
 #include "lattice/bond_factors.h"
 #include "tests/verification/claims/faults.h"
 #include "verification/claims/disorder/disorder_claim.h"
-#include "verification/commands/command.h"
 
 namespace disorder_claim_test
 {
@@ -143,16 +142,6 @@ TEST(DisorderClaim, FailsForWrongFactors)
     for (const char *quantity : fault.quantities)
       EXPECT_GE(faults::failing(results, quantity), 1u) << fault.name << ": " << quantity;
   }
-}
-
-TEST(DisorderClaim, IsForMaterialsWithDisorder)
-{
-  input::Case input = subjects::paper_case();
-  const Claim claim = latcon::commands::selected_claims({"disorder"}, input.material()).front();
-  EXPECT_FALSE(claim.is_default_for(input.material()));
-  EXPECT_FALSE(claim.is_before_fracture(input.material()));
-  input.disorder.strength.kind = Kind::weibull;
-  EXPECT_TRUE(claim.is_default_for(input.material()));
 }
 
 } // namespace disorder_claim_test

@@ -1,9 +1,7 @@
 // Faults planted on one side of a claim: the rows that must fail, and those that compare a side with its own theory and
-// must hold. A claim that cannot fail claims nothing. Without a fault none fails: HoldsForBothShellSetsAcrossTheCrack
-// of each claim.
+// must hold. A claim that cannot fail claims nothing. Without a fault none fails: claims_test.cc.
 #include <gtest/gtest.h>
 
-#include <iostream>
 #include <vector>
 
 #include "tests/verification/claims/faults.h"
@@ -230,14 +228,8 @@ INSTANTIATE_TEST_SUITE_P(Claims, FaultMatrix, testing::ValuesIn(all_faults()));
 // The rubber of the paper; laws are fitted once.
 const Subject &right_subject(bool has_third_shell)
 {
-  const auto made = [](bool has_third)
-  {
-    input::Case input = subjects::weakly_damped_case();
-    input.has_third_nearest = has_third;
-    input.third_nearest = {input::ShellCase::Law::mooney_rivlin, 1e5, 1.5e5, 1., 2. / 3., 100.};
-    return subject(input);
-  };
-  static const Subject two = made(false), three = made(true);
+  static const Subject two = subject(subjects::weakly_damped_case()),
+                       three = subject(subjects::with_third_shell(subjects::weakly_damped_case()));
   return has_third_shell ? three : two;
 }
 
@@ -278,14 +270,12 @@ TEST(Surroundings, AreThoseOfTheirClosedForms)
     const Subject subject = bridge::subject(input);
     const Results right = contact_rows(subject, input);
     EXPECT_TRUE(right.all_hold()) << right.verdict_text(3);
-    for (const Result &row : right.rows())
-      std::cout << row.quantity << ": " << row.lattice.value_or(-1.) << " " << row.error.value_or(-1.) << "\n";
     const Results stiffer = contact_rows(subject, input, [](lattice::ContactLaw &law) { law.stiffness *= wrong; }),
                   damped = contact_rows(subject, input, [](lattice::ContactLaw &law) { law.viscosity *= wrong; });
     EXPECT_EQ(faults::failing(stiffer, "restitution"), 1u) << stiffer.rows()[0].error.value_or(-1.);
     EXPECT_EQ(faults::failing(damped, "restitution"), 1u) << damped.rows()[0].error.value_or(-1.);
     if (integrator == input::Case::Integrator::velocity_verlet)
-      continue; // WaveSpeeds.HoldsForDampedWaves
+      continue; // Claims.HoldForDampedWaves
     WaveSpeedsOptions options = parts::waves({}, {subject.deformation});
     options.integrator = integrator;
     const Results waves = wave_speeds_claim(subject, options).results;
@@ -294,8 +284,6 @@ TEST(Surroundings, AreThoseOfTheirClosedForms)
   const Subject subject = bridge::subject(subjects::paper_case());
   const Results right = absorbing_end_rows(subject);
   EXPECT_TRUE(right.all_hold()) << right.verdict_text(3);
-  for (const Result &row : right.rows())
-    std::cout << row.quantity << ": " << row.error.value_or(-1.) << "\n";
 }
 
 } // namespace fault_matrix_test

@@ -7,9 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/faults.h"
+#include "tests/verification/claims/parts.h"
 #include "verification/bridge/nonlocal_continuum.h"
-#include "verification/claims/nonlocal/nonlocal_claim.h"
-#include "verification/commands/command.h"
 
 namespace nonlocal_test
 {
@@ -20,38 +19,13 @@ using namespace bridge;
 using namespace claims;
 using namespace output;
 
-NonlocalOptions options_of(const Subject &subject)
-{
-  NonlocalOptions options;
-  options.stencils = fixed_stencils(subject.spacing, subject.orientation);
-  options.samples = 5;
-  options.breaking_stretch = 3.05;
-  return options;
-}
-
-// One stencil of each kind of points.
-NonlocalOptions few_stencils_of(const Subject &subject)
-{
-  NonlocalOptions options = options_of(subject);
-  const std::vector<NonlocalStencil> all = options.stencils;
-  options.stencils = {all[0], all[5], all[6]};
-  return options;
-}
-
-// Energies (H.25), bounds of harmonics (H.26), lengths (H.27) and cuts (H.28).
-TEST(Nonlocal, HoldsForBothShellSetsAcrossTheCrack)
-{
-  faults::expect_holds([](const input::Case &, const Subject &subject)
-                       { return nonlocal_claim(subject, options_of(subject)); });
-}
-
 TEST(Nonlocal, HoldsWithThirdNearestNeighboursAndArcs)
 {
   input::Case input = subjects::paper_case();
   lattice::Material material = input.material();
   material.third_nearest = material.next_nearest;
   const Subject third = subject(input, material);
-  NonlocalOptions options = options_of(third);
+  NonlocalOptions options = parts::nonlocal_options(third);
   const lattice::Grid fine{lattice::Grid::Kind::square, input.spacing / 4.},
     own{lattice::Grid::Kind::triangular, input.spacing};
   options.stencils = {options.stencils[2], {"arcs", fine, M_PI / 9.}, {"lattice", own, 0.}};
@@ -71,11 +45,6 @@ struct Fault
 std::ostream &operator<<(std::ostream &out, const Fault &fault)
 {
   return out << fault.name;
-}
-
-Fault of_subject(const char *name, const std::function<void(Subject &)> &plant)
-{
-  return {name, [](NonlocalOptions &) {}, {""}, false, plant};
 }
 
 const char *const moduli = "all elastic moduli";
@@ -162,13 +131,16 @@ const Fault planted[] = {
      };
    },
    {moduli, "force on a point"}},
-  of_subject("network",
-             [](Subject &s) { s.network = faults::scaled<continuum::IsotropicNetwork>(s.cauchy_born, 1.01); }),
-  of_subject("lattice", [](Subject &s) { s.material.next_nearest->area_factor *= 1.01; }),
-  of_subject("length", [](Subject &s) { s.lengths.isotropic_inertia *= 1.01; }),
-  of_subject("shear speed", [](Subject &s) { s.theory.shear_speed = std::nan(""); }),
-  of_subject("density", [](Subject &s) { s.material.density = std::nan(""); }),
-  of_subject("area", [](Subject &s) { s.material.nearest.area_factor = std::nan(""); }),
+  {"network",
+   {},
+   {""},
+   false,
+   [](Subject &s) { s.network = faults::scaled<continuum::IsotropicNetwork>(s.cauchy_born, 1.01); }},
+  {"lattice", {}, {""}, false, [](Subject &s) { s.material.next_nearest->area_factor *= 1.01; }},
+  {"length", {}, {""}, false, [](Subject &s) { s.lengths.isotropic_inertia *= 1.01; }},
+  {"shear speed", {}, {""}, false, [](Subject &s) { s.theory.shear_speed = std::nan(""); }},
+  {"density", {}, {""}, false, [](Subject &s) { s.material.density = std::nan(""); }},
+  {"area", {}, {""}, false, [](Subject &s) { s.material.nearest.area_factor = std::nan(""); }},
 };
 
 class NonlocalFault : public testing::TestWithParam<Fault>
@@ -176,14 +148,19 @@ class NonlocalFault : public testing::TestWithParam<Fault>
 };
 INSTANTIATE_TEST_SUITE_P(FaultMatrix, NonlocalFault, testing::ValuesIn(planted));
 
+// Energies (H.25), bounds of harmonics (H.26), lengths (H.27) and cuts (H.28).
 TEST_P(NonlocalFault, EachIsCaughtByARow)
 {
   static const Subject right = bridge::subject(subjects::paper_case()); // laws are fitted once
   Subject subject = right;
   if (GetParam().of_subject)
     GetParam().of_subject(subject);
-  NonlocalOptions options = GetParam().needs_all_stencils ? options_of(subject) : few_stencils_of(subject);
-  GetParam().plant(options);
+  NonlocalOptions options = parts::nonlocal_options(subject);
+  const std::vector<NonlocalStencil> all = options.stencils;
+  if (!GetParam().needs_all_stencils) // one of each kind of points
+    options.stencils = {all[0], all[5], all[6]};
+  if (GetParam().plant)
+    GetParam().plant(options);
   const Results results = nonlocal_claim(subject, options);
   for (const char *row : GetParam().rows)
     EXPECT_GE(faults::failing(results, row), 1u) << row;
@@ -203,20 +180,6 @@ TEST(Nonlocal, HasTheCutEnergiesOfFig1)
   EXPECT_NEAR(on_lattice, (2. * 2. / 3. + 4. * std::sqrt(3.) * 4. / 3.) * std::sqrt(3.) / 2. * d * psi, 1e-10 * rings);
   EXPECT_NEAR(rings, 2. / M_PI * (3. * 2. / 3. + 9. * 4. / 3.) * d * psi, 1e-10 * rings);
   EXPECT_NEAR(on_lattice / rings, 1.0272, 1e-4);
-}
-
-TEST(Nonlocal, IsWaitedForByCracksOfTheContinuumAlone)
-{
-  const lattice::Material material = subjects::paper_case().material();
-  const auto has = [&](bool on_continuum)
-  {
-    for (const Claim &claim : commands::claims_before_fracture(material, on_continuum))
-      if (claim.name == "nonlocal")
-        return true;
-    return false;
-  };
-  EXPECT_TRUE(has(true));
-  EXPECT_FALSE(has(false));
 }
 
 } // namespace nonlocal_test

@@ -7,6 +7,7 @@
 
 #include "verification/claims/energy/energy_claim.h"
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
+#include "verification/claims/nonlocal/nonlocal_claim.h"
 #include "verification/claims/prestretch/prestretch_claim.h"
 #include "verification/claims/wave_speeds/wave_speeds_claim.h"
 
@@ -43,6 +44,16 @@ inline latcon::claims::ClaimOutcome energy_of_waves(const latcon::bridge::Subjec
   options.mesh.cells = 4;
   options.travelling_mesh.cells = 6;
   return wave_energy_claim(subject, options);
+}
+
+/// Options of the claim `nonlocal` with all stencils.
+inline latcon::claims::NonlocalOptions nonlocal_options(const latcon::bridge::Subject &subject)
+{
+  latcon::claims::NonlocalOptions options;
+  options.stencils = latcon::claims::fixed_stencils(subject.spacing, subject.orientation);
+  options.samples = 5;
+  options.breaking_stretch = 3.05;
+  return options;
 }
 
 inline const ClaimPart energy{"energy",

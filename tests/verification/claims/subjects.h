@@ -30,6 +30,14 @@ inline latcon::input::Case weakly_damped_case()
   return input;
 }
 
+/// A case with third-nearest neighbours too.
+inline latcon::input::Case with_third_shell(latcon::input::Case input)
+{
+  input.has_third_nearest = true;
+  input.third_nearest = {latcon::input::ShellCase::Law::mooney_rivlin, 1e5, 1.5e5, 1., 2. / 3., 100.};
+  return input;
+}
+
 inline latcon::lattice::Material nearest_only(const latcon::input::Case &input)
 {
   latcon::lattice::Material material = input.material();

@@ -23,10 +23,14 @@ TEST(Parameters, BrokenJsonIsToldWithItsLine)
     EXPECT_EQ(all[0].find("a.json:"), 0u) << all[0];
     EXPECT_EQ(all[1].find(missing), 0u) << all[1];
   }
-  const std::vector<std::string> zero =
-    problems(R"({"Lattice": {"spacing": 1}})" + std::string("\0{}", 3), {}, "a.json");
-  ASSERT_EQ(zero.size(), 2u); // and nothing is read, so the required entry is missing
-  EXPECT_EQ(zero[0], "a.json:1: not a text file: it holds zero bytes");
+  for (const auto &[name, zero] :
+       {std::pair(std::string("a.json:1"), R"({"Lattice": {"spacing": 1}})" + std::string("\0{}", 3)),
+        {"a.prm:4", good + std::string("x\0\ny\nz\n", 7)}})
+  {
+    const std::vector<std::string> all = problems(zero, {}, name.substr(0, name.size() - 2));
+    ASSERT_EQ(all.size(), 2u); // and nothing is read, so the required entry is missing
+    EXPECT_EQ(all[0], name + ": not a text file: it holds zero bytes");
+  }
   EXPECT_EQ(problem(R"({"Lattice": {"spacing": 1}, "Run": {"steps": 1.5}})", {}, "A.JSON").find("A.JSON:/Run/steps: "),
             0u);
   EXPECT_EQ(problems("{\n\n  \"Lattice\": oops}", {}, "a.json")[0].find("a.json:3: not JSON: parse error at line 3"),

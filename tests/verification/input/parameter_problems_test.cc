@@ -128,24 +128,6 @@ TEST(Parameters, RangesHoldAtTheirEnds)
   EXPECT_EQ(Range({0., true}, {1., false}).text(), ">= 0 and < 1");
 }
 
-TEST(Parameters, WhatIsNoTextIsOneProblem)
-{
-  const std::vector<std::string> all = problems(good + std::string("x\0\ny\nz\n", 7));
-  ASSERT_EQ(all.size(), 2u); // and nothing is read, so the required entry is missing
-  EXPECT_EQ(all[0], "a.prm:4: not a text file: it holds zero bytes");
-}
-
-TEST(Parameters, WholeNumbersWithoutASignEndWhereTheProgramStops)
-{
-  unsigned int steps = 0;
-  Parameters p;
-  p.add("A", "steps", steps, Range(0.), "steps");
-  p.read_overrides({"A/steps=4294967296"});
-  const std::vector<std::string> all = problems_of(p);
-  ASSERT_EQ(all.size(), 1u);
-  EXPECT_NE(all[0].find("allowed: a whole number >= 0 and <= 4294967295"), std::string::npos) << all[0];
-}
-
 TEST(Parameters, AllProblemsAreToldAtOnce)
 {
   const std::vector<std::string> all = problems("subsection Lattice\n"

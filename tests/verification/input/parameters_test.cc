@@ -1,12 +1,9 @@
 // Good input comes back bit for bit, and the resolved case says what it was.
 #include "tests/verification/input/sample_case.h"
 
-#include <deal.II/base/parameter_handler.h>
-
 #include <cstring>
 #include <limits>
 #include <random>
-#include <sstream>
 
 namespace parameters_test
 {
@@ -52,13 +49,6 @@ TEST(Parameters, FillsEveryKindOfEntry)
                              "  set time step = 5 us\n"
                              "end\n");
   EXPECT_EQ(values(sample), values(other_than_default()));
-}
-
-TEST(Parameters, MixedUnitsInAListAreRefused)
-{
-  EXPECT_EQ(problem(good + "subsection Fracture\n set stretches = 1.5, 250 %\nend\n"),
-            "a.prm:5: Fracture/stretches = 1.5, 250 %: some numbers have a unit and some have none; give it to all of "
-            "them or to none; allowed: numbers separated by commas, each > 0");
 }
 
 TEST(Parameters, DefaultsStayWhereNothingIsSet)
@@ -163,27 +153,6 @@ TEST(Parameters, ResolvedCaseIsDocumentedAndInSI)
   EXPECT_LT(text.find("subsection Lattice"), text.find("subsection Fracture")) << "not in the order of declaration";
 }
 
-TEST(Parameters, DealIIReadsTheResolvedCaseAsWeDo)
-{
-  Sample sample;
-  Parameters p;
-  sample.declare(p);
-  p.read_text(good + "subsection Run\nset title = a = \\ b\nend", "a.prm");
-  p.finish();
-  dealii::ParameterHandler handler;
-  for (const Declaration &entry : p.declarations())
-  {
-    handler.enter_subsection(entry.section);
-    handler.declare_entry(entry.name, "");
-    handler.leave_subsection();
-  }
-  std::istringstream text(p.resolved_text());
-  handler.parse_input(text, "case.prm");
-  EXPECT_EQ(handler.get({"Lattice"}, "spacing"), "1");
-  EXPECT_EQ(handler.get({"Run"}, "title"), "a = \\ b");
-  EXPECT_EQ(handler.get_double({"Lattice"}, "nearest neighbour area factor"), 0.6667);
-}
-
 TEST(Parameters, LinesChangeWithEveryValue)
 {
   const std::string original = lines_of(good);
@@ -209,19 +178,6 @@ TEST(Parameters, LinesDoNotDependOnHowTheCaseIsWritten)
   p.add("B", "y", y, any_number, "m", "y");
   EXPECT_EQ(p.lines(), "A/x = 0.5\nB/y = 2\n");
   EXPECT_EQ(p.lines("A"), "B/y = 2\n");
-}
-
-TEST(Parameters, LinesDoNotDependOnTheOrderOfDeclaration)
-{
-  double x = 1.;
-  double y = 2.;
-  Parameters p;
-  p.add("A", "x", x, any_number, "1", "x");
-  p.add("A", "y", y, any_number, "1", "y");
-  Parameters q;
-  q.add("A", "y", y, any_number, "1", "y");
-  q.add("A", "x", x, any_number, "1", "x");
-  EXPECT_EQ(p.lines(), q.lines());
 }
 
 TEST(Parameters, JsonFillsEveryKindOfEntry)

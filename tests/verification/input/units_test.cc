@@ -100,10 +100,4 @@ TEST(Units, OverflowIsRefused)
   EXPECT_EQ(read("0e999", "m"), 0.);
 }
 
-TEST(Units, KnowsWhetherAUnitWasWritten)
-{
-  EXPECT_TRUE(read_quantity("1 mm", "m").has_unit);
-  EXPECT_FALSE(read_quantity("1 ", "m").has_unit);
-}
-
 } // namespace units_test

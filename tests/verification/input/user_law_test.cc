@@ -159,21 +159,6 @@ TEST(UserLaw, NeedsValuesForWhatABondGainsWithinAStep)
   EXPECT_EQ(found("2.3", "1 ms"), "");
 }
 
-// A verdict on one law must not be reused for another.
-TEST(UserLaw, IsAmongTheInputsOfClaims)
-{
-  input::Case input;
-  input.spacing = 1e-3;
-  std::set<std::string> texts{claims::claim_inputs_text(input, {})};
-  for (input::ShellCase *shell : {&input.nearest, &input.next_nearest})
-    for (std::string input::UserLaw::*entry :
-         {&input::UserLaw::psi, &input::UserLaw::parameters, &input::UserLaw::library, &input::UserLaw::sha256})
-    {
-      shell->user_law.*entry = "changed";
-      EXPECT_TRUE(texts.insert(claims::claim_inputs_text(input, {})).second);
-    }
-}
-
 // A law that claims accept must be one with which the case runs: both have the same largest stretch.
 TEST(UserLaw, HasTheSameLargestStretchInClaims)
 {

@@ -1,11 +1,11 @@
 #include "verification/output/output_file.h"
 
+#include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
 
 #include "tests/support/temporary_folder.h"
-#include "verification/output/output_file.h"
 
 namespace output_list_test
 {
@@ -84,16 +84,6 @@ TEST_F(OutputList, FilesOfTheRunBeforeAreMovedAndNoOthers)
   EXPECT_TRUE(has("earlier-run/mine.txt"));
 }
 
-TEST_F(OutputList, TheCaseStays)
-{
-  begin_output_list(folder);
-  written("case.prm");
-  written("crack.csv");
-  archive_earlier_output(folder, folder / "." / "case.prm");
-  EXPECT_TRUE(has("case.prm"));
-  EXPECT_FALSE(has("crack.csv"));
-}
-
 TEST_F(OutputList, AFolderOfTheUsersIsNotUsed)
 {
   fs::create_directory(folder / "earlier-run");
@@ -102,15 +92,6 @@ TEST_F(OutputList, AFolderOfTheUsersIsNotUsed)
   written("crack.csv");
   EXPECT_EQ(archive_earlier_output(folder, {}), folder / "earlier-run-2");
   EXPECT_EQ(content(folder / "earlier-run/crack.csv"), "user");
-}
-
-TEST_F(OutputList, WithoutAListNothingIsTouched)
-{
-  put("crack.csv");
-  put("lattice-0000.vtp");
-  EXPECT_EQ(archive_earlier_output(folder, {}), fs::path());
-  EXPECT_TRUE(has("crack.csv"));
-  EXPECT_FALSE(has(output_list_name));
 }
 
 } // namespace output_list_test

@@ -176,7 +176,7 @@ struct SteadyCrackSeries
 /// Leaves the tables `steady_crack` (a row for each run) and, unless `quick`, `steady_crack_curve` (exact driving over
 /// speed, and whether only the bonds that should break do). A crack that does not run, or for which there is no exact
 /// solution, makes a row that fails.
-/// @param quick fewer drivings; about 25 s on one core, in full 60 s
+/// @param quick fewer drivings; about 20 s on one core, in full 60 s
 ClaimOutcome steady_crack_claim(bool quick);
 
 /// The rows of one series: what every crack of it has, beside the exact solution, within tolerances from refined runs.

@@ -1,0 +1,64 @@
+"""A dry run and the run refuse the cases of refusals.txt, with the place of what is wrong, and nothing is written; and no others."""
+import pathlib
+
+import pytest
+
+from program import CASES, latcon
+
+MOTION = {"Continuum/solution": "motion", "Time/end": "0.01 ms", "Continuum/cells x": 3, "Continuum/cells y": 2, "Continuum/degree": 2}
+NONLOCAL = {"Sheet/spacing": "1 mm", "Sheet/length": "30 mm", "Sheet/height": "16 mm", "Fracture/seed sites": 8,
+            "Time/integrator": "runge-kutta-chebyshev", "Fracture/stop position": 0.7}
+HISTORY = {"Loading/history times": "0.1 ms, 0.3 ms, 0.4003 ms, 0.7 ms", "Loading/history strain y": "1.8, 0.6, 0.6, 1.8"}
+# Words of a command, and entries that its cases share.
+COMMANDS = {"lattice": (["lattice"], {}), "continuum": (["continuum"], {}), "motion": (["continuum"], MOTION),
+            "fracture": (["fracture", "--skip-verification"], {}), "history": (["fracture", "--skip-verification"], HISTORY),
+            "nonlocal": (["fracture", "--side", "continuum", "--skip-verification"], NONLOCAL)}
+
+
+def refusals():
+    lines = [line for line in pathlib.Path(__file__).with_name("refusals.txt").read_text().splitlines() if line and line[0] != "#"]
+    for case, message in zip(lines[::2], lines[1::2], strict=True):
+        (command, name), entries = case.partition(": ")[0].split(), case.partition(": ")[2].split("; ")
+        yield pytest.param(command, name, dict(entry.split("=", 1) for entry in entries), message[2:].split(" | "), id=case)
+
+
+def write_case(path, name, entries):
+    """Writes a shipped case with these entries in place of its own."""
+    kept, section = [], ""
+    for line in (CASES / f"{name}.prm").read_text().splitlines(True):
+        words = line.partition("=")[0].split(maxsplit=1)
+        section = words[1].strip() if words[:1] == ["subsection"] else section
+        if words[:1] != ["set"] or f"{section}/{words[1].strip()}" not in entries:
+            kept.append(line)
+    path.write_text("".join(kept) + "".join("subsection {}\n  set {} = {}\nend\n".format(*key.split("/"), value) for key, value in entries.items()))
+
+
+@pytest.mark.parametrize("command, name, entries, parts", refusals())
+def test_is_refused_with_its_place(out, tmp_path, command, name, entries, parts):
+    words, shared = COMMANDS[command]
+    entries = shared | entries
+    changed = [word for entry in entries.items() for word in ("--set", "{}={}".format(*entry))]
+    out.mkdir()
+    (out / "case.prm").write_text("of an earlier run")
+    dry, run = (latcon(*words, CASES / f"{name}.prm", "--output-dir", out, *changed, *more) for more in (["--dry-run"], []))
+    write_case(tmp_path / "a.prm", name, entries)
+    of_file = latcon(*words, tmp_path / "a.prm", "--output-dir", out, "--dry-run")
+    for ended in (dry, run, of_file):
+        assert ended.returncode == 2, ended.stdout + ended.stderr
+        for part in parts:
+            assert part in ended.stderr
+    assert dry.stderr == run.stderr
+    assert ("--set" in run.stderr or f"{name}.prm:" in run.stderr) == (f"{tmp_path}/a.prm:" in of_file.stderr)
+    assert [path.name for path in out.iterdir()] == ["case.prm"]
+    assert (out / "case.prm").read_text() == "of an earlier run"
+
+
+@pytest.mark.parametrize("entries", [
+    {}, {"Initial state/base": "equilibrium"},
+    {"Initial state/displacement x": "1e-6*sin(pi*x/0.04)*(y-0.01)*(y+0.01)", "Left edge/condition": "free", "Right edge/condition": "free"}])
+def test_nothing_else_is_refused(out, entries):
+    changed = [word for entry in (MOTION | entries).items() for word in ("--set", "{}={}".format(*entry))]
+    for more in ["--dry-run"], []:
+        run = latcon("continuum", CASES / "quick.prm", "--quiet", "--output-dir", out, *changed, *more)
+        assert run.returncode == 0, run.stderr
+    assert (out / "results.json").exists()
