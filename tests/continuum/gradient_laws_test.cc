@@ -1,6 +1,5 @@
 // Gradient laws: energies and their derivatives, compared with automatic differentiation of the energy in the form of
-// theory-continuum.md, eq. (C.22), which has the symmetries of its bonds; positivity, the dispersion of the lattice,
-// and the mean over all directions.
+// theory-continuum.md, eq. (C.22), which has the symmetries of its bonds; positivity, and the mean over all directions.
 #include "continuum/errors.h"
 #include "continuum/network_gradient.h"
 #include "energies.h"
@@ -123,28 +122,6 @@ TEST(LatticeGradient, FormsAreDerivativesOfTheEnergy)
   expect_derivatives(LatticeGradient(bonds, l_d), LatticeGradientEnergy{bonds, l_d}, 1., full, 1. / (full - 1.));
 }
 
-// The energy and its first two derivatives are continuous where bonds enter tension and where they reach full stretch.
-TEST(LatticeGradient, IsTwiceContinuouslyDifferentiable)
-{
-  const LatticeGradient law = rubber_gradient(spacing);
-  std::mt19937 generator(4);
-  const Gradient G = random_gradient(generator, spacing);
-  for (const double stretch : {1., LatticeGradient::full_stretch})
-  {
-    constexpr double step = 1e-9;
-    const auto at = [&](const double l) { return matrix(l, 0., 0., l); };
-    const Tensor<2, 2> below = at(stretch - step), above = at(stretch + step);
-    // Third derivatives are up to 60 divided by the cube of the width of the transition, in units of the energy.
-    const double tolerance = 60. / std::pow(LatticeGradient::full_stretch - 1., 3) * 2. * step * law.energy(above, G);
-    const auto low = law.evaluate(below, G, Order::second), high = law.evaluate(above, G, Order::second);
-    EXPECT_NEAR(low.energy, high.energy, tolerance);
-    EXPECT_NEAR((low.first_piola - high.first_piola).norm(), 0., tolerance);
-    EXPECT_NEAR((low.tangent - high.tangent).norm(), 0., tolerance);
-    EXPECT_NEAR((low.double_stress_by_F - high.double_stress_by_F).norm(), 0., tolerance * spacing);
-    EXPECT_NEAR((low.double_stress_by_G - high.double_stress_by_G).norm(), 0., tolerance * spacing * spacing);
-  }
-}
-
 // theory-continuum.md, eq. (C.21).
 TEST(IsotropicGradient, FormsAreDerivativesOfTheEnergy)
 {
@@ -176,27 +153,6 @@ TEST(LatticeGradient, IsPositiveUnderCompression)
       EXPECT_GT(symbol(law, F, Tensor<1, 2>({std::cos(n * pi / 180.), std::sin(n * pi / 180.)}),
                        Tensor<1, 2>({std::cos(p * pi / 180.), std::sin(p * pi / 180.)})),
                 0.);
-}
-
-// theory-continuum.md, eq. (C.47): alpha d^2 = l_d^2 - H/A2, with A2 = rho c^2 from the Cauchy-Born law and H from the
-// gradient law.
-TEST(LatticeGradient, HasTheDispersionOfTheLattice)
-{
-  const LatticeGradient law = rubber_gradient(spacing);
-  const continuum::CauchyBorn local = rubber_network();
-  const Tensor<2, 2> I = matrix(1., 0., 0., 1.);
-  const Tensor<1, 2> x({1., 0.}), y({0., 1.});
-  const auto alpha = [&](const Tensor<1, 2> &k, const Tensor<1, 2> &p)
-  {
-    const double A2 = scalar_product(
-      outer_product(p, k), dealii::double_contract<2, 0, 3, 1>(local.tangent(I), Tensor<2, 2>(outer_product(p, k))));
-    return 0.25 - symbol(law, I, k, p) / A2 / (spacing * spacing);
-  };
-  // Seven digits are given.
-  EXPECT_NEAR(alpha(x, y), 0.1264958, 5.1e-8);
-  EXPECT_NEAR(alpha(x, x), 0.1468305, 5.1e-8);
-  EXPECT_NEAR(alpha(y, x), 0.0625, 5.1e-8);
-  EXPECT_NEAR(alpha(y, y), 0.1681624, 5.1e-8);
 }
 
 TEST(GradientLaw, NormalStiffnessIsThatOfTheStiffestDirection)

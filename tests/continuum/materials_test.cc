@@ -134,13 +134,6 @@ TEST(MooneyRivlin, MatchesCauchyRelationForEveryRatio)
     expect_isotropic_moduli(rubber_sheet(ratio), 5e5, 5e5);
 }
 
-TEST(CauchyBorn, HasEqualLameConstantsAtIdentity)
-{
-  const double mu = 2. / 3. * 9. / 8. * (1. + std::sqrt(3.)) * 2.5e5;
-  EXPECT_NEAR(mu / 2.5e5, 2.049038, 5e-7); // theory-comparison.md, eq. (H.2)
-  expect_isotropic_moduli(rubber_network(), mu, mu);
-}
-
 TEST(CauchyBorn, HasTheWaveSpeedsOfTheTheory)
 {
   // theory-comparison.md, eq. (W.2), evaluated independently to seven digits, so the tolerance is half a unit of the
@@ -197,40 +190,21 @@ TEST(IsotropicNetwork, IsTheMeanOverAllDirections)
 }
 
 // theory-continuum.md, eqs. (C.51) to (C.54), at J = 1, where I = 2 x: P_{1/2}(x) and P_{-1/2}(x) as hypergeometric
-// series in 40 digits.
+// series in 40 digits, of stretches so different that no sum over directions has digits.
 TEST(StretchMeans, AreLegendreFunctions)
 {
-  struct Case
+  const continuum::StretchMeans mean = continuum::stretch_means(1e12, 1.);
+  const auto expect = [](const continuum::InvariantFunction &f, const std::array<double, 6> &digits)
   {
-    double x;
-    std::array<double, 6> stretch, inverse; // value, by I, by J, by II, by IJ, by JJ
+    const std::array<double, 6> values = {f.value, f.by_I, f.by_J, f.by_II, f.by_IJ, f.by_JJ};
+    // About ten operations on an arithmetic-geometric mean that has several rounding errors itself.
+    for (unsigned int k = 0; k < 6; ++k)
+      EXPECT_NEAR(values[k] / digits[k], 1., 16. * epsilon) << "derivative " << k;
   };
-  const std::vector<Case> cases = {{1.0,
-                                    {1.0, 0.1875, 0.125, -0.029296875, -0.03515625, 0.0078125},
-                                    {1.0, -0.0625, -0.375, 0.017578125, 0.05859375, 0.4453125}},
-                                   {2.6,
-                                    {1.49541627388772166, 0.13148350488527741, 0.0639939115404182726,
-                                     -0.0106712780117662261, -0.0102511067814543275, 0.0213087994933533683},
-                                    {0.858702359551284669, -0.0319969557702091363, -0.26296700977055482,
-                                     0.00512555339072716373, 0.0213425560235324522, 0.283469223333463475}},
-                                   {500000000000.0,
-                                    {636619.772367581343, 3.18309886183790672e-7, 1.71997572289817095e-17,
-                                     -1.59154943091895336e-19, -2.51630160711049829e-29, 1.65631374566141281e-17},
-                                    {0.0000184729967737168722, -8.59987861449085473e-18, -6.36619772367581343e-7,
-                                     1.25815080355524914e-29, 3.18309886183790672e-19, 6.36619772367581343e-7}}};
-  for (const auto &[x, stretch, inverse] : cases)
-  {
-    const continuum::StretchMeans mean = continuum::stretch_means(2. * x, 1.);
-    const auto expect = [x = x](const continuum::InvariantFunction &f, const std::array<double, 6> &digits)
-    {
-      const std::array<double, 6> values = {f.value, f.by_I, f.by_J, f.by_II, f.by_IJ, f.by_JJ};
-      // About ten operations on an arithmetic-geometric mean that has several rounding errors itself.
-      for (unsigned int k = 0; k < 6; ++k)
-        EXPECT_NEAR(values[k] / digits[k], 1., 16. * epsilon) << "x = " << x << ", derivative " << k;
-    };
-    expect(mean.stretch, stretch);
-    expect(mean.inverse, inverse);
-  }
+  expect(mean.stretch, {636619.772367581343, 3.18309886183790672e-7, 1.71997572289817095e-17, -1.59154943091895336e-19,
+                        -2.51630160711049829e-29, 1.65631374566141281e-17});
+  expect(mean.inverse, {0.0000184729967737168722, -8.59987861449085473e-18, -6.36619772367581343e-7,
+                        1.25815080355524914e-29, 3.18309886183790672e-19, 6.36619772367581343e-7});
 }
 
 // theory-comparison.md, eq. (H.2).

@@ -167,21 +167,6 @@ TEST(Multigrid, HasAPatchForEveryFreeDegreeOfFreedom)
   }
 }
 
-TEST(Multigrid, SolvesToTheAnswerOfADirectSolver)
-{
-  const LinearProblem problem(0.1 * length, 2, 2, 2);
-  Sheet::Vector x = problem.sheet->make_owned();
-  Sheet::Vector direct = problem.sheet->make_owned();
-  Sheet::Vector b = problem.sheet->make_owned();
-  body_force(*problem.sheet, problem.multigrid->constraints(), b);
-  solve(*problem.multigrid, problem.K, x, b, 1e-12);
-  continuum::LinearSettings settings;
-  settings.direct_limit = 1000000;
-  continuum::LinearSolver(*problem.sheet, all_held(), settings).solve(problem.K, direct, b);
-  x -= direct;
-  EXPECT_LT(x.l2_norm(), 1e-9 * direct.l2_norm());
-}
-
 TEST(Multigrid, IsADirectSolverOnAMeshThatIsCoarseEnough)
 {
   MultigridSettings settings;
