@@ -1,7 +1,5 @@
-// Dynamics of sheets on one rank: orders in time, energy balance, Newton's method, units, and steps that do not
-// converge.
+// Dynamics of sheets on one rank: orders in time, energy balance, units, and steps that do not converge.
 #include "continuum/errors.h"
-#include "continuum/newton_solver.h"
 #include "moving_sheets.h"
 #include "support/largest_error.h"
 
@@ -197,6 +195,18 @@ TEST(DynamicSolver, KeepsTheMomentumOfAFreeSheet)
   }
 }
 
+TEST(DynamicSolver, StartsWithTheAccelerationOfItsLoads)
+{
+  BoundaryConditions conditions;
+  conditions.body_force = BodyForce{constant(3. * density, -2. * density)};
+  RectangleMesh mesh(rectangle(2, 2));
+  DynamicSolver solver(mesh, law, conditions, {density, 0.}, quadratic(1e-4));
+  solver.start();
+  Vector difference = owned(solver.sheet(), solver.acceleration());
+  difference -= owned(solver.sheet(), nodal(solver.sheet(), [](const Point<2> &) { return Tensor<1, 2>({3., -2.}); }));
+  EXPECT_LT(difference.linfty_norm(), 1e-10);
+}
+
 // theory-continuum.md, eq. (C.45).
 TEST(DynamicSolver, LeavesEquilibriumAtRest)
 {
@@ -288,119 +298,6 @@ TEST(DynamicSolver, DividesAStepThatCannotBeSolved)
   EXPECT_EQ(attempts, 1u); // the last step is not divided
   // Second order in the step: 0.002 here. The work of one part is at least a tenth.
   EXPECT_LT(std::abs(ledger.imbalance), 0.01 * (ledger.stored + ledger.kinetic));
-}
-
-// Order q of r_(k+1) = C r_k^q from the last three residuals of a Newton iteration above the round-off of their
-// tolerance; 0 if there are fewer.
-double order_of_residuals(const std::vector<NewtonIteration> &iterations)
-{
-  std::vector<double> r;
-  for (const NewtonIteration &iteration : iterations)
-    if (r.empty() || r.back() > 1e3 * iteration.tolerance)
-      r.push_back(iteration.residual);
-  const std::size_t n = r.size();
-  return n < 3 ? 0. : std::log(r[n - 1] / r[n - 2]) / std::log(r[n - 2] / r[n - 3]);
-}
-
-TEST(DynamicSolver, NewtonIsQuadraticWithViscosityAtFiniteStrain)
-{
-  RectangleMesh mesh(rectangle(4, 4));
-  const Problem problem;
-  const FibreViscosity viscosity = network_viscosity(200., 0.01);
-  // Long steps, so that the predictor is poor.
-  DynamicSolver solver(mesh, Constitution(problem.law, problem.gradient), problem.conditions(), {density, 0.01},
-                       quadratic(2e-3, generalised_alpha), &viscosity, Problem::load_factor);
-  solver.start();
-  double best = 0.;
-  for (int n = 0; n < 4; ++n)
-  {
-    solver.step();
-    best = std::max(best, order_of_residuals(solver.last_report().iterations));
-    EXPECT_LE(solver.last_report().iterations.size(), 8u) << solver.last_report().text();
-  }
-  EXPECT_GE(best, 1.7) << solver.last_report().text();
-}
-
-// Unsymmetric matrix of dashpots at finite strain, solved by GMRES with multigrid of its symmetric part.
-TEST(DynamicSolver, GmresAgreesWithTheDirectSolver)
-{
-  const Problem problem;
-  const FibreViscosity viscosity = network_viscosity(200., 0.01);
-  const auto moved = [&](const dealii::types::global_dof_index direct_limit)
-  {
-    RectangleMesh mesh(rectangle(8, 8));
-    DynamicSettings settings = quadratic(5e-4);
-    settings.linear.direct_limit = direct_limit;
-    settings.linear.multigrid.coarsest_size = 100;
-    DynamicSolver solver(mesh, Constitution(problem.law, problem.gradient), problem.conditions(), {density, 0.01},
-                         settings, &viscosity, Problem::load_factor);
-    solver.start();
-    std::size_t newton = 0;
-    unsigned int most_linear = 0;
-    for (int n = 0; n < 6; ++n)
-    {
-      solver.step();
-      newton += solver.last_report().iterations.size();
-      most_linear = std::max(most_linear, most_linear_iterations(solver.last_report()));
-    }
-    return std::make_tuple(owned(solver.sheet(), solver.displacement()), solver.ledger(), newton, most_linear);
-  };
-  const auto [exact, exact_ledger, newton, none] = moved(1000000);
-  const auto [u, ledger, newton_of_gmres, most_linear] = moved(0);
-  EXPECT_EQ(none, 0u);
-  EXPECT_GT(most_linear, 2u);
-  EXPECT_LE(most_linear, 30u);
-  EXPECT_LE(newton_of_gmres, newton + 6); // linear systems are solved to 1e-8 instead of round-off
-  // Each step converges to 1e-10 of the acting forces; waves as long as the sheet, which dominate u, are amplified no
-  // more than the forces.
-  Vector difference = u;
-  difference -= exact;
-  EXPECT_LT(difference.l2_norm(), 1e-8 * exact.l2_norm());
-  EXPECT_NEAR(ledger.dissipated, exact_ledger.dissipated, 1e-8 * exact_ledger.dissipated);
-  EXPECT_GT(ledger.dissipated, 0.1 * ledger.stored);
-}
-
-// Whole Newton steps for arctan u = 0 diverge from |u| > 1.39; with a line search they converge.
-TEST(NewtonSolver, ReducesTheResidualWithoutAnEnergy)
-{
-  struct State
-  {
-    double free, reference, energy;
-  };
-  dealii::IndexSet one(1);
-  one.add_index(0);
-  Vector u(one, MPI_COMM_SELF);
-  u(0) = 3.;
-  u.compress(dealii::VectorOperation::insert);
-  const auto evaluate = [](const Vector &at) { return State{std::abs(std::atan(at(0))), 1., 0.}; };
-  std::vector<bool> keeps;
-  double tangent_at = 0.;
-  const NewtonSolver<State> newton({1e-12, 20, 10},
-                                   {evaluate, [](const State &, const Vector &) { return 0.; },
-                                    [&](const State &, const Vector &at, double, const bool keeps_tangent, Vector &step)
-                                    {
-                                      keeps.push_back(keeps_tangent);
-                                      if (!keeps_tangent)
-                                        tangent_at = at(0);
-                                      step(0) = -std::atan(at(0)) * (1. + tangent_at * tangent_at);
-                                      step.compress(dealii::VectorOperation::insert);
-                                      return NewtonStep{0, 0.};
-                                    },
-                                    nullptr, nullptr});
-  std::vector<NewtonIteration> history;
-  State state = evaluate(u);
-  EXPECT_EQ(newton.solve(u, state, 1, 1., 0, history), "");
-  EXPECT_LT(std::abs(u(0)), 1e-12);
-  EXPECT_EQ(state.free, std::abs(std::atan(u(0))));
-  // A tangent is kept while the residual falls a hundredfold.
-  ASSERT_EQ(keeps.size() + 1, history.size());
-  EXPECT_FALSE(keeps[0]);
-  EXPECT_TRUE(keeps.back());
-  for (std::size_t i = 1; i < history.size(); ++i)
-  {
-    EXPECT_LT(history[i].residual, history[i - 1].residual);
-    EXPECT_TRUE(i == keeps.size() || keeps[i] == (history[i].residual <= 0.01 * history[i - 1].residual));
-  }
 }
 
 // Units of a sheet relative to those of another one. The equation of motion, r u / t^2 = e / l, determines the unit of

@@ -27,7 +27,9 @@ using memory_archive::Store;
 using memory_archive::stored;
 namespace edge = continuum::edge;
 
-// Moving sheet with all laws and conditions that the linear solver supports.
+constexpr double start_time = 2e-4; // [s]
+
+// Moving sheet with all laws and conditions that the linear solver supports, one edge of which is shaken.
 class Motion
 {
 public:
@@ -38,14 +40,14 @@ public:
                      [](const Point<2> &X) {
                        return Tensor<1, 2>({20. * std::sin(2. * pi * X[1] / height), 30. * X[0] / length});
                      }),
-                   2e-4);
+                   start_time);
   }
   DynamicSolver &solver() { return *solver_; }
 
 protected:
   explicit Motion(const MPI_Comm communicator) : mesh_(communicator)
   {
-    conditions_.displacements = {{edge::left, constant(0., 0.)}};
+    conditions_.displacements = {{edge::left, constant(0.01, 0.02)}};
     conditions_.tractions = {{edge::right, constant(3e5, 1e5)}};
   }
 
@@ -53,7 +55,7 @@ protected:
   {
     solver_ = std::make_unique<DynamicSolver>(
       mesh_, continuum::Constitution(law_, gradient_), conditions_, continuum::Inertia{density, 0.01}, settings,
-      has_rate_laws ? &viscosity_ : nullptr, [](const double t) { return 1. + 0.5 * std::sin(900. * t); },
+      has_rate_laws ? &viscosity_ : nullptr, [](const double t) { return std::sin(900. * (t - start_time)); },
       has_rate_laws ? &memory_ : nullptr);
   }
 

@@ -86,9 +86,11 @@ TEST(StaticSolver, ReactionIsTheDerivativeOfTheEnergy)
       [lift](const Point<2> &X) {
         return Tensor<1, 2>({0.4 * X[0], (X[1] > 0. ? lift : 0.)});
       });
-    const auto sides = dealii::ComponentMask(std::vector<bool>{true, false});
-    StaticSolver solver(mesh, network, {{edge::top, raised}, {edge::bottom, raised}, {edge::left, raised, sides}});
-    solver.solve();
+    const auto wall = std::make_shared<Field>([](const Point<2> &) { return Tensor<1, 2>({0., 1.}); });
+    const auto sides =
+      dealii::ComponentMask(std::vector<bool>{true, false}); // without the second component of the wall
+    StaticSolver solver(mesh, network, {{edge::top, raised}, {edge::bottom, raised}, {edge::left, wall, sides}});
+    EXPECT_EQ(solver.solve().load_steps.size(), 1u);
     return std::make_pair(solver.total_energy(), solver.reactions().at(edge::top)[1]);
   };
   const double lift = 0.05;
@@ -165,11 +167,32 @@ TEST(StaticSolver, EquilibratesWithoutLosingTheState)
   expect_unchanged();
 }
 
+// Boundary values are those of the prescribed function, not of its interpolation on the coarser edge.
+TEST(StaticSolver, HoldsTheBoundaryOnARefinedMesh)
+{
+  RectangleMesh mesh(rectangle(4, 4));
+  const auto conditions = bump_problem(1.3, 1.4, 0.01);
+  StaticSolver solver(mesh, rubber, conditions);
+  solver.solve();
+  solver.refine(mesh, 1.);
+  solver.sheet().for_each_owned_dof(
+    [&](const auto dof, const unsigned int component, const Point<2> &X)
+    {
+      if (X[1] > 0.4999 * height)
+      {
+        EXPECT_NEAR(solver.displacement()(dof), conditions[0].displacement->value(X, component), 1e-14);
+      }
+    });
+}
+
 // theory-continuum.md, eqs. (C.16) and (C.17): the forces of the residual balance, and the tangent is its derivative.
 TEST(StaticSolver, NewtonIsQuadratic)
 {
   RectangleMesh mesh(rectangle(12, 8));
-  StaticSolver solver(mesh, rubber, bump_problem(2.3, 2.8, 0.03));
+  const Tensor<1, 2> load({1e5, -2e5}); // [N/m^3]
+  BoundaryConditions conditions(bump_problem(2.3, 2.8, 0.03));
+  conditions.body_force = BodyForce{std::make_shared<Field>([load](const Point<2> &) { return load; })};
+  StaticSolver solver(mesh, rubber, conditions);
   const SolverReport report = solver.solve();
   EXPECT_EQ(report.load_steps.size(), 1u) << report.text();
   // Order q of r_(k+1) = C r_k^q from the first three residuals, between which the tangent is not kept.
@@ -185,7 +208,7 @@ TEST(StaticSolver, NewtonIsQuadratic)
   }
   EXPECT_LE(report.iterations.size(), 7u) << report.text();
 
-  Tensor<1, 2> sum;
+  Tensor<1, 2> sum = load * length * height;
   double size = 0.;
   for (const auto &[boundary, force] : solver.reactions())
   {
