@@ -87,10 +87,10 @@ TEST(StaticSolver, ReactionIsTheDerivativeOfTheEnergy)
         return Tensor<1, 2>({0.4 * X[0], (X[1] > 0. ? lift : 0.)});
       });
     const auto wall = std::make_shared<Field>([](const Point<2> &) { return Tensor<1, 2>({0., 1.}); });
-    const auto sides =
-      dealii::ComponentMask(std::vector<bool>{true, false}); // without the second component of the wall
-    StaticSolver solver(mesh, network, {{edge::top, raised}, {edge::bottom, raised}, {edge::left, wall, sides}});
-    EXPECT_EQ(solver.solve().load_steps.size(), 1u);
+    // Not the second component of the wall, which other edges hold at its ends.
+    const auto sides = dealii::ComponentMask(std::vector<bool>{true, false});
+    StaticSolver solver(mesh, network, {{edge::left, wall, sides}, {edge::top, raised}, {edge::bottom, raised}});
+    solver.solve();
     return std::make_pair(solver.total_energy(), solver.reactions().at(edge::top)[1]);
   };
   const double lift = 0.05;
