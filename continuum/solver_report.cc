@@ -5,6 +5,14 @@
 
 namespace latcon::continuum
 {
+SolverTimes &SolverTimes::operator+=(const SolverTimes &other)
+{
+  assembly += other.assembly;
+  preconditioner += other.preconditioner;
+  linear_solve += other.linear_solve;
+  return *this;
+}
+
 std::string SolverReport::text() const
 {
   std::ostringstream out;

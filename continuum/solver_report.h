@@ -6,8 +6,8 @@
 
 namespace latcon::continuum
 {
-/// Record of one evaluation of the residual within a load step: iteration 0 is after the predictor, later ones after a
-/// Newton step.
+/// Record of one evaluation of the residual within a load step: iteration 0 is after the predictor or at the state of a
+/// coarser mesh, later ones after a Newton step.
 struct NewtonIteration
 {
   unsigned int load_step;         ///< counts from 1, rejected ones included
@@ -29,12 +29,14 @@ struct LoadStep
   std::string reason;  ///< reason of rejection; empty if accepted
 };
 
-/// Wall time [s] spent on the calling rank.
+/// Wall time [s] spent on the calling rank, on coarser meshes too.
 struct SolverTimes
 {
   double assembly = 0.;       ///< of energies, residuals and tangents
   double preconditioner = 0.; ///< set-up for a tangent: coarser tangents and patches
   double linear_solve = 0.;   ///< factorisation and substitution, or Krylov iterations
+
+  SolverTimes &operator+=(const SolverTimes &other);
 };
 
 /// Full record of a solve.

@@ -9,6 +9,8 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/distributed/grid_refinement.h>
 #include <deal.II/distributed/solution_transfer.h>
+#include <deal.II/lac/la_parallel_vector.h>
+#include <deal.II/multigrid/mg_transfer_global_coarsening.h>
 
 #include <algorithm>
 #include <chrono>
@@ -220,9 +222,77 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
   return "";
 }
 
+// Overwrites the state by the vector `u`, interpolated from another mesh, at a load factor.
+void StaticSolver::start_from(Vector &u, const double load_factor)
+{
+  // Set boundary values from the prescribed function, which interpolation on the coarser edge may have missed.
+  for (const types::global_dof_index i : sheet_.owned())
+    if (homogeneous_.is_constrained(i) && !sheet_.conformity_constraints().is_constrained(i))
+      u(i) = load_factor * full_lift_(i);
+  u.compress(VectorOperation::insert);
+  sheet_.conformity_constraints().distribute(u);
+  displacement_ = u;
+  load_factor_ = load_factor;
+  current_.reset();
+}
+
+// Nested iteration: solves on a mesh of twice the size of cells, and starts from there. Returns false if that is
+// impossible, with the state unchanged.
+bool StaticSolver::solve_from_coarser_mesh(SolverReport &report)
+{
+  if (sheet_.mesh().n_global_levels() == 1)
+    return false;
+  Sheet::Mesh mesh(sheet_.communicator());
+  mesh.copy_triangulation(sheet_.mesh());
+  mesh.coarsen_global();
+  Vector u = sheet_.make_owned();
+  try
+  {
+    StaticSettings settings = settings_;
+    settings.relative_tolerance = std::max(settings.relative_tolerance, 1e-6); // the meshes differ by far more
+    StaticSolver coarser(mesh, sheet_.constitution(), sheet_.conditions(), settings);
+    report.times += coarser.solve().times;
+
+    using NodalVector = LinearAlgebra::distributed::Vector<double>;
+    NodalVector from(coarser.sheet_.owned(), coarser.sheet_.relevant(), sheet_.communicator());
+    NodalVector to(sheet_.owned(), sheet_.relevant(), sheet_.communicator());
+    Vector owned = coarser.sheet_.make_owned();
+    owned = coarser.displacement_;
+    Multigrid::copy(owned, from);
+    MGTwoLevelTransfer<2, NodalVector> transfer;
+    transfer.reinit_geometric_transfer(sheet_.dof_handler(), coarser.sheet_.dof_handler(),
+                                       sheet_.conformity_constraints(), coarser.sheet_.conformity_constraints());
+    transfer.prolongate_and_add(to, from);
+    Multigrid::copy(to, u);
+  }
+  catch (const SolverFailed &)
+  {
+    return false;
+  }
+  start_from(u, 1.);
+  if (take_load_step(1., report))
+    return true;
+  displacement_ = 0.;
+  load_factor_ = 0.;
+  return false;
+}
+
+// Attempts to reach the load factor `target` and records the outcome. Returns whether it succeeded.
+bool StaticSolver::take_load_step(const double target, SolverReport &report)
+{
+  const std::string failure = attempt(target, report);
+  report.load_steps.push_back(
+    {static_cast<unsigned int>(report.load_steps.size() + 1), target, failure.empty(), failure});
+  report.load_factor = load_factor_;
+  return failure.empty();
+}
+
 SolverReport StaticSolver::solve(const Observer &observer)
 {
   SolverReport report;
+  const bool is_one_step = load_factor_ == 0. && settings_.first_load_step == 1.;
+  if (is_one_step && !linear_solver_->is_direct() && solve_from_coarser_mesh(report) && observer)
+    observer(load_factor_);
   double rise = settings_.first_load_step;
   constexpr unsigned int few_iterations = 5;
   while (load_factor_ < 1.)
@@ -231,11 +301,7 @@ SolverReport StaticSolver::solve(const Observer &observer)
     const double left = 1. - load_factor_;
     const double target = left <= rise * (1. + 1e-12) ? 1. : load_factor_ + rise;
     const std::size_t before = report.iterations.size();
-    const std::string failure = attempt(target, report);
-    report.load_steps.push_back(
-      {static_cast<unsigned int>(report.load_steps.size() + 1), target, failure.empty(), failure});
-    report.load_factor = load_factor_;
-    if (failure.empty())
+    if (take_load_step(target, report))
     {
       if (report.iterations.size() - before <= few_iterations)
         rise *= 2.;
@@ -247,7 +313,7 @@ SolverReport StaticSolver::solve(const Observer &observer)
       rise = 0.5 * std::min(rise, left);
       if (rise < settings_.smallest_load_step)
         throw SolverFailed("no static equilibrium was found beyond load factor " + std::to_string(load_factor_) + ": " +
-                             failure,
+                             report.load_steps.back().reason,
                            report);
     }
   }
@@ -271,25 +337,15 @@ void StaticSolver::refine(Sheet::Mesh &mesh, const double fraction)
 
   Vector u = sheet_.make_owned();
   transfer.interpolate(u);
-  // Set boundary values from the prescribed function, which interpolation on the coarser edge may have missed.
-  for (const types::global_dof_index i : sheet_.owned())
-    if (homogeneous_.is_constrained(i) && !sheet_.conformity_constraints().is_constrained(i))
-      u(i) = load_factor_ * full_lift_(i);
-  u.compress(VectorOperation::insert);
-  sheet_.conformity_constraints().distribute(u);
-  displacement_ = u;
-  current_.reset();
+  start_from(u, load_factor_);
 }
 
 SolverReport StaticSolver::equilibrate()
 {
   SolverReport report;
-  const std::string failure = attempt(load_factor_, report);
-  report.load_steps.push_back({1, load_factor_, failure.empty(), failure});
-  report.load_factor = load_factor_;
-  if (!failure.empty())
+  if (!take_load_step(load_factor_, report))
     throw SolverFailed("no equilibrium was found from the state at load factor " + std::to_string(load_factor_) + ": " +
-                         failure,
+                         report.load_steps.back().reason,
                        report);
   return report;
 }

@@ -33,9 +33,11 @@ struct StaticSettings
 /// the unloaded state at load factor 0 to load factor 1.
 ///
 /// Each load step starts with a predictor, the linear response to the increment of load and prescribed displacement,
-/// followed by Newton's method with backtracking on the energy. Only minima are wanted; the energy distinguishes them
-/// from saddle points, the norm of the residual does not. A Newton step that leads to det F <= 0 anywhere is halved. A
-/// load step that does not converge is halved; after one that converges fast the next one is larger.
+/// followed by Newton's method with backtracking on the energy. If systems are solved iteratively and the first load
+/// step is 1, the equilibrium on a coarser mesh, found likewise, replaces the predictor where it can. Only minima are
+/// wanted; the energy distinguishes them from saddle points, the norm of the residual does not. A Newton step that
+/// leads to det F <= 0 anywhere is halved. A load step that does not converge is halved; after one that converges fast
+/// the next one is larger.
 ///
 /// The residual converges to relative_tolerance times the reference force (norm of the nodal reactions and dead loads),
 /// or to the round-off of its own evaluation where that is larger (theory-continuum.md, eq. (C.19)).
@@ -95,6 +97,9 @@ private:
   Evaluation evaluate(const Vector &u, double load_factor) const;
   const Evaluation &current() const;
   double round_off(const Evaluation &state, const Vector &u) const;
+  void start_from(Vector &u, double load_factor);
+  bool solve_from_coarser_mesh(SolverReport &report);
+  bool take_load_step(double target, SolverReport &report);
   std::string attempt(double target, SolverReport &report);
 
   Sheet sheet_;

@@ -64,7 +64,7 @@ struct Tangents
 // A resumed motion starts with another matrix than an uninterrupted one had before, and must give the same bits.
 TEST(DirectSolver, KeptAnalysisChangesNoBit)
 {
-  const Tangents sheet(12), other(7, 2);
+  const Tangents sheet(8), other(7, 2);
   for (const auto library : {DirectSolver::Library::mumps, DirectSolver::Library::klu})
   {
     DirectSolver kept(library);

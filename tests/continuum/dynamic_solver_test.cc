@@ -1,4 +1,4 @@
-// Dynamics of sheets on one rank: orders in time, energy balance, and steps that do not converge.
+// Dynamics of sheets on one rank: orders in time, energy balance, units, and steps that do not converge.
 #include "continuum/errors.h"
 #include "moving_sheets.h"
 #include "support/largest_error.h"
@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace dynamic_solver_test
@@ -14,16 +13,12 @@ namespace dynamic_solver_test
 
 using namespace latcon;
 using namespace moving_sheets;
-using continuum::BoundaryConditions;
-using continuum::Constitution;
-using continuum::DynamicSettings;
-using continuum::DynamicSolver;
-using continuum::FibreViscosity;
-using continuum::NewmarkParameters;
-using continuum::StaticSettings;
-using continuum::StaticSolver;
-using Vector = continuum::Sheet::Vector;
-namespace edge = continuum::edge;
+using namespace latcon::continuum;
+using Vector = Sheet::Vector;
+
+const CauchyBorn law = rubber_network();
+const auto average_acceleration = NewmarkParameters::average_acceleration();
+const auto generalised_alpha = NewmarkParameters::generalised_alpha(0.6);
 
 constexpr double final_time = 8e-3;
 
@@ -32,7 +27,7 @@ std::unique_ptr<DynamicSolver> moved(const Mesh &mesh, const Problem &problem, c
 {
   const DynamicSettings settings = quadratic(final_time / n_steps, rule);
   auto solver = std::make_unique<DynamicSolver>(mesh, Constitution(problem.law, problem.gradient), problem.conditions(),
-                                                continuum::Inertia{density, 0.01}, settings,
+                                                Inertia{density, 0.01}, settings,
                                                 is_viscous ? &problem.viscosity : nullptr, Problem::load_factor);
   solver->start();
   solver->run_until(final_time);
@@ -45,8 +40,8 @@ TEST(DynamicSolver, IsOfSecondOrderInTimeWithItsLedger)
   RectangleMesh mesh(rectangle(2, 2));
   const Problem problem;
   // Extrapolated from two steps, so that the error left is of the fourth order.
-  const auto half = moved(mesh, problem, NewmarkParameters::average_acceleration(), 80),
-             quarter = moved(mesh, problem, NewmarkParameters::average_acceleration(), 160);
+  const auto half = moved(mesh, problem, average_acceleration, 80),
+             quarter = moved(mesh, problem, average_acceleration, 160);
   EXPECT_GT(quarter->displacement().linfty_norm(), 0.1 * length); // large
   Vector exact = owned(quarter->sheet(), quarter->displacement());
   exact.sadd(4. / 3., -1. / 3., owned(half->sheet(), half->displacement()));
@@ -56,40 +51,39 @@ TEST(DynamicSolver, IsOfSecondOrderInTimeWithItsLedger)
     difference -= exact;
     return difference.l2_norm() / exact.l2_norm();
   };
-  for (const bool is_viscous : {true, false})
-    for (const NewmarkParameters &rule :
-         {NewmarkParameters::average_acceleration(), NewmarkParameters::generalised_alpha(0.6)})
+  const auto expect_second_order = [&](const DynamicSolver &coarse, const DynamicSolver &fine, const bool is_viscous)
+  {
+    if (is_viscous)
     {
-      const auto coarse = moved(mesh, problem, rule, 40, is_viscous), fine = moved(mesh, problem, rule, 80, is_viscous);
-      if (is_viscous)
-      {
-        EXPECT_NEAR(std::log2(error(*coarse) / error(*fine)), 2., 0.15) << error(*coarse) << " " << error(*fine);
-      }
-      const continuum::EnergyLedger &ledger = fine->ledger();
-      EXPECT_NEAR(std::log2(std::abs(coarse->ledger().imbalance / ledger.imbalance)), 2., 0.3)
-        << coarse->ledger().imbalance << " " << ledger.imbalance << " of " << ledger.work;
-      EXPECT_LT(std::abs(ledger.imbalance), 0.01 * ledger.work);
-      EXPECT_GT(ledger.micro_kinetic, 0.01 * ledger.kinetic);
-      EXPECT_LT(ledger.micro_kinetic, ledger.kinetic);
-      EXPECT_EQ(ledger.dissipated > 0.05 * ledger.work, is_viscous);
-      EXPECT_EQ(ledger.dissipated == 0., !is_viscous);
+      EXPECT_NEAR(std::log2(error(coarse) / error(fine)), 2., 0.15) << error(coarse) << " " << error(fine);
     }
+    const EnergyLedger &ledger = fine.ledger();
+    EXPECT_NEAR(std::log2(std::abs(coarse.ledger().imbalance / ledger.imbalance)), 2., 0.3)
+      << coarse.ledger().imbalance << " " << ledger.imbalance << " of " << ledger.work;
+    EXPECT_LT(std::abs(ledger.imbalance), 0.01 * ledger.work);
+    EXPECT_GT(ledger.micro_kinetic, 0.01 * ledger.kinetic);
+    EXPECT_LT(ledger.micro_kinetic, ledger.kinetic);
+    EXPECT_EQ(ledger.dissipated > 0.05 * ledger.work, is_viscous);
+    EXPECT_EQ(ledger.dissipated == 0., !is_viscous);
+  };
+  expect_second_order(*moved(mesh, problem, average_acceleration, 40), *half, true);
+  for (const bool is_viscous : {true, false})
+    expect_second_order(*moved(mesh, problem, generalised_alpha, 40, is_viscous),
+                        *moved(mesh, problem, generalised_alpha, 80, is_viscous), is_viscous);
 }
 
 TEST(DynamicSolver, MovesHeldBoundariesWithTheLoadFactor)
 {
   // u = sin(w t) H X is an exact motion of any sheet, all edges held, under the body force -rho w^2 H X sin(w t).
-  const continuum::CauchyBorn law = rubber_network();
   const double w = 400.;
   const Tensor<2, 2> H = matrix(0.4, 0.2, -0.1, 0.3);
   BoundaryConditions conditions(on_all_edges(affine(identity + H)));
-  conditions.body_force = continuum::BodyForce{
-    std::make_shared<Field>([=](const Point<2> &X) { return -density * w * w * (H * Tensor<1, 2>(X)); })};
+  conditions.body_force =
+    BodyForce{std::make_shared<Field>([=](const Point<2> &X) { return -density * w * w * (H * Tensor<1, 2>(X)); })};
   RectangleMesh mesh(rectangle(2, 2));
   mesh.begin_active()->set_refine_flag(); // creates hanging nodes
   mesh.execute_coarsening_and_refinement();
-  for (const NewmarkParameters &rule :
-       {NewmarkParameters::average_acceleration(), NewmarkParameters::generalised_alpha(0.8)})
+  for (const NewmarkParameters &rule : {average_acceleration, generalised_alpha})
   {
     double before = 0.;
     for (const unsigned int n_steps : {50, 100})
@@ -133,10 +127,8 @@ TEST(DynamicSolver, MovesHeldBoundariesWithTheLoadFactor)
 // the energy balance closes. Newmark's formulas would let their velocity alternate between +10 and -10 m/s for ever.
 TEST(DynamicSolver, StandsStillAfterARamp)
 {
-  const continuum::CauchyBorn law = rubber_network();
   const auto pull = affine(matrix(1., 0., 0., 1.2));
-  for (const NewmarkParameters &rule :
-       {NewmarkParameters::average_acceleration(), NewmarkParameters::generalised_alpha(0.9)})
+  for (const NewmarkParameters &rule : {average_acceleration, generalised_alpha})
   {
     std::vector<double> imbalance;
     for (const double dt : {1e-4, 2.5e-5})
@@ -162,7 +154,7 @@ TEST(DynamicSolver, StandsStillAfterARamp)
       solver.run_until(0.8e-3);
       // Half of a height of 0.1 m times 0.2 in 1 ms.
       EXPECT_NEAR(fastest_held(solver.velocity()), 10., 1e-9);
-      solver.run_until(6e-3);
+      solver.run_until(2.5e-3);
       EXPECT_LT(fastest_held(solver.velocity()), 1e-9);
       EXPECT_LT(fastest_held(solver.acceleration()), 1e-9 / dt);
       imbalance.push_back(std::abs(solver.ledger().imbalance) / solver.ledger().work);
@@ -174,12 +166,10 @@ TEST(DynamicSolver, StandsStillAfterARamp)
 
 TEST(DynamicSolver, KeepsTheMomentumOfAFreeSheet)
 {
-  const continuum::CauchyBorn law = rubber_network();
-  const continuum::IsotropicGradient gradient(5e5, 0.01);
+  const IsotropicGradient gradient(5e5, 0.01);
   const FibreViscosity viscosity = network_viscosity(20.);
   RectangleMesh mesh(rectangle(2, 2));
-  for (const NewmarkParameters &rule :
-       {NewmarkParameters::average_acceleration(), NewmarkParameters::generalised_alpha(0.5)})
+  for (const NewmarkParameters &rule : {average_acceleration, generalised_alpha})
   {
     const DynamicSettings settings = quadratic(1e-4, rule);
     DynamicSolver solver(mesh, Constitution(law, gradient), {}, {density, 0.01}, settings, &viscosity);
@@ -205,10 +195,21 @@ TEST(DynamicSolver, KeepsTheMomentumOfAFreeSheet)
   }
 }
 
+TEST(DynamicSolver, StartsWithTheAccelerationOfItsLoads)
+{
+  BoundaryConditions conditions;
+  conditions.body_force = BodyForce{constant(3. * density, -2. * density)};
+  RectangleMesh mesh(rectangle(2, 2));
+  DynamicSolver solver(mesh, law, conditions, {density, 0.}, quadratic(1e-4));
+  solver.start();
+  Vector difference = owned(solver.sheet(), solver.acceleration());
+  difference -= owned(solver.sheet(), nodal(solver.sheet(), [](const Point<2> &) { return Tensor<1, 2>({3., -2.}); }));
+  EXPECT_LT(difference.linfty_norm(), 1e-10);
+}
+
 // theory-continuum.md, eq. (C.45).
 TEST(DynamicSolver, LeavesEquilibriumAtRest)
 {
-  const continuum::CauchyBorn law = rubber_network();
   DynamicSettings settings = quadratic(1e-3);
   {
     // Stretched and periodic.
@@ -240,13 +241,12 @@ TEST(DynamicSolver, LeavesEquilibriumAtRest)
 TEST(DynamicSolver, ThrowsWithHistoryAndStaysWhenAStepFails)
 {
   // The right edge is pushed through the left one within one step.
-  const continuum::CauchyBorn law = rubber_network();
   RectangleMesh mesh(rectangle(2, 2));
   DynamicSettings settings{1e-4};
   settings.degree = 1;
   DynamicSolver solver(mesh, law, on_all_edges(affine(matrix(0.5, 0., 0., 1.))), {density, 0.}, settings, nullptr,
                        [](const double t) { return t < 4.5e-4 ? 0. : 3.; });
-  EXPECT_THROW(solver.step(), continuum::InvalidInput); // no start
+  EXPECT_THROW(solver.step(), InvalidInput); // no start
   solver.start();
   Vector before = solver.sheet().make_ghosted();
   try
@@ -254,7 +254,7 @@ TEST(DynamicSolver, ThrowsWithHistoryAndStaysWhenAStepFails)
     solver.run_until(1e-3, [&] { before = solver.displacement(); });
     FAIL() << "went on";
   }
-  catch (const continuum::SolverFailed &failure)
+  catch (const SolverFailed &failure)
   {
     // The whole step, its first half, and so on down to a sixteenth.
     ASSERT_GE(failure.report().load_steps.size(), 5u);
@@ -275,7 +275,6 @@ TEST(DynamicSolver, ThrowsWithHistoryAndStaysWhenAStepFails)
 // the energy balance over the parts closes.
 TEST(DynamicSolver, DividesAStepThatCannotBeSolved)
 {
-  const continuum::CauchyBorn law = rubber_network();
   const double dt = 1e-2;
   const auto moved = [&](const unsigned int halvings)
   {
@@ -292,7 +291,7 @@ TEST(DynamicSolver, DividesAStepThatCannotBeSolved)
     EXPECT_NEAR(solver.time(), 5. * dt, 1e-12 * dt);
     return std::tuple(solver.n_divided_steps(), solver.ledger(), solver.last_report().load_steps.size());
   };
-  EXPECT_THROW(moved(0), continuum::SolverFailed);
+  EXPECT_THROW(moved(0), SolverFailed);
   const auto [n_divided, ledger, attempts] = moved(4);
   EXPECT_GE(n_divided, 1u);
   EXPECT_LE(n_divided, 2u);
@@ -301,41 +300,99 @@ TEST(DynamicSolver, DividesAStepThatCannotBeSolved)
   EXPECT_LT(std::abs(ledger.imbalance), 0.01 * (ledger.stored + ledger.kinetic));
 }
 
+// Units of a sheet relative to those of another one. The equation of motion, r u / t^2 = e / l, determines the unit of
+// time; a viscosity is a stress times a time.
+struct Units
+{
+  double length, stress, density;
+  double time() const { return length * std::sqrt(density / stress); }
+};
+
+// Sheet with all quantities that have units: mass with micro-inertia, both laws, dashpots, a moving edge, a traction, a
+// weak normal gradient.
+struct MovingSheet
+{
+  explicit MovingSheet(const Units &units)
+    : network(rubber_network(units.stress * 1e5, units.stress * 1.5e5)),
+      gradient(units.stress * 5e5, units.length * 0.02),
+      viscosity(network_viscosity(units.stress * units.time() * 20., units.length * 0.01)),
+      mesh({units.length * length, units.length * height, 2, 2})
+  {
+    BoundaryConditions conditions = Problem().conditions();
+    conditions.tractions = {{edge::top, constant(0., units.stress * 1e5)}};
+    const double t = units.time();
+    solver = std::make_unique<DynamicSolver>(mesh, Constitution(network, gradient), conditions,
+                                             Inertia{units.density * density, units.length * 0.01},
+                                             quadratic(t * 2e-4, generalised_alpha), &viscosity,
+                                             [t](const double time) { return Problem::load_factor(time / t); });
+    solver->start();
+    for (unsigned int n = 0; n < 20; ++n)
+      solver->step();
+  }
+
+  CauchyBorn network;
+  IsotropicGradient gradient;
+  FibreViscosity viscosity;
+  RectangleMesh mesh;
+  std::unique_ptr<DynamicSolver> solver;
+};
+
+// All units are powers of two, so both runs have equal mantissas everywhere: in the elements, in the factors of the
+// matrix and in all compared norms.
+TEST(DynamicSolver, DoesNotDependOnUnits)
+{
+  const MovingSheet one_sheet({1., 1., 1.});
+  const auto &one = one_sheet.solver;
+  EXPECT_GT(one->displacement().linfty_norm(), 0.01 * length);
+  EXPECT_NE(one->ledger().dissipated, 0.);
+  for (const Units &units : {Units{4., 1., 1.}, Units{1., 4., 16.}, Units{0.5, 16., 4.}})
+  {
+    const MovingSheet other_sheet(units);
+    const auto &other = other_sheet.solver;
+    const double l = units.length, per_energy = 1. / (units.stress * l * l);
+    for (const auto i : one->displacement().locally_owned_elements())
+    {
+      ASSERT_EQ(other->displacement()(i), l * one->displacement()(i));
+      ASSERT_EQ(other->velocity()(i), l / units.time() * one->velocity()(i));
+    }
+    EXPECT_EQ(per_energy * other->ledger().stored, one->ledger().stored);
+    EXPECT_EQ(per_energy * other->ledger().kinetic, one->ledger().kinetic);
+    EXPECT_EQ(per_energy * other->ledger().micro_kinetic, one->ledger().micro_kinetic);
+    EXPECT_EQ(per_energy * other->ledger().dissipated, one->ledger().dissipated);
+    EXPECT_EQ(per_energy * other->ledger().work, one->ledger().work);
+  }
+}
+
 TEST(DynamicSolver, RefusesImpossibleInput)
 {
-  const continuum::CauchyBorn law = rubber_network();
   RectangleMesh mesh(rectangle(2, 2));
-  const auto refuses = [&](const continuum::Inertia &inertia, const DynamicSettings &settings)
-  { EXPECT_THROW(DynamicSolver(mesh, law, {}, inertia, settings), continuum::InvalidInput); };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  refuses({0., 0.}, {1e-3});
-  refuses({density, -1.}, {1e-3});
-  refuses({density, nan}, {1e-3});
-  refuses({density, 0.}, {0.});
-  refuses({density, 0.}, {nan});
-  DynamicSettings settings{1e-3};
-  settings.relative_tolerance = 1.;
-  refuses({density, 0.}, settings);
-  settings = {1e-3};
-  settings.rule.gamma = 0.6; // first order
-  refuses({density, 0.}, settings);
-  settings = {1e-3};
-  settings.rule.beta = 1. / 6.; // linear acceleration: only conditionally stable
-  refuses({density, 0.}, settings);
-  EXPECT_THROW(NewmarkParameters::generalised_alpha(-0.1), continuum::InvalidInput);
-  EXPECT_THROW(NewmarkParameters::generalised_alpha(1.1), continuum::InvalidInput);
+  DynamicSettings loose{1e-3}, first_order{1e-3}, conditionally_stable{1e-3};
+  loose.relative_tolerance = 1.;
+  first_order.rule.gamma = 0.6;
+  conditionally_stable.rule.beta = 1. / 6.; // linear acceleration
+  for (const auto &[inertia, settings] :
+       std::vector<std::pair<Inertia, DynamicSettings>>{{{0., 0.}, {1e-3}},
+                                                        {{density, -1.}, {1e-3}},
+                                                        {{density, nan}, {1e-3}},
+                                                        {{density, 0.}, {0.}},
+                                                        {{density, 0.}, {nan}},
+                                                        {{density, 0.}, loose},
+                                                        {{density, 0.}, first_order},
+                                                        {{density, 0.}, conditionally_stable}})
+    EXPECT_THROW(DynamicSolver(mesh, law, {}, inertia, settings), InvalidInput);
+  EXPECT_THROW(NewmarkParameters::generalised_alpha(-0.1), InvalidInput);
+  EXPECT_THROW(NewmarkParameters::generalised_alpha(1.1), InvalidInput);
 
   // A held edge that is not at the prescribed position, fields with one component, a load factor that is not finite.
   DynamicSolver held(mesh, law, {{edge::left, constant(0.01, 0.)}}, {density, 0.}, {1e-3});
-  EXPECT_THROW(held.start(), continuum::InvalidInput);
+  EXPECT_THROW(held.start(), InvalidInput);
   EXPECT_NO_THROW(held.start(constant(0.01, 0.)));
   DynamicSolver free(mesh, law, {}, {density, 0.}, {1e-3});
-  EXPECT_THROW(free.start(std::make_shared<dealii::Functions::ZeroFunction<2>>(1)), continuum::InvalidInput);
-  EXPECT_THROW(free.start(Vector(), Vector()), continuum::InvalidInput);
+  EXPECT_THROW(free.start(std::make_shared<dealii::Functions::ZeroFunction<2>>(1)), InvalidInput);
+  EXPECT_THROW(free.start(Vector(), Vector()), InvalidInput);
   DynamicSolver undefined(mesh, law, {}, {density, 0.}, {1e-3}, nullptr, [nan](double) { return nan; });
-  EXPECT_THROW(undefined.start(), continuum::InvalidInput);
-  Mesh narrow(MPI_COMM_SELF);
-  EXPECT_THROW(continuum::make_rectangle(narrow, {1., 1., 1, 2, true, false}), continuum::InvalidInput);
+  EXPECT_THROW(undefined.start(), InvalidInput);
 }
 
 } // namespace dynamic_solver_test

@@ -1,73 +1,131 @@
-// Gradient laws: forms and their derivatives, symmetries, positivity, and the dispersion of the lattice.
+// Gradient laws: energies and their derivatives, compared with automatic differentiation of the energy in the form of
+// theory-continuum.md, eq. (C.22), which has the symmetries of its bonds; positivity, and the mean over all directions.
+#include "continuum/errors.h"
 #include "continuum/network_gradient.h"
-#include "gradient_checks.h"
+#include "energies.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <tuple>
 
 namespace gradient_laws_test
 {
 
 using namespace latcon;
-using namespace gradient_checks;
+using namespace energies;
+using continuum::BondFamily;
+using continuum::GradientLaw;
 using continuum::IsotropicGradient;
+using continuum::LatticeGradient;
 using continuum::NetworkGradient;
+using continuum::Order;
 
-template <typename Number>
-Number isotropic_energy(const double modulus, const std::array<Number, n_variables> &v)
+using Gradient = GradientLaw::Gradient;
+using Fad = Sacado::Fad::DFad<double>;
+using FadFad = Sacado::Fad::DFad<Fad>;
+
+const double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double spacing = 0.625e-3;
+
+std::vector<BondFamily> mixed_bonds()
 {
-  Number W(0.);
-  for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int J = 0; J < 2; ++J)
-      for (unsigned int K = 0; K < 2; ++K)
-        W += 0.5 * modulus * v[variable(i, J, K)] * v[variable(i, J, K)];
-  return W;
+  return {{{Tensor<1, 2>({1., 0.}), 0.7, continuum::RodPotential{1e5, 1.5e5}}, 1.3 * spacing},
+          {{Tensor<1, 2>({0.6, 0.8}), 1.1, continuum::LinearPotential{2e5}}, 0.8 * spacing},
+          {{Tensor<1, 2>({-0.28, 0.96}), 0.4, continuum::RodPotential{2e5, -0.5e5}}, spacing}};
 }
 
-// theory-continuum.md, eqs. (C.20) and (C.22) to (C.24).
+// Computes value, first and second derivatives of an energy by the ten variables.
+template <typename Energy>
+FadFad differentiated(const Energy &energy, const Tensor<2, 2> &F, const Gradient &G)
+{
+  Variables<FadFad> v;
+  const auto set = [&v](const unsigned int n, const double value)
+  { v[n] = FadFad(n_variables, n, Fad(n_variables, n, value)); };
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+    {
+      set(variable(i, J), F[i][J]);
+      for (unsigned int K = 0; K < 2; ++K)
+        set(variable(i, J, K), G[i][J][K]);
+    }
+  return energy(v);
+}
+
+// A sum of several hundred terms, each with several rounding errors; scale is their size.
+constexpr double roundings = 300.;
+
+// Checks at principal stretches from `low` to `high`; `condition` is the rate at which the energy varies, relative to
+// F.
+template <typename Energy>
+void expect_derivatives(const GradientLaw &law, const Energy &energy, const double low = 0.8, const double high = 3.,
+                        const double condition = 1.)
+{
+  std::mt19937 generator(3);
+  for (int sample = 0; sample < 30; ++sample)
+  {
+    const Tensor<2, 2> F = random_deformation(generator, low, high);
+    const Gradient G = random_gradient(generator, spacing);
+    const FadFad at_G = differentiated(energy, F, G);
+    const double tolerance = roundings * epsilon * condition * at_G.val().val();
+    const double per_G = spacing; // derivatives by G are larger by the inverse of the size of G
+
+    const auto W = law.evaluate(F, G, Order::second);
+    EXPECT_NEAR(W.energy, at_G.val().val(), tolerance);
+    EXPECT_EQ(law.energy(F, G), W.energy);
+    EXPECT_EQ(law.first_piola_stress(F, G), W.first_piola);
+    EXPECT_EQ(law.double_stress(F, G), W.double_stress);
+    EXPECT_EQ(law.double_stress_by_G(F), W.double_stress_by_G);
+    for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int J = 0; J < 2; ++J)
+      {
+        EXPECT_NEAR(W.first_piola[i][J], at_G.dx(variable(i, J)).val(), 10. * tolerance);
+        for (unsigned int k = 0; k < 2; ++k)
+          for (unsigned int L = 0; L < 2; ++L)
+            EXPECT_NEAR(W.tangent[i][J][k][L], at_G.dx(variable(i, J)).dx(variable(k, L)), 100. * tolerance);
+        for (unsigned int K = 0; K < 2; ++K)
+        {
+          // One variable represents G_i12 and G_i21.
+          const double half = J == K ? 1. : 0.5;
+          const auto by_Q = at_G.dx(variable(i, J, K));
+          EXPECT_NEAR(W.double_stress[i][J][K], half * by_Q.val(), 10. * per_G * tolerance);
+          for (unsigned int l = 0; l < 2; ++l)
+            for (unsigned int M = 0; M < 2; ++M)
+            {
+              EXPECT_NEAR(W.double_stress_by_F[i][J][K][l][M], half * by_Q.dx(variable(l, M)),
+                          100. * per_G * tolerance);
+              for (unsigned int N = 0; N < 2; ++N)
+                EXPECT_NEAR(W.double_stress_by_G[i][J][K][l][M][N],
+                            half * (M == N ? 1. : 0.5) * by_Q.dx(variable(l, M, N)), 100. * per_G * per_G * tolerance);
+            }
+        }
+      }
+  }
+}
+
+// Returns n . A . n with A from the second normal derivative, divided by the mass: contribution of the law to the
+// coefficient of k^4 in w^2.
+double symbol(const GradientLaw &law, const Tensor<2, 2> &F, const Tensor<1, 2> &k, const Tensor<1, 2> &p)
+{
+  const Gradient G = outer_product(p, outer_product(k, k));
+  return 2. * law.energy(F, G);
+}
+
+// At any stretch and, where the energy varies on the scale of this interval, with every bond between rest and full
+// stretch. theory-continuum.md, eqs. (C.20), (C.22) to (C.24) and (C.27).
 TEST(LatticeGradient, FormsAreDerivativesOfTheEnergy)
 {
   const auto bonds = mixed_bonds();
   const double l_d = 1.1 * LatticeGradient::smallest_length(bonds);
-  expect_derivatives(LatticeGradient(bonds, l_d), [&](const auto &v) { return lattice_energy(bonds, l_d, v); });
-}
-
-// theory-continuum.md, eq. (C.27): every bond is between rest and full stretch, where the energy varies on the scale of
-// this interval.
-TEST(LatticeGradient, FormsAreDerivativesOfTheEnergyWhereTensionBegins)
-{
-  const auto bonds = mixed_bonds();
-  const double l_d = 1.1 * LatticeGradient::smallest_length(bonds);
   constexpr double full = LatticeGradient::full_stretch;
-  expect_derivatives(
-    LatticeGradient(bonds, l_d), [&](const auto &v) { return lattice_energy(bonds, l_d, v); }, 1., full,
-    1. / (full - 1.));
-}
-
-// The energy and its first two derivatives are continuous where bonds enter tension and where they reach full stretch.
-TEST(LatticeGradient, IsTwiceContinuouslyDifferentiable)
-{
-  const LatticeGradient law = rubber_gradient(spacing);
-  std::mt19937 generator(4);
-  const Gradient G = random_gradient(generator, spacing);
-  for (const double stretch : {1., LatticeGradient::full_stretch})
-  {
-    constexpr double step = 1e-9;
-    const auto at = [&](const double l) { return matrix(l, 0., 0., l); };
-    const Tensor<2, 2> below = at(stretch - step), above = at(stretch + step);
-    // Third derivatives are up to 60 divided by the cube of the width of the transition, in units of the energy.
-    const double tolerance = 60. / std::pow(LatticeGradient::full_stretch - 1., 3) * 2. * step * law.energy(above, G);
-    const auto low = law.evaluate(below, G, Order::second), high = law.evaluate(above, G, Order::second);
-    EXPECT_NEAR(low.energy, high.energy, tolerance);
-    EXPECT_NEAR((low.first_piola - high.first_piola).norm(), 0., tolerance);
-    EXPECT_NEAR((low.tangent - high.tangent).norm(), 0., tolerance);
-    EXPECT_NEAR((low.double_stress_by_F - high.double_stress_by_F).norm(), 0., tolerance * spacing);
-    EXPECT_NEAR((low.double_stress_by_G - high.double_stress_by_G).norm(), 0., tolerance * spacing * spacing);
-  }
+  expect_derivatives(LatticeGradient(bonds, l_d), LatticeGradientEnergy{bonds, l_d});
+  expect_derivatives(LatticeGradient(bonds, l_d), LatticeGradientEnergy{bonds, l_d}, 1., full, 1. / (full - 1.));
 }
 
 // theory-continuum.md, eq. (C.21).
 TEST(IsotropicGradient, FormsAreDerivativesOfTheEnergy)
 {
-  expect_derivatives(IsotropicGradient(5e5, 0.4 * spacing),
-                     [](const auto &v) { return isotropic_energy(5e5 * 0.16 * spacing * spacing, v); });
+  expect_derivatives(IsotropicGradient(5e5, 0.4 * spacing), IsotropicGradientEnergy{5e5 * 0.16 * spacing * spacing});
 }
 
 // theory-continuum.md, eqs. (C.25) to (C.27). At l_d = d/2 the energy is at the limit of positivity. Bonds in
@@ -97,27 +155,6 @@ TEST(LatticeGradient, IsPositiveUnderCompression)
                 0.);
 }
 
-// theory-continuum.md, eq. (C.47): alpha d^2 = l_d^2 - H/A2, with A2 = rho c^2 from the Cauchy-Born law and H from the
-// gradient law.
-TEST(LatticeGradient, HasTheDispersionOfTheLattice)
-{
-  const LatticeGradient law = rubber_gradient(spacing);
-  const continuum::CauchyBorn local = rubber_network();
-  const Tensor<2, 2> I = matrix(1., 0., 0., 1.);
-  const Tensor<1, 2> x({1., 0.}), y({0., 1.});
-  const auto alpha = [&](const Tensor<1, 2> &k, const Tensor<1, 2> &p)
-  {
-    const double A2 = scalar_product(
-      outer_product(p, k), dealii::double_contract<2, 0, 3, 1>(local.tangent(I), Tensor<2, 2>(outer_product(p, k))));
-    return 0.25 - symbol(law, I, k, p) / A2 / (spacing * spacing);
-  };
-  // Seven digits are given.
-  EXPECT_NEAR(alpha(x, y), 0.1264958, 5.1e-8);
-  EXPECT_NEAR(alpha(x, x), 0.1468305, 5.1e-8);
-  EXPECT_NEAR(alpha(y, x), 0.0625, 5.1e-8);
-  EXPECT_NEAR(alpha(y, y), 0.1681624, 5.1e-8);
-}
-
 TEST(GradientLaw, NormalStiffnessIsThatOfTheStiffestDirection)
 {
   EXPECT_NEAR(IsotropicGradient(5e5, 2e-3).normal_stiffness(), 2., 1e-12);
@@ -130,6 +167,82 @@ TEST(GradientLaw, NormalStiffnessIsThatOfTheStiffestDirection)
                                          Tensor<1, 2>({std::cos(p * pi / 360.), std::sin(p * pi / 360.)})));
   // The error of the scan is at most of the order of the square of its step.
   EXPECT_NEAR(law.normal_stiffness(), largest, 1e-3 * largest);
+}
+
+// theory-continuum.md, eq. (C.57): mean of the lattice energy over all rotations of the reference configuration, here a
+// sum over 64 rotations. The 32 directions of the law differ from the mean by rho^32, rho = (l1 - l2)/(l1 + l2), times
+// a power of 32 for the derivatives: by 5e-33 and 2e-11 times that.
+TEST(NetworkGradient, IsTheMeanOfTheLatticeOverAllDirections)
+{
+  const auto bonds = rubber_bonds(spacing);
+  const double l_d = LatticeGradient::smallest_length(bonds);
+  const NetworkGradient law(bonds, l_d);
+  std::mt19937 generator(12);
+  for (const auto &[l1, l2, digits] : {std::tuple{2.3, 2.8, 1e-12}, std::tuple{3., 1.1, 1e-7}})
+  {
+    const Tensor<2, 2> F = rotation(0.4) * matrix(l1, 0., 0., l2) * rotation(0.7);
+    const Gradient G = random_gradient(generator, spacing);
+    constexpr unsigned int n = 64;
+    double energy = 0.;
+    Tensor<2, 2> by_F;
+    Gradient Q;
+    Tensor<6, 2> Q_by_G;
+    for (unsigned int k = 0; k < n; ++k)
+    {
+      auto turned_bonds = bonds;
+      for (BondFamily &bond : turned_bonds)
+      {
+        bond.fibre.direction = rotation(pi * k / n) * bond.fibre.direction;
+        bond.fibre.weight /= n;
+      }
+      const LatticeGradient turned_law(turned_bonds, l_d);
+      const auto turned_W = turned_law.evaluate(F, G, Order::second);
+      energy += turned_W.energy;
+      by_F += turned_W.first_piola;
+      Q += turned_W.double_stress;
+      Q_by_G += turned_W.double_stress_by_G;
+    }
+    const auto W = law.evaluate(F, G, Order::second);
+    EXPECT_NEAR(W.energy, energy, digits * energy);
+    EXPECT_NEAR((W.first_piola - by_F).norm(), 0., 10. * digits * energy);
+    EXPECT_NEAR((W.double_stress - Q).norm(), 0., digits * Q.norm());
+    EXPECT_NEAR((W.double_stress_by_G - Q_by_G).norm(), 0., digits * Q_by_G.norm());
+  }
+}
+
+// Bonds with different potentials are not merged.
+TEST(NetworkGradient, FormsAreDerivativesOfTheEnergy)
+{
+  const auto bonds = mixed_bonds();
+  const double l_d = 1.1 * LatticeGradient::smallest_length(bonds);
+  std::vector<BondFamily> in_all_directions;
+  for (BondFamily bond : bonds)
+    for (unsigned int k = 0; k < NetworkGradient::n_directions; ++k)
+    {
+      const double angle = pi * k / NetworkGradient::n_directions;
+      in_all_directions.push_back(bond);
+      in_all_directions.back().fibre.direction = Tensor<1, 2>({std::cos(angle), std::sin(angle)});
+      in_all_directions.back().fibre.weight /= NetworkGradient::n_directions;
+    }
+  expect_derivatives(NetworkGradient(bonds, l_d), LatticeGradientEnergy{in_all_directions, l_d});
+}
+
+// theory-continuum.md, eq. (C.58). With G_iJK = p_i delta_JK, G is completely along the bonds for every direction.
+TEST(NetworkGradient, HasTheMeanSquaredLengthOfLikeBonds)
+{
+  const auto bonds = rubber_bonds(spacing);
+  const double mean_square = (1. + 3. * std::sqrt(3.)) / (1. + std::sqrt(3.)) * spacing * spacing;
+  const double least = NetworkGradient::smallest_length(bonds);
+  EXPECT_NEAR(least, std::sqrt(mean_square / 12.), 10. * epsilon * spacing);
+  Gradient G;
+  G[0][0][0] = G[0][1][1] = 0.1 / spacing;
+  const Tensor<2, 2> I = matrix(1., 0., 0., 1.);
+  const double mu = rubber_network().tangent(I)[0][1][0][1];
+  EXPECT_NEAR(NetworkGradient(bonds, least).energy(I, G), 0., 100. * epsilon * mu);
+  EXPECT_GT(NetworkGradient(bonds, 1.01 * least).energy(I, G), 1e-6 * mu);
+  EXPECT_THROW(NetworkGradient(bonds, 0.999 * least), continuum::InvalidMaterial);
+  // With a third potential on additional bonds, the longest mean determines the result.
+  EXPECT_NEAR(NetworkGradient::smallest_length(mixed_bonds()), 1.3 * spacing / std::sqrt(12.), 10. * epsilon * spacing);
 }
 
 TEST(LatticeGradient, RefusesWhatIsNotPositive)

@@ -14,37 +14,35 @@ using continuum::LinearSettings;
 using continuum::LinearSolver;
 using continuum::Symmetry;
 
-// Matrices of a sheet for several internal lengths, with one solver.
+// Tangents at rest of a sheet for several internal lengths, with one solver.
 struct Problem
 {
   explicit Problem(LinearSettings settings, const Symmetry given_symmetry = Symmetry::symmetric)
-    : law(rubber_sheet()), mesh(MPI_COMM_SELF), symmetry(given_symmetry)
+    : mesh(rectangle(12, 8)), symmetry(given_symmetry)
   {
-    continuum::make_rectangle(mesh, rectangle(24, 16));
     sheet = std::make_unique<Sheet>(mesh, continuum::Constitution(law, gradient), 2);
     constraints = std::make_unique<AffineConstraints<double>>();
     constraints->copy_from(continuum::homogeneous_constraints(*sheet, all_held()));
     settings.direct_limit = 0;
-    settings.multigrid.coarsest_size = 300;
+    settings.multigrid.coarsest_size = 100;
     solver = std::make_unique<LinearSolver>(*sheet, all_held(), settings, symmetry);
     sheet->make_matrix(*constraints, K);
     b = sheet->make_owned();
     body_force(*sheet, *constraints, b);
   }
 
-  // Solves the form with this length, compares with a direct solver, and returns the number of iterations.
+  // Solves with the tangent for this length, compares with a direct solver, and returns the number of iterations.
   unsigned int solve(const double internal_length)
   {
-    const GradientForm form(internal_length);
-    form.assemble(*sheet, *constraints, K);
+    gradient = continuum::IsotropicGradient(5e5, internal_length);
+    assemble_at_rest(*sheet, {}, *constraints, K);
     if (symmetry == Symmetry::unsymmetric)
       scale_columns();
-    const auto assemble = form.assembler();
     solver->update(sheet->make_ghosted(), K,
-                   [&, assemble](const Sheet &level, auto &...rest)
+                   [&](const Sheet &level, auto &...rest)
                    {
                      n_fine_assemblies += &level == sheet.get();
-                     assemble(level, rest...);
+                     assemble_at_rest(level, rest...);
                    });
     Sheet::Vector x = sheet->make_owned();
     const unsigned int iterations = solver->solve(K, x, b);
@@ -59,8 +57,8 @@ struct Problem
     return iterations;
   }
 
-  // Scales columns smoothly by 0.7 to 1.3: K of the form times a matrix close to the identity, so that multigrid of the
-  // form is close to the inverse.
+  // Scales columns smoothly by 0.7 to 1.3: the tangent times a matrix close to the identity, so that multigrid of
+  // the tangent is close to the inverse.
   void scale_columns()
   {
     Sheet::Vector scale = sheet->make_owned();
@@ -70,9 +68,9 @@ struct Problem
       entry->value() = entry->value() * scale(entry->column());
   }
 
-  continuum::MooneyRivlin law;
+  const continuum::MooneyRivlin law = rubber_sheet();
   continuum::IsotropicGradient gradient{5e5, 0.01};
-  Mesh mesh;
+  RectangleMesh mesh;
   std::unique_ptr<Sheet> sheet;
   std::unique_ptr<AffineConstraints<double>> constraints;
   std::unique_ptr<LinearSolver> solver;

@@ -144,30 +144,13 @@ TEST(Meshes, CellsAreKnownBeforeThereIsAMesh)
   EXPECT_GT(continuum::n_coarse_cells(continuum::RectangleWithHole{1e6, 1e6, 1., 0}), 1e10);
 }
 
-TEST(Meshes, RefusesWhatCannotBeMeshed)
-{
-  Mesh mesh(MPI_COMM_SELF);
-  EXPECT_THROW(continuum::make_rectangle_with_hole(mesh, {length, height, 0.046, 0}), continuum::InvalidInput);
-  EXPECT_THROW(continuum::make_rectangle_with_hole(mesh, {length, height, 0., 0}), continuum::InvalidInput);
-  EXPECT_THROW(continuum::make_notched_rectangle(mesh, {length, height, length, 0}), continuum::InvalidInput);
-  EXPECT_THROW(continuum::make_notched_rectangle(mesh, {length, -1., 0.01, 0}), continuum::InvalidInput);
-  try
-  {
-    continuum::read_gmsh(mesh, "no/such.msh");
-    FAIL();
-  }
-  catch (const continuum::InvalidInput &failure)
-  {
-    EXPECT_NE(std::string(failure.what()).find("no/such.msh"), std::string::npos);
-  }
-  EXPECT_THROW(continuum::read_gmsh(mesh, write_file("text.msh", "not a mesh")), continuum::InvalidInput);
-}
-
-// Returns why a mesh, two_squares with a part replaced, is refused; "accepted" if it is not.
-static std::string refusal(const std::string &from, const std::string &to)
+// Returns why a mesh, two_squares with parts replaced, is refused; "accepted" if it is not.
+using Changes = std::vector<std::pair<std::string, std::string>>;
+std::string refusal(const Changes &changes)
 {
   std::string other = two_squares;
-  other.replace(other.find(from), from.size(), to);
+  for (const auto &[from, to] : changes)
+    other.replace(other.find(from), from.size(), to);
   try
   {
     (void)continuum::n_coarse_cells(write_file("other.msh", other));
@@ -179,98 +162,22 @@ static std::string refusal(const std::string &from, const std::string &to)
   return "accepted";
 }
 
-TEST(Meshes, RefusesEdgesWithoutACurveAndNodesOutOfThePlane)
+std::string names(const std::string &lines)
 {
-  EXPECT_EQ(refusal("$Nodes", "$Nodes"), "accepted");
-  for (const std::string id : {"5", "300", "-1"})
-    EXPECT_NE(refusal("3 1 2 4 2 3 6", "3 1 2 " + id + " 2 3 6").find("physical curve " + id), std::string::npos) << id;
-  // No line along the right edge, and a line along the edge between the squares instead.
-  EXPECT_NE(refusal("8\n1 1 2 2 1 1 2\n2 1 2 2 1 2 3\n3 1 2 4 2 3 6\n", "7\n1 1 2 2 1 1 2\n2 1 2 2 1 2 3\n")
-              .find("from (2, 0) to (2, 1) m on no physical curve"),
-            std::string::npos);
-  // Nodes 3 and 6 in other planes than the rest; a mesh in a shifted plane is accepted.
-  EXPECT_NE(refusal("3 2 0 0", "3 2 0 5").find("z = 0 and 5 m"), std::string::npos);
-  EXPECT_NE(refusal("6 2 1 0", "6 2 1 -1e-3").find("z = "), std::string::npos);
-  std::string raised = two_squares;
-  for (std::size_t at = raised.find(" 0\n", raised.find("$Nodes")); at < raised.find("$EndNodes");
-       at = raised.find(" 0\n", at + 1))
-    raised.replace(at, 2, " 5");
-  EXPECT_EQ(continuum::n_coarse_cells(write_file("raised.msh", raised)), 2.);
-  // A line without tags.
-  EXPECT_NE(refusal("6 1 2 0 3 4 1", "6 1 0 4 1").find("lines on no physical curve"), std::string::npos);
+  return "$PhysicalNames\n" + lines + "\n$EndPhysicalNames\n$Nodes";
 }
 
-// Gmsh gives curves with names the numbers from 1 on, in the order of the script.
-TEST(Meshes, NamesOfCurvesDecideWhereThereAreAny)
+TEST(Meshes, RefusesWhatCannotBeMeshed)
 {
-  const auto named = [](const std::string &names)
-  { return "$PhysicalNames\n" + names + "\n$EndPhysicalNames\n$Nodes"; };
-  std::string text = two_squares;
   Mesh mesh(MPI_COMM_SELF);
-  text.replace(text.find("$Nodes"), 6, named("4\n1 0 \"left\"\n1 2 \"right\"\n1 4 \"bottom\"\n2 7 \"my rubber\""));
-  continuum::read_gmsh(mesh, write_file("named.msh", text));
-  const continuum::CauchyBorn law = rubber_network();
-  const Measures m = measures(continuum::Sheet(mesh, law, 2));
-  EXPECT_NEAR(m.edges.at(continuum::edge::left), 3., 1e-12);
-  EXPECT_NEAR(m.edges.at(continuum::edge::right), 2., 1e-12);
-  EXPECT_NEAR(m.edges.at(continuum::edge::bottom), 1., 1e-12);
-  const auto refused = [&](const std::string &names) { return refusal("$Nodes", named(names)); };
-  EXPECT_NE(refused("3\n1 0 \"left\"\n1 2 \"clamp\"\n1 4 \"top\"").find("curve 2 named \"clamp\""), std::string::npos);
-  EXPECT_NE(refused("2\n1 0 \"left\"\n1 4 \"top\"").find("curve 2 without a name"), std::string::npos);
-  EXPECT_NE(refused("2\n1 2 \"left\"\n1 2 \"right\"").find("curve 2 two names, \"left\" and \"right\""),
-            std::string::npos);
-  EXPECT_EQ(refused("1\n2 7 \"left\""), "accepted"); // a surface
-  std::string inside = two_squares; // with a line along the edge between the squares
-  inside.replace(inside.find("8\n1 1 2"), 2, "9\n9 1 2 8 4 2 5\n");
-  inside.replace(inside.find("$Nodes"), 6, named("4\n1 0 \"left\"\n1 2 \"bottom\"\n1 4 \"right\"\n1 8 \"top\""));
-  EXPECT_NE(refusal(two_squares, inside).find("not on the boundary, on the physical curve 8 named \"top\""),
-            std::string::npos);
-}
-
-// Gmsh's `Save all elements`, or a mesh without physical groups, in version 2.
-TEST(Meshes, RefusesGroupsThatGmshDropped)
-{
-  std::string text = two_squares;
-  for (const std::string old : {" 1 2 2 1 1 2", " 1 2 2 1 2 3", " 1 2 4 2 3 6"})
-    text[text.find(old) + 5] = '0';
-  EXPECT_EQ(continuum::n_coarse_cells(write_file("all.msh", text)), 2.); // all edges on curve 0, by intention
-  for (const std::string old : {" 3 2 7 1 1 2 5 4", " 3 2 7 1 2 3 6 5"})
-    text[text.find(old) + 5] = '0';
-  try
-  {
-    (void)continuum::n_coarse_cells(write_file("all.msh", text));
-    FAIL();
-  }
-  catch (const continuum::InvalidInput &failure)
-  {
-    EXPECT_NE(std::string(failure.what()).find("Save all elements"), std::string::npos);
-  }
-}
-
-TEST(Meshes, SaysInASentenceWhyAFileIsRefused)
-{
-  const std::pair<const char *, const char *> cases[][2] = {
-    {{"2.2 0 8", "4 0 8"}, {"version 4,", "version 2 or 4.1"}},
-    {{"2.2 0 8", "4.0 0 8"}, {"version 4.0,", "version 2 or 4.1"}},
-    {{"2.2 0 8", "3 0 8"}, {"version 3,", "version 2 or 4.1"}},
-    {{"2.2 0 8", "2.2 1 8"}, {"binary", "ASCII"}},
-    {{"$MeshFormat", "Point(1) = {0, 0, 0};"}, {"not a mesh of Gmsh", "$MeshFormat"}},
-    {{"8 3 2 7 1 2 3 6 5", "8 10 2 7 1 2 3 6 5"}, {"element 8 of type 10", "first order"}},
-    {{"8 3 2 7 1 2 3 6 5", "8 2 2 7 1 2 3 6"}, {"triangle", "Recombine"}},
-    {{"8 3 2 7 1 2 3 6 5", "8 3 2 7 1 2 3 6 9"}, {"element 8", "node 9"}},
-    {{"8 3 2 7 1 2 3 6 5", "8 3 2 7 1 2 3 6"}, {"'$EndElements' in $Elements", "number of a node"}},
-    {{"8 3 2 7 1 2 3 6 5", "8 3 2 7 1 1 2 5 4"}, {"overlap, at (0, 0) m", "two physical surfaces"}},
-    {{"3 2 0 0", "3 two 0 0"}, {"'two' in $Nodes", "coordinate"}},
-  };
-  for (const auto &[change, parts] : cases)
-  {
-    const std::string message = refusal(change.first, change.second);
-    EXPECT_NE(message.find(parts.first), std::string::npos) << message;
-    EXPECT_NE(message.find(parts.second), std::string::npos) << message;
-    EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 0) << message;
-  }
-  EXPECT_EQ(refusal("$MeshFormat", "$Comments\nwhat $Nodes cost\n$EndComments\n$MeshFormat"), "accepted");
-  EXPECT_EQ(refusal("8 3 2 7 1 2 3 6 5", "8 3 2 7 1 5 6 3 2"), "accepted"); // clockwise
+  EXPECT_THROW(continuum::make_rectangle(mesh, {0., 1., 1, 1}), continuum::InvalidInput);
+  EXPECT_THROW(continuum::make_rectangle(mesh, {1., 1., 1, 0}), continuum::InvalidInput);
+  EXPECT_THROW(continuum::make_rectangle(mesh, {1., 1., 1, 2, true, false}), continuum::InvalidInput);
+  EXPECT_THROW(continuum::make_rectangle_with_hole(mesh, {length, height, 0.046, 0}), continuum::InvalidInput);
+  EXPECT_THROW(continuum::make_rectangle_with_hole(mesh, {length, height, 0., 0}), continuum::InvalidInput);
+  EXPECT_THROW(continuum::make_notched_rectangle(mesh, {length, height, length, 0}), continuum::InvalidInput);
+  EXPECT_THROW(continuum::make_notched_rectangle(mesh, {length, -1., 0.01, 0}), continuum::InvalidInput);
+  EXPECT_THROW(continuum::read_gmsh(mesh, "no/such.msh"), continuum::InvalidInput);
   EXPECT_THROW((void)continuum::n_coarse_cells("/dev/zero"), continuum::InvalidInput);
   const std::filesystem::path large = write_file("large.msh", two_squares);
   std::filesystem::resize_file(large, (std::size_t{256} << 20) + 1);
@@ -278,11 +185,93 @@ TEST(Meshes, SaysInASentenceWhyAFileIsRefused)
   std::filesystem::remove(large);
 }
 
-TEST(Meshes, RefusesCellsThatAreNotConvex)
+// Gmsh gives curves with names the numbers from 1 on, in the order of the script.
+TEST(Meshes, NamesOfCurvesDecideWhereThereAreAny)
 {
-  // The node between the squares on top moves below the diagonal of one of them, or onto it.
-  for (const std::string node : {"5 1.7 0.2 0", "5 1.5 0.5 0", "5 1 -1 0"})
-    EXPECT_NE(refusal("5 1 1 0", node).find("not convex, element "), std::string::npos) << node;
+  std::string text = two_squares;
+  text.replace(text.find("$Nodes"), 6, names("4\n1 0 \"left\"\n1 2 \"right\"\n1 4 \"bottom\"\n2 7 \"my rubber\""));
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::read_gmsh(mesh, write_file("named.msh", text));
+  const continuum::CauchyBorn law = rubber_network();
+  const Measures m = measures(continuum::Sheet(mesh, law, 2));
+  EXPECT_NEAR(m.edges.at(continuum::edge::left), 3., 1e-12);
+  EXPECT_NEAR(m.edges.at(continuum::edge::right), 2., 1e-12);
+  EXPECT_NEAR(m.edges.at(continuum::edge::bottom), 1., 1e-12);
+}
+
+TEST(Meshes, SaysInASentenceWhyAFileIsRefused)
+{
+  const std::string last = "8 3 2 7 1 2 3 6 5", node = "5 1 1 0", right = "3 1 2 4 2 3 6";
+  struct Case
+  {
+    Changes changes;
+    std::string part, other_part = "";
+  };
+  const std::vector<Case> cases{
+    {{{"2.2 0 8", "4 0 8"}}, "version 4,", "version 2 or 4.1"},
+    {{{"2.2 0 8", "4.0 0 8"}}, "version 4.0,", "version 2 or 4.1"},
+    {{{"2.2 0 8", "3 0 8"}}, "version 3,", "version 2 or 4.1"},
+    {{{"2.2 0 8", "2.2 1 8"}}, "binary", "ASCII"},
+    {{{"$MeshFormat", "Point(1) = {0, 0, 0};"}}, "not a mesh of Gmsh", "$MeshFormat"},
+    {{{last, "8 10 2 7 1 2 3 6 5"}}, "element 8 of type 10", "first order"},
+    {{{last, "8 2 2 7 1 2 3 6"}}, "triangle", "Recombine"},
+    {{{last, "8 3 2 7 1 2 3 6 9"}}, "element 8", "node 9"},
+    {{{last, "8 3 2 7 1 2 3 6"}}, "'$EndElements' in $Elements", "number of a node"},
+    {{{last, "8 3 2 7 1 1 2 5 4"}}, "overlap, at (0, 0) m", "two physical surfaces"},
+    {{{"3 2 0 0", "3 two 0 0"}}, "'two' in $Nodes", "coordinate"},
+    {{{right, "3 1 2 5 2 3 6"}}, "physical curve 5"},
+    {{{right, "3 1 2 300 2 3 6"}}, "physical curve 300"},
+    {{{right, "3 1 2 -1 2 3 6"}}, "physical curve -1"},
+    // No line along the right edge, and a line along the edge between the squares instead.
+    {{{"8\n1 1 2 2 1 1 2\n2 1 2 2 1 2 3\n3 1 2 4 2 3 6\n", "7\n1 1 2 2 1 1 2\n2 1 2 2 1 2 3\n"}},
+     "from (2, 0) to (2, 1) m on no physical curve"},
+    // Nodes 3 and 6 in other planes than the rest.
+    {{{"3 2 0 0", "3 2 0 5"}}, "z = 0 and 5 m"},
+    {{{"6 2 1 0", "6 2 1 -1e-3"}}, "z = "},
+    // A line without tags.
+    {{{"6 1 2 0 3 4 1", "6 1 0 4 1"}}, "lines on no physical curve"},
+    // The node between the squares on top moves below the diagonal of one of them, or onto it.
+    {{{node, "5 1.7 0.2 0"}}, "not convex, element "},
+    {{{node, "5 1.5 0.5 0"}}, "not convex, element "},
+    {{{node, "5 1 -1 0"}}, "not convex, element "},
+    // Gmsh's `Save all elements`, or a mesh without physical groups, in version 2: nothing is on a physical group.
+    {{{"1 1 2 2 1 1 2", "1 1 2 0 1 1 2"},
+      {"2 1 2 2 1 2 3", "2 1 2 0 1 2 3"},
+      {right, "3 1 2 0 2 3 6"},
+      {"7 3 2 7 1 1 2 5 4", "7 3 2 0 1 1 2 5 4"},
+      {last, "8 3 2 0 1 2 3 6 5"}},
+     "Save all elements"},
+    {{{"$Nodes", names("3\n1 0 \"left\"\n1 2 \"clamp\"\n1 4 \"top\"")}}, "curve 2 named \"clamp\""},
+    {{{"$Nodes", names("2\n1 0 \"left\"\n1 4 \"top\"")}}, "curve 2 without a name"},
+    {{{"$Nodes", names("2\n1 2 \"left\"\n1 2 \"right\"")}}, "curve 2 two names, \"left\" and \"right\""},
+    // A line along the edge between the squares.
+    {{{"8\n1 1 2", "9\n9 1 2 8 4 2 5\n1 1 2"},
+      {"$Nodes", names("4\n1 0 \"left\"\n1 2 \"bottom\"\n1 4 \"right\"\n1 8 \"top\"")}},
+     "not on the boundary, on the physical curve 8 named \"top\""},
+  };
+  for (const auto &[changes, part, other_part] : cases)
+  {
+    const std::string message = refusal(changes);
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+    EXPECT_NE(message.find(other_part), std::string::npos) << message;
+    EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 0) << message;
+  }
+  const std::vector<Changes> accepted{
+    {},
+    {{"$MeshFormat", "$Comments\nwhat $Nodes cost\n$EndComments\n$MeshFormat"}},
+    {{last, "8 3 2 7 1 5 6 3 2"}},          // clockwise
+    {{"$Nodes", names("1\n2 7 \"left\"")}}, // a surface
+    // All edges on curve 0, by intention.
+    {{"1 1 2 2 1 1 2", "1 1 2 0 1 1 2"}, {"2 1 2 2 1 2 3", "2 1 2 0 1 2 3"}, {right, "3 1 2 0 2 3 6"}},
+    // In a shifted plane.
+    {{"1 0 0 0", "1 0 0 5"},
+     {"2 1 0 0", "2 1 0 5"},
+     {"3 2 0 0", "3 2 0 5"},
+     {"4 0 1 0", "4 0 1 5"},
+     {node, "5 1 1 5"},
+     {"6 2 1 0", "6 2 1 5"}}};
+  for (const Changes &changes : accepted)
+    EXPECT_EQ(refusal(changes), "accepted");
 }
 
 // As Gmsh writes it: a square of one cell, numbers of curves among the entities.
@@ -394,33 +383,6 @@ TEST(ErrorIndicator, VanishesInHomogeneousDeformation)
   // Compared with the energy of an inhomogeneous deformation.
   EXPECT_LT(continuum::error_indicators(solver.sheet(), solver.displacement()).l2_norm(),
             1e-9 * std::sqrt(solver.total_energy()));
-}
-
-TEST(Rectangle, HasItsSizeCellsAndEdges)
-{
-  RectangleMesh mesh(rectangle(12, 8));
-  EXPECT_EQ(mesh.n_global_active_cells(), 96u);
-  EXPECT_EQ(mesh.n_levels(), 3u); // 12 x 8 = 3 x 2 halved twice
-  unsigned int faces[4] = {0, 0, 0, 0};
-  for (const auto &cell : mesh.active_cell_iterators())
-  {
-    EXPECT_NEAR(cell->extent_in_direction(0), length / 12, 1e-15);
-    EXPECT_NEAR(cell->extent_in_direction(1), height / 8, 1e-15);
-    for (const auto &face : cell->face_iterators())
-      if (face->at_boundary())
-      {
-        const auto X = face->center();
-        const auto id = face->boundary_id();
-        ASSERT_LT(id, 4u);
-        ++faces[id];
-        const double distances[4] = {X[0], X[0] - length, X[1] + height / 2, X[1] - height / 2};
-        EXPECT_NEAR(distances[id], 0., 1e-15);
-      }
-  }
-  EXPECT_EQ(faces[continuum::edge::left], 8u);
-  EXPECT_EQ(faces[continuum::edge::right], 8u);
-  EXPECT_EQ(faces[continuum::edge::bottom], 12u);
-  EXPECT_EQ(faces[continuum::edge::top], 12u);
 }
 
 } // namespace meshes_test

@@ -1,5 +1,5 @@
 // Comparison of several ranks with one rank: each rank solves the whole problem on its own communicator, then all solve
-// it together.
+// it together. Motions: motion_archive_test.cc.
 #include "continuum/collective.h"
 #include "continuum/dynamic_solver.h"
 #include "continuum/errors.h"
@@ -31,22 +31,6 @@ struct Answer
   std::vector<continuum::PointState> states;
   continuum::DeterminantRange range;
 };
-
-Answer answer(const MPI_Comm communicator, const dealii::types::global_dof_index direct_limit)
-{
-  const continuum::MooneyRivlin law = rubber_sheet();
-  RectangleMesh mesh(rectangle(12, 10), communicator);
-  StaticSettings settings;
-  settings.relative_tolerance = 1e-12;
-  settings.linear.direct_limit = direct_limit;
-  StaticSolver solver(mesh, law, bump_problem(2.3, 2.8, 0.03), settings);
-  solver.solve();
-  auto points = scattered_points(7, 5);
-  points.emplace_back(length / 2, 0.);       // a vertex of the mesh
-  points.emplace_back(length / 12, -0.0213); // on an edge between cells
-  points.emplace_back(0., height / 2);       // a corner of the sheet
-  return {solver.total_energy(), solver.reactions(), solver.evaluate(points), solver.determinant_range()};
-}
 
 void expect_same(const Answer &alone, const Answer &together)
 {
@@ -96,8 +80,11 @@ Answer adaptive_answer(const MPI_Comm communicator, const dealii::types::global_
     solver.refine(mesh, 0.2);
     solver.equilibrate();
   }
-  return {solver.total_energy(), solver.reactions(), solver.evaluate(scattered_points(7, 5)),
-          solver.determinant_range()};
+  auto points = scattered_points(7, 5);
+  points.emplace_back(length / 2, 0.);       // a vertex of the mesh
+  points.emplace_back(length / 12, -0.0213); // on an edge between cells
+  points.emplace_back(0., height / 2);       // a corner of the sheet
+  return {solver.total_energy(), solver.reactions(), solver.evaluate(points), solver.determinant_range()};
 }
 
 struct LinearAnswer
@@ -107,34 +94,23 @@ struct LinearAnswer
   std::size_t n_levels;
 };
 
-// Fourth-order form on an adaptive mesh, solved by conjugate gradients with multigrid.
+// Tangent of a gradient law on an adaptive mesh, solved by conjugate gradients with multigrid.
 LinearAnswer linear_answer(const MPI_Comm communicator, const unsigned int degree)
 {
-  const continuum::MooneyRivlin law = rubber_sheet();
-  RectangleMesh mesh(rectangle(6, 4), communicator);
-  multigrid_cases::refine_towards(mesh, Point<2>(0.4 * length, 0.003), 3, length / 3.);
-  const continuum::Sheet sheet(mesh, law, degree);
-  const multigrid_cases::GradientForm form(0.03 * length);
   continuum::MultigridSettings settings;
   settings.coarsest_size = 100;
-  continuum::Multigrid multigrid(sheet, multigrid_cases::same_sheets(law, degree), form.matrix_factory(),
-                                 multigrid_cases::all_held(), settings);
-  continuum::Sheet::Matrix K;
-  form.make_matrix(sheet, multigrid.constraints(), K);
-  form.assemble(sheet, multigrid.constraints(), K);
-  multigrid.update(sheet.make_ghosted(), K, form.assembler());
+  const multigrid_cases::HeldSheet problem(0.03 * length, degree, rectangle(6, 4), 3, settings, communicator);
+  const continuum::Sheet &sheet = *problem.sheet;
   continuum::Sheet::Vector b = sheet.make_owned();
   continuum::Sheet::Vector x = sheet.make_owned();
-  multigrid_cases::body_force(sheet, multigrid.constraints(), b);
+  multigrid_cases::body_force(sheet, problem.multigrid->constraints(), b);
   LinearAnswer answer;
-  answer.iterations = multigrid_cases::solve(multigrid, K, x, b, 1e-12);
-  multigrid.constraints().distribute(x);
+  answer.iterations = multigrid_cases::solve(*problem.multigrid, problem.K, x, b, 1e-12);
+  problem.multigrid->constraints().distribute(x);
   // Scaled to a displacement within the domain of the law.
   x *= 1e-3 * length / x.linfty_norm();
-  continuum::Sheet::Vector u = sheet.make_ghosted();
-  u = x;
-  answer.states = sheet.evaluate(u, scattered_points(7, 5));
-  answer.n_levels = multigrid.levels().size();
+  answer.states = sheet.evaluate(ghosted(sheet, x), scattered_points(7, 5));
+  answer.n_levels = problem.multigrid->levels().size();
   return answer;
 }
 
@@ -150,16 +126,6 @@ unsigned int n_ranks()
 TEST(Ranks, AreAsManyAsTheTestSays)
 {
   EXPECT_EQ(std::to_string(n_ranks()), std::getenv("LATCON_RANKS"));
-}
-
-TEST(Ranks, GiveTheSameAnswerWithTheDirectSolver)
-{
-  expect_same(answer(MPI_COMM_SELF, 1000000), answer(MPI_COMM_WORLD, 1000000));
-}
-
-TEST(Ranks, GiveTheSameAnswerWithConjugateGradients)
-{
-  expect_same(answer(MPI_COMM_SELF, 0), answer(MPI_COMM_WORLD, 0));
 }
 
 TEST(Ranks, NeedTheSameMultigridIterationsForTheSameAnswer)
@@ -232,8 +198,7 @@ TEST(Ranks, AllSeeANonPhysicalStateOnOneRank)
       owned(dofs[0]) = length;
     }
   owned.compress(dealii::VectorOperation::insert);
-  continuum::Sheet::Vector u = sheet.make_ghosted();
-  u = owned;
+  const continuum::Sheet::Vector u = ghosted(sheet, owned);
   EXPECT_THROW(sheet.energy(u), continuum::NonPhysicalState);
   continuum::Sheet::Vector r = sheet.make_owned();
   continuum::Sheet::Vector magnitude = sheet.make_owned();
@@ -250,87 +215,6 @@ TEST(Ranks, AllSeeANonPhysicalStateOnOneRank)
     });
   StaticSolver solver(mesh, law, on_all_edges(corner), settings);
   EXPECT_THROW(solver.solve(), continuum::SolverFailed);
-}
-
-struct Motion
-{
-  std::vector<continuum::PointState> states;
-  continuum::EnergyLedger ledger;
-  Tensor<1, 2> momentum;
-};
-
-// Sheet with a shaken edge, a gradient law, viscosity with a gradient part, loads and generalised-alpha; solved directly if the sheet is
-// periodic across, otherwise by GMRES.
-Motion motion(const MPI_Comm communicator, const bool is_periodic)
-{
-  const continuum::CauchyBorn law = rubber_network();
-  const continuum::IsotropicGradient gradient(5e5, 0.01);
-  std::vector<continuum::FibreDashpot> dashpots;
-  for (const auto &bond : rubber_bonds(0.015))
-    dashpots.push_back({bond.fibre.direction, bond.fibre.weight, 50., bond.length});
-  const continuum::FibreViscosity viscosity(dashpots, 0.01);
-  RectangleMesh mesh({length, height, 8, 6, false, is_periodic}, communicator);
-  continuum::BoundaryConditions conditions;
-  conditions.displacements = {{edge::left, std::make_shared<Field>(
-                                             [](const Point<2> &) {
-                                               return Tensor<1, 2>({0.01, 0.02});
-                                             })}};
-  conditions.tractions = {{edge::right, std::make_shared<Field>(
-                                          [](const Point<2> &) {
-                                            return Tensor<1, 2>({1e5, 0.});
-                                          })}};
-  if (is_periodic)
-    conditions.periodic = {{edge::bottom, edge::top, 1}};
-  continuum::DynamicSettings settings{2e-4};
-  settings.degree = 2;
-  settings.rule = continuum::NewmarkParameters::generalised_alpha(0.8);
-  settings.relative_tolerance = 1e-12;
-  settings.linear.direct_limit = 0;
-  settings.linear.multigrid.coarsest_size = 100;
-  continuum::DynamicSolver solver(mesh, continuum::Constitution(law, gradient), conditions, {944., 0.01}, settings,
-                                  &viscosity, [](const double t) { return std::sin(500. * t); });
-  solver.start(nullptr, std::make_shared<Field>(
-                          [](const Point<2> &X) {
-                            return Tensor<1, 2>({5. * std::sin(2. * pi * X[1] / height), 3. * X[0] / length});
-                          }));
-  solver.run_until(4e-3);
-  auto points = scattered_points(7, 5);
-  points.emplace_back(length / 2, 0.);
-  points.emplace_back(length, height / 2);
-  return Motion{solver.evaluate(points), solver.ledger(), solver.momentum()};
-}
-
-void expect_same_motion(const bool is_periodic)
-{
-  const Motion alone = motion(MPI_COMM_SELF, is_periodic);
-  const Motion together = motion(MPI_COMM_WORLD, is_periodic);
-  const double tolerance = 1e-10;
-  for (std::size_t p = 0; p < alone.states.size(); ++p)
-  {
-    EXPECT_NEAR((together.states[p].displacement - alone.states[p].displacement).norm(), 0., tolerance * length);
-    EXPECT_NEAR((together.states[p].F - alone.states[p].F).norm(), 0., tolerance * alone.states[p].F.norm());
-  }
-  const continuum::EnergyLedger &one = alone.ledger;
-  const continuum::EnergyLedger &all = together.ledger;
-  const double energy = one.stored + one.kinetic;
-  EXPECT_GT(one.dissipated, 0.01 * energy);
-  EXPECT_GT(std::abs(one.work), 0.01 * energy);
-  EXPECT_NEAR(all.stored, one.stored, tolerance * energy);
-  EXPECT_NEAR(all.kinetic, one.kinetic, tolerance * energy);
-  EXPECT_NEAR(all.micro_kinetic, one.micro_kinetic, tolerance * energy);
-  EXPECT_NEAR(all.dissipated, one.dissipated, tolerance * energy);
-  EXPECT_NEAR(all.work, one.work, tolerance * energy);
-  EXPECT_NEAR((together.momentum - alone.momentum).norm(), 0., tolerance * alone.momentum.norm());
-}
-
-TEST(Ranks, GiveTheSameMotionWithTheDirectSolver)
-{
-  expect_same_motion(true);
-}
-
-TEST(Ranks, GiveTheSameMotionWithGmres)
-{
-  expect_same_motion(false);
 }
 
 TEST(Ranks, AllSeeAnInitialFieldThatFailsOnOneRank)

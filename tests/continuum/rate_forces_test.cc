@@ -295,7 +295,17 @@ TEST_P(ForcesOfRates, StayAsTheyWereAfterAStepThatFails)
   const auto zero = solver.sheet().make_owned();
   const auto half = nodal(solver.sheet(), [](const Point<2> &X) { return -0.1 * Tensor<1, 2>(X); });
   EXPECT_THROW(solver.start(zero, zero, 0., {half}), InvalidInput);
+  solver.start(zero, zero, 0., {half, zero});
+  EXPECT_GT(solver.branch_energies()[0].stored, 0.);
+  EXPECT_EQ(solver.branch_energies()[1].stored, 0.);
   solver.start(zero, zero, 0., {half, half});
+  // Each fibre pulls with a tenth of both moduli: virtual work of the reactions in a displacement X.
+  double weights = 0.;
+  for (const MaxwellFibres &fibres : memory.families())
+    weights += fibres.weight;
+  const auto position = nodal(solver.sheet(), [](const Point<2> &X) { return Tensor<1, 2>(X); });
+  const double work = 0.2 * modulus * weights * length * height;
+  EXPECT_NEAR(solver.reactions() * owned(solver.sheet(), position), work, 1e-12 * work);
   const double stored = solver.branch_energies()[0].stored + solver.branch_energies()[1].stored;
   for (int step = 0; step < 4; ++step)
     solver.step();

@@ -66,24 +66,19 @@ TEST(Release, LetsNodesGoSmoothly)
 {
   const Pulled problem;
   constexpr double duration = 1e-3;
-  const auto moved = [&](const unsigned int n, double &work)
+  const auto released = [&](const unsigned int n)
   {
     RectangleMesh mesh(rectangle(4, 4));
     const auto solver = problem.started(mesh, duration / n);
     open(mesh, 0.5 * length);
     solver->release(duration);
-    solver->step();
-    const double first = solver->displacement().linfty_norm();
     solver->run_until(2. * duration);
-    work = solver->ledger().released;
+    const double work = solver->ledger().released;
     EXPECT_NEAR(solver->ledger().imbalance, 0., 2e-2 * work);
     EXPECT_NEAR(solver->ledger().work, -work, 1e-12 * std::abs(work)); // the held edge does not move
-    return first;
+    return work;
   };
-  double coarse = 0., middle = 0., fine = 0.;
-  moved(10, coarse);
-  moved(20, middle);
-  moved(40, fine);
+  const double coarse = released(10), middle = released(20), fine = released(40);
   EXPECT_GT(fine, 0.); // the edge was pulled shut
   // Second order in the time step: the forces do not jump.
   EXPECT_NEAR((coarse - middle) / (middle - fine), 4., 1.2);

@@ -39,18 +39,13 @@ inline Tensor<2, 2> rotation(const double angle)
   return matrix(std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle));
 }
 
-/// Interpolates a displacement [m], a function of reference position, at the nodes of a sheet; with ghost entries.
-inline latcon::continuum::Sheet::Vector nodal(const latcon::continuum::Sheet &sheet,
-                                              const std::function<Tensor<1, 2>(const Point<2> &)> &field)
+/// A copy with ghost entries.
+inline latcon::continuum::Sheet::Vector ghosted(const latcon::continuum::Sheet &sheet,
+                                                const latcon::continuum::Sheet::Vector &owned)
 {
-  latcon::continuum::Sheet::Vector owned = sheet.make_owned();
-  sheet.for_each_owned_dof([&](const auto dof, const unsigned int component, const Point<2> &X)
-                           { owned(dof) = field(X)[component]; });
-  owned.compress(dealii::VectorOperation::insert);
-  sheet.conformity_constraints().distribute(owned);
-  latcon::continuum::Sheet::Vector u = sheet.make_ghosted();
-  u = owned;
-  return u;
+  latcon::continuum::Sheet::Vector copy = sheet.make_ghosted();
+  copy = owned;
+  return copy;
 }
 
 /// A copy without ghost entries.
@@ -60,6 +55,27 @@ inline latcon::continuum::Sheet::Vector owned(const latcon::continuum::Sheet &sh
   latcon::continuum::Sheet::Vector copy = sheet.make_owned();
   copy = u;
   return copy;
+}
+
+/// Interpolates a displacement [m], a function of reference position, at the nodes of a sheet; with ghost entries.
+inline latcon::continuum::Sheet::Vector nodal(const latcon::continuum::Sheet &sheet,
+                                              const std::function<Tensor<1, 2>(const Point<2> &)> &field)
+{
+  latcon::continuum::Sheet::Vector owned = sheet.make_owned();
+  sheet.for_each_owned_dof([&](const auto dof, const unsigned int component, const Point<2> &X)
+                           { owned(dof) = field(X)[component]; });
+  owned.compress(dealii::VectorOperation::insert);
+  sheet.conformity_constraints().distribute(owned);
+  return ghosted(sheet, owned);
+}
+
+/// Largest number of linear iterations in a Newton step.
+inline unsigned int most_linear_iterations(const latcon::continuum::SolverReport &report)
+{
+  unsigned int most = 0;
+  for (const latcon::continuum::NewtonIteration &iteration : report.iterations)
+    most = std::max(most, iteration.linear_iterations);
+  return most;
 }
 
 /// Returns a random second gradient G_iJK [1/m], symmetric in J and K, with entries up to 0.3 / `length` [m].

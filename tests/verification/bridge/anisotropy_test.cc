@@ -101,27 +101,4 @@ TEST(RotationMean, BoundsWhatTheNetworkLeavesOut)
   }
 }
 
-// theory-comparison.md, eq. (H.16): the part of the energy that the mean omits is smaller by rho^2.
-TEST(RotationMean, LeavesOutTheThirdPowerOfTheDifferenceOfStretches)
-{
-  const continuum::CauchyBorn lattice = quick_law();
-  const continuum::IsotropicNetwork network(lattice.families());
-  const double c1 = 0.72, c2 = std::sqrt(3.) * 0.81, a = 1e5, b = 1.5e5;
-  for (const double L : {1.2, 1.8})
-    for (const double row : {0., 0.2}) // angle of a row from the principal axis
-    {
-      const auto relative_error = [&](const double rho)
-      {
-        const Eigen::Matrix2d F = Eigen::Vector2d(L * (1. + rho), L * (1. - rho)).asDiagonal();
-        const Eigen::Matrix2d R = Eigen::Rotation2Dd(row).toRotationMatrix();
-        const double found = lattice.energy(to_continuum(F * R)) - network.energy(to_continuum(F));
-        const double leading =
-          3. * (c1 - c2) * std::pow(rho, 3) * (b * (L / 8. - 1. / (L * L)) - 5. * a / (8. * L)) * std::cos(6. * row);
-        return std::abs(found / leading - 1.);
-      };
-      EXPECT_LT(relative_error(0.01), 0.01);
-      EXPECT_NEAR(std::log2(relative_error(0.01) / relative_error(0.005)), 2., 0.1);
-    }
-}
-
 } // namespace anisotropy_test
