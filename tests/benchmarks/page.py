@@ -2,6 +2,7 @@
 import dataclasses
 
 import summary
+from cost_model import Machine, efficiency, message_times
 from measure import best, spread
 
 
@@ -126,8 +127,39 @@ def fem_table(part):
     return [Table("Finite elements against dolfinx", header, rows)]
 
 
+def messages_table(part):
+    rows = [[number(entry["bytes"]), f"{1e6 * best(entry['seconds']):.2f}",
+             f"{1e-9 * entry['bytes'] / best(entry['seconds']):.2f}"] for entry in part["exchanges"]]
+    return [Table("Messages between two ranks of this machine", ["bytes each way", "[us]", "[GB/s]"], rows,
+                  f"Sum of one number over both ranks: {1e6 * best(part['allreduce_seconds']):.2f} us.")]
+
+
+def model_tables(parts):
+    """Predictions of cost_model.py; none if a measurement that it needs is missing."""
+    if "sizes" not in parts or "messages" not in parts:
+        return []
+    exchanges = [(entry["bytes"], best(entry["seconds"])) for entry in parts["messages"]["exchanges"]]
+    latency, bandwidth = message_times(exchanges)
+    # Both cores at work, as on a node of a cluster: they share the memory.
+    largest = max(summary.by_size(parts["sizes"], 0).items())[1][2]
+    site_seconds = 2. * summary.per_site(largest)
+    here = Machine(site_seconds, latency, bandwidth, best(parts["messages"]["allreduce_seconds"]))
+    network = Machine(site_seconds, 2e-6, 5e9, 4e-6)
+    rows = []
+    for columns in (1_000, 10_000):
+        for sites in (10_000, 100_000, 1_000_000):
+            rows.append([number(columns), number(sites),
+                         *(per_cent(efficiency(machine, sites, columns, ranks))
+                           for machine in (here, network) for ranks in (16, 1024))])
+    note = (f"From the model above with t_site = {ns(site_seconds)} ns (two busy threads, largest sheet), and messages as "
+            f"measured here (latency {1e6 * latency:.2f} us, {1e-9 * bandwidth:.2f} GB/s, reduction "
+            f"{1e6 * here.reduction:.2f} us) or as assumed for a network (2 us, 5 GB/s, 4 us).")
+    header = ["sites per row", "sites per rank", "16 ranks", "1024 ranks", "16, network", "1024, network"]
+    return [Table("Predicted efficiency on many ranks", header, rows, note)]
+
+
 TABLES = {"kernel": kernel_table, "lammps": lammps_table, "sizes": sizes_table, "ranks": ranks_table, "fig1": fig1_table,
-          "integrator": integrator_table, "fem": fem_table}
+          "integrator": integrator_table, "fem": fem_table, "messages": messages_table}
 
 
 def tables(document):
@@ -138,7 +170,7 @@ def tables(document):
     for name, make in TABLES.items():
         if name in parts:
             result += make(parts[name])
-    return result
+    return result + model_tables(parts)
 
 
 def machine_text(document):

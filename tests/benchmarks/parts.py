@@ -235,5 +235,13 @@ def fem(plan):
     return {"problems": problems}
 
 
+def messages(plan):
+    """Messages between two ranks on this machine."""
+    results = [run_json(on_ranks(2, [plan.program("messages")])) for _ in range(plan.rounds)]
+    return {"exchanges": [{"bytes": same[0]["bytes"], "seconds": [entry["seconds"] for entry in same]}
+                          for same in zip(*(result["exchanges"] for result in results))],
+            "allreduce_seconds": [result["allreduce_seconds"] for result in results]}
+
+
 PARTS = {"kernel": kernel, "lammps": against_lammps, "sizes": sizes, "ranks": ranks, "fig1": fig1,
-         "integrator": integrator, "fem": fem}
+         "integrator": integrator, "fem": fem, "messages": messages}

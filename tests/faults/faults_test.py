@@ -1,7 +1,5 @@
 """Runs survive kills, full disks and folders that cannot be written.
 
-A kill leaves what the last call that changes files has left: all moments of a kill are those before such a call.
-
 A run that was stopped is resumed until it ends. After each stop every file is read with VTK, h5py, and Python's readers; at the end
 all files are compared with those of the uninterrupted run, byte for byte. LATCON_FAULTS=N stops N times as many.
 """
@@ -12,31 +10,44 @@ import subprocess
 
 import pytest
 
+import kills
 import moments
 import victims
 import whole
-from program import LATCON
 
+PROGRAM = victims.Program(os.environ["LATCON"], os.environ["LATCON_FILE_FAULTS"])
 TIMES = int(os.environ.get("LATCON_FAULTS", 1))
 SEED = 1
 CRACK = victims.VICTIMS["crack"]
 needs_mount = pytest.mark.skipif(os.geteuid() != 0 or subprocess.run(["unshare", "-m", "mount", "-t", "tmpfs", "none", "/mnt"],
                                                                      capture_output=True).returncode != 0, reason="no disk can be mounted here")
-SOME = {"kill": (*victims.VICTIMS,), "full": ("crack", "sheet in motion")}  # files of all are written by the same functions
 
 
-@pytest.mark.parametrize("fault, name", [(fault, name) for fault in SOME for name in (SOME[fault] if TIMES == 1 else victims.VICTIMS)])
+@pytest.mark.parametrize("name", [*victims.VICTIMS, *(["relaxation"] if TIMES == 1 else victims.WITHOUT_CHECKPOINTS)])
+def test_run_survives_kills_at_random_moments(name, tmp_path):
+    ranks = (1, 1, 2) if name in victims.ON_RANKS else (1,)
+    counted = kills.kill_at_random(PROGRAM, name, tmp_path / "run", random.Random(f"{SEED} {name}"), 2 * TIMES if name in victims.VICTIMS else TIMES, ranks)
+    print(counted)
+    assert counted["kills"] >= TIMES
+    assert counted["runs"] > 0
+    assert name in victims.VICTIMS or counted["kills"] == counted["without_checkpoint"]
+
+
+SOME = {"crack": ("kill", "full"), "sheet in motion": ("full",)}  # files of all are written by the same functions
+
+
+@pytest.mark.parametrize("name, fault", [(name, fault) for name in victims.VICTIMS
+                                         for fault in (SOME.get(name, ()) if TIMES == 1 else ("kill", "full"))])
 def test_run_survives_a_fault_at_a_call_that_changes_files(name, fault, tmp_path):
     pick = random.Random(f"{SEED} {name}")
-    counted = moments.at_moments(name, tmp_path, fault, lambda n, names: [
-        *pick.sample(range(1, n + 1), min(n, TIMES)), *(pick.sample(names, min(len(names), TIMES)) if fault == "kill" else ())])
+    counted = moments.at_moments(PROGRAM, name, tmp_path / "run", fault, lambda n: pick.sample(range(1, n + 1), min(n, TIMES)))
     print(counted)
     assert counted["calls"] > 30
 
 
 def crack_on(disk, options, then=""):
     """Runs a crack with a file system of its own mounted at `disk`."""
-    script = f'mount -t tmpfs -o {options} none {disk} || exit 77; {shlex.join([LATCON, *CRACK])} --output-dir {disk}/out; status=$?; {then} exit $status'
+    script = f'mount -t tmpfs -o {options} none {disk} || exit 77; {shlex.join([PROGRAM.latcon, *CRACK])} --output-dir {disk}/out; status=$?; {then} exit $status'
     return subprocess.run(["unshare", "-m", "sh", "-c", script], capture_output=True, text=True, timeout=600)
 
 
@@ -51,9 +62,9 @@ def test_small_disk(tmp_path, whole_run):
     assert run.returncode == 5, run.stderr
     assert str(disk) in run.stderr
     assert whole.check(kept) > 5
-    status, said = victims.run([*CRACK, "--resume"], kept)
+    status, said = PROGRAM.run([*CRACK, "--resume"], kept)
     assert status in victims.DONE, said
-    moments.compare("crack", kept, expected)
+    kills.compare("crack", kept, expected)
 
 
 @needs_mount
@@ -69,7 +80,7 @@ def test_folder_of_somebody_else(tmp_path):
     folder.mkdir(mode=0o555)
     tmp_path.chmod(0o755)
     prefix = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
-    run = subprocess.run([*prefix, LATCON, *CRACK, "--output-dir", folder / "out"], capture_output=True, text=True, timeout=600,
+    run = subprocess.run([*prefix, PROGRAM.latcon, *CRACK, "--output-dir", folder / "out"], capture_output=True, text=True, timeout=600,
                          env=dict(os.environ, HOME=str(tmp_path), XDG_CACHE_HOME=str(tmp_path)))
     assert run.returncode == 5, run.stderr
     assert "ermission denied" in run.stderr
@@ -79,5 +90,4 @@ def test_folder_of_somebody_else(tmp_path):
 @pytest.fixture(scope="module")
 def whole_run(module_path):
     """Folder and results of an undisturbed crack."""
-    victims.run_to_end([*CRACK, "--threads", "1"], module_path / "out")
-    return module_path / "out", victims.contents(module_path / "out")
+    return module_path / "out", victims.undisturbed(PROGRAM, CRACK, module_path / "out")[0]

@@ -4,17 +4,14 @@
 ///     LATCON_FAULT=kill|full|count  LATCON_FAULT_AT=n  LATCON_FAULT_IN=FOLDER  [LATCON_FAULT_LOG=FILE]
 ///
 /// Counted are creating, writing, syncing, renaming and deleting, each from the program or its libraries. FOLDER is
-/// absolute. With `count` nothing happens but that the number of calls is written to FILE at the end, and the numbers
-/// of those that rename or delete.
+/// absolute. With `count` nothing happens but that the number of calls is written to FILE at the end.
 #include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <mutex>
 #include <string>
-#include <vector>
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -25,8 +22,6 @@ namespace
 {
 
 std::atomic<long> calls{0};
-std::mutex names_mutex;
-std::vector<long> names; // calls that rename or delete
 
 const char *setting(const char *name)
 {
@@ -52,14 +47,9 @@ bool is_inside(int descriptor)
 }
 
 // Counts a call; kills at the chosen one. @return whether the disk is full by now
-bool count_call(bool is_of_name = false)
+bool count_call()
 {
   const long call = ++calls;
-  if (is_of_name)
-  {
-    const std::lock_guard<std::mutex> lock(names_mutex);
-    names.push_back(call);
-  }
   const long at = std::atol(setting("LATCON_FAULT_AT"));
   const std::string fault = setting("LATCON_FAULT");
   if (fault == "kill" && call == at)
@@ -84,8 +74,6 @@ struct Log
       if (std::FILE *file = std::fopen(path, "w"))
       {
         std::fprintf(file, "%ld\n", calls.load());
-        for (const long call : names)
-          std::fprintf(file, "%ld\n", call);
         std::fclose(file);
       }
   }
@@ -134,7 +122,7 @@ extern "C"
   int rename(const char *from, const char *to) noexcept
   {
     if (is_inside(to))
-      count_call(true);
+      count_call();
     static const auto real = next<int(const char *, const char *)>("rename");
     return real(from, to);
   }
@@ -142,7 +130,7 @@ extern "C"
   int unlink(const char *path) noexcept
   {
     if (is_inside(path))
-      count_call(true);
+      count_call();
     static const auto real = next<int(const char *)>("unlink");
     return real(path);
   }

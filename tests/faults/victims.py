@@ -1,8 +1,12 @@
 """Small runs of every kind that writes checkpoints, on which the fault harness acts."""
 import os
+import pathlib
+import shutil
+import signal
 import subprocess
+import time
 
-from program import CASES, LATCON, latcon
+from program import CASES, latcon
 
 
 def settings(**entries):
@@ -30,30 +34,72 @@ VICTIMS = {
         *settings(Sheet__spacing="1 mm", Sheet__length="30 mm", Sheet__height="16 mm", Fracture__seed_sites=8,
                   Time__end="0.4 ms", Time__integrator="runge-kutta-chebyshev", Output__frame_interval="0.05 ms",
                   Output__energy_interval=10, Checkpoints__steps=7)],
-    "sheet in motion": [
-        "continuum", str(CASES / "shear_layer.prm"), "--quiet",
-        *settings(Continuum__solution="motion", Continuum__cells_y=8, Continuum__degree=2, Continuum__time_step="5 us",
-                  Left_edge__condition="held", Right_edge__condition="held", Continuum__direct_limit=0,
-                  Loading__shear=0.1, Initial_state__velocity_x="6*sin(pi*y/0.02)^2*sin(pi*x/0.01)^2",
-                  Time__end="0.1 ms", Output__frame_interval="0.02 ms", Output__energy_interval=2, Checkpoints__steps=3)],
+}
+# Runs that are bitwise identical for any number of ranks.
+ON_RANKS = list(VICTIMS)
+VICTIMS["sheet in motion"] = [
+    "continuum", str(CASES / "shear_layer.prm"), "--quiet",
+    *settings(Continuum__solution="motion", Continuum__cells_y=8, Continuum__degree=2, Continuum__time_step="5 us",
+              Left_edge__condition="held", Right_edge__condition="held", Continuum__direct_limit=0,
+              Loading__shear=0.1, Initial_state__velocity_x="6*sin(pi*y/0.02)^2*sin(pi*x/0.01)^2",
+              Time__end="0.1 ms", Output__frame_interval="0.02 ms", Output__energy_interval=2, Checkpoints__steps=3)]
+# Runs without checkpoints: after a kill they start from the beginning, and a study with its incomplete runs.
+WITHOUT_CHECKPOINTS = {
+    "relaxation": ["lattice", str(CASES / "quick.prm"), "--quiet",
+                   *settings(Lattice__solution="relaxed", Sheet__length="5 cm", Sheet__height="3 cm")],
+    "study": ["study", str(pathlib.Path(__file__).with_name("study.json")), "--quiet", "--skip-verification"],
+    "verify": ["verify", "intrinsic-length", "--quick", "--quiet"],
+    "report": ["report"],  # of a crack that has run before
 }
 # Files that record the circumstances of a run.
 NOT_RESULTS = ("run.json", "log.txt", ".latcon.lock", "study.json", "study.html")
 DONE = (0, 3)  # 3: the energy balance of such small strips may exceed the tolerance
 
 
-def run_with_fault(arguments, out, fault=None):
-    """@return exit status, standard error"""
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    if fault is not None:
-        environment.update(LD_PRELOAD=os.environ["LATCON_FILE_FAULTS"], LATCON_FAULT_IN=str(out), **fault)
-    ended = subprocess.run([LATCON, *arguments, "--output-dir", str(out)], env=environment, stdout=subprocess.DEVNULL,
-                           stderr=subprocess.PIPE, text=True, timeout=600, check=False)
-    return ended.returncode, ended.stderr
+def on_threads(arguments, threads):
+    return arguments if arguments[0] == "report" else [*arguments, "--threads", str(threads)]
+
+
+def descendants(process):
+    """A process and all its descendants."""
+    found = [process]
+    for started in found:
+        for task in pathlib.Path(f"/proc/{started}/task").glob("*/children"):
+            try:
+                found += [int(word) for word in task.read_text().split()]
+            except OSError:
+                pass  # it has ended
+    return found
+
+
+class Program:
+    """latcon and the command that starts it."""
+
+    def __init__(self, latcon, preloaded=None):
+        self.latcon, self.preloaded = str(latcon), preloaded
+
+    def start(self, arguments, out, *, ranks=1, fault=None):
+        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+        if fault is not None:
+            environment.update(LD_PRELOAD=str(self.preloaded), LATCON_FAULT_IN=str(out), **fault)
+        launcher = [] if ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(ranks)]
+        to = [str(out)] if arguments[0] == "report" else ["--output-dir", str(out)]
+        return subprocess.Popen([*launcher, self.latcon, *arguments, *to], env=environment,
+                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+    def run(self, arguments, out, timeout=600, **how):
+        """@return exit status, "hangs" past the timeout [s]; standard error"""
+        process = self.start(arguments, out, **how)
+        try:
+            _, said = process.communicate(timeout=timeout)
+        except subprocess.TimeoutExpired:
+            kill(process)
+            return "hangs", ""
+        return process.returncode, said
 
 
 def run(arguments, out, timeout=600):
-    """The same in a fork, without a fault."""
+    """Like Program.run, in a fork, for uninterrupted runs on one thread."""
     try:
         ended = latcon(*arguments, "--output-dir", out, timeout=timeout, expect=None)
     except subprocess.TimeoutExpired:
@@ -67,6 +113,32 @@ def run_to_end(arguments, out):
         raise RuntimeError(f"exit {status}: {said}")
 
 
+def renew(name, out):
+    """Creates the folder in its state before a run."""
+    shutil.rmtree(out, ignore_errors=True)
+    if name != "report":
+        return
+    kept = out.parent / "crack"
+    if not kept.exists():
+        run_to_end(VICTIMS["crack"], kept)
+        shutil.rmtree(kept / "checkpoints")
+    shutil.copytree(kept, out)
+
+
+def resumed(arguments):
+    """The arguments that resume a run."""
+    return arguments if arguments[0] in ("verify", "report") else [*arguments, "--resume"]
+
+
+def kill(process):
+    for victim in reversed(descendants(process.pid)):
+        try:
+            os.kill(victim, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+    process.communicate()
+
+
 def contents(folder):
     """Results of a run by file name, without the files that record its circumstances."""
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*"))
@@ -77,3 +149,30 @@ def contents(folder):
 def differences(found, expected):
     """Names of files that differ."""
     return sorted(name for name in found.keys() | expected.keys() if found.get(name) != expected.get(name))
+
+
+def wait_until_it_runs(process, out, before):
+    """Waits until a program has read its input and writes run.json. @return whether it did
+    @param before modification time of that file when the program was started; 0 if it did not exist"""
+    while process.poll() is None:
+        if time_of_change(out / "run.json") != before:
+            return True
+        time.sleep(0.002)
+    return False
+
+
+def time_of_change(path):
+    return path.stat().st_mtime_ns if path.exists() else 0
+
+
+def undisturbed(program, arguments, out, name=None):
+    """@return the contents of the folder, the wall time after the start of the program [s]"""
+    renew(name, out)
+    process = program.start(on_threads(arguments, 1), out)
+    if name != "report":
+        wait_until_it_runs(process, out, 0)
+    start = time.monotonic()
+    _, said = process.communicate(timeout=600)
+    if process.returncode not in DONE:
+        raise RuntimeError(f"exit {process.returncode}: {said}")
+    return contents(out), time.monotonic() - start

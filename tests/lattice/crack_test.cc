@@ -1,4 +1,4 @@
-// Cracks that run: symmetry and energy.
+// Cracks that run: symmetry, energy and contact.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -21,14 +21,16 @@ using namespace lattice;
 
 struct Crack
 {
-  Crack(Orientation orientation, Material bonds)
+  Crack(Orientation orientation, Material bonds, double time_step_factor = 0.5,
+        const Toughening &toughening = BehindTipToughening{8. * sheets::spacing, 1000.}, double noise = 0.)
     : sheet(sheets::spacing, 60. * sheets::spacing, 40. * sheets::spacing, orientation), material(std::move(bonds))
   {
     const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
-    simulation = std::make_unique<Simulation>(
-      sheet, material, homogeneous_state(sheet, material, F, Edges::held),
-      0.5 * time_step_limits(sheet, material, 0.3).combined,
-      Fracture(sheet, material, 3.05, BehindTipToughening{8. * sheets::spacing, 1000.}, F));
+    State state = homogeneous_state(sheet, material, F, Edges::held);
+    add_noise(state, sheet, noise * sheets::spacing, 1);
+    simulation = std::make_unique<Simulation>(sheet, material, std::move(state),
+                                              time_step_factor * time_step_limits(sheet, material, 0.3).combined,
+                                              Fracture(sheet, material, 3.05, toughening, F));
     // A slit on the line y = 0: along a row, or one site of every second row.
     std::vector<std::size_t> seed;
     if (orientation == Orientation::rows_along_crack)
@@ -80,6 +82,24 @@ TEST_P(SymmetricSeed, StaysSymmetricToTheLastBitAndItsLedgerCloses)
   EXPECT_GT(e.viscous, 1e-3 * e.initial);
   EXPECT_GT(e.broken, 1e-3 * e.initial);
   EXPECT_LT(std::abs(e.imbalance()), 1e-6 * e.initial);
+}
+
+// Flanks and debris touch in a crack without toughening.
+TEST(Contact, LedgerClosesThroughACrackWhoseDebrisTouches)
+{
+  Crack crack(Orientation::rows_along_crack, sheets::rubber(), 0.9, NoToughening{}, 0.05);
+  Simulation &simulation = *crack.simulation;
+  simulation.enable_contact(contact_like_nearest_bond(crack.sheet, crack.material, sheets::spacing, 1., 1.));
+  std::size_t most = 0;
+  for (int step = 0; step < 6000; ++step)
+  {
+    simulation.step();
+    most = std::max(most, simulation.contact()->n_touching());
+  }
+  EXPECT_GT(most, 5u);
+  const EnergyBalance e = simulation.energies();
+  EXPECT_GT(e.contact, 1e-4 * e.initial);
+  EXPECT_LT(std::abs(e.imbalance()), 1e-4 * e.initial);
 }
 
 } // namespace crack_test

@@ -8,6 +8,7 @@
 
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
+#include "lattice/velocity_verlet.h"
 #include "support/largest_error.h"
 #include "tests/lattice/sheets.h"
 
@@ -121,6 +122,39 @@ TEST(RungeKuttaChebyshev, AppliesForcesOnSitesInEachStage)
   {
     EXPECT_LT((simulation.position(place) - F * sheet.reference(place)).norm(), 1e-12 * sheets::spacing);
   }
+}
+
+// One bond's dashpot between two free sites: v_rel' = -2 (c/m) v_rel exactly, so the scheme's own recursion is known:
+// its two roots for z = gamma h solve r^2 - (1 - 3z/2) r - z/2 = 0, and it diverges beyond z = 1.
+// theory.md, eq. (L.8).
+TEST(VelocityVerlet, DampingLimitOfOneDashpotIsOne)
+{
+  const TriangularLattice sheet = sheets::square(6);
+  Material material = sheets::nearest_only();
+  material.nearest.law = LinearBond{1e-9}; // springs out of the way
+  const double mass = site_mass(material, sheet);
+  const double gamma =
+    2. * cross_section(material.nearest, sheet) * material.nearest.viscosity / (sheets::spacing * mass);
+  const auto relative_velocity_after = [&](double z, int steps)
+  {
+    State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free);
+    const std::size_t left = sheet.index(3, 2);
+    state.bonds.clear(sheet.n_places());
+    state.bonds.add(left, 0);
+    state.vx[left] = -1e-6;
+    state.vx[left + 1] = 1e-6;
+    Forces forces(sheet, material);
+    VelocityVerlet verlet(sheet, forces, z / gamma);
+    verlet.initialise(state);
+    for (int step = 0; step < steps; ++step)
+      verlet.step(state);
+    return std::abs(state.vx[left + 1] - state.vx[left]) / 2e-6;
+  };
+  EXPECT_LT(relative_velocity_after(0.99, 2000), 1.);
+  EXPECT_GT(relative_velocity_after(1.01, 2000), 1.);
+  // z = 1/2: largest root (1/4 + sqrt(1/16 + 1)) / 2.
+  const double root = (0.25 + std::sqrt(1.0625)) / 2.;
+  EXPECT_NEAR(relative_velocity_after(0.5, 21) / relative_velocity_after(0.5, 20), root, 1e-4);
 }
 
 TEST(Noise, DependsOnSeedAloneAndKeepsItsAmplitude)

@@ -1,0 +1,69 @@
+"""Kills the program at random times, resumes it, and compares its results with those of the uninterrupted run."""
+import time
+
+import victims
+import whole
+
+
+class Failure(Exception):
+    """Results were lost or differ."""
+
+
+def kill_at_random(program, name, folder, rng, kills, ranks=(1,)):
+    """@return statistics: kills, files read, completed runs, kills before the first checkpoint"""
+    arguments = {**victims.VICTIMS, **victims.WITHOUT_CHECKPOINTS}[name]
+    expected, duration = victims.undisturbed(program, arguments, folder / "killed", name)  # pages name their folder
+    out = folder / "killed"
+    victims.renew(name, out)
+    told = {"kills": 0, "files_read": 0, "runs": 0, "without_checkpoint": 0, "asked_to_stop": 0}
+    while told["kills"] < kills:
+        finished = advance(program, arguments, out, rng, duration, ranks, told)
+        told["files_read"] += whole.check(out) if out.exists() else 0
+        if finished:
+            compare(name, out, expected)
+            told["runs"] += 1
+            victims.renew(name, out)
+        elif not list(out.glob("checkpoints/*.h5")):
+            told["without_checkpoint"] += 1
+    status, said = program.run(victims.resumed(arguments), out)
+    if status not in victims.DONE:
+        raise Failure(f"{name}: exit {status} after the last kill: {said}")
+    compare(name, out, expected)
+    told["runs"] += 1
+    return told
+
+
+def advance(program, arguments, out, rng, duration, ranks, told):
+    """Resumes the run and kills it, or occasionally sends SIGTERM. @return whether it had ended before"""
+    on = rng.choice(ranks)
+    before = victims.time_of_change(out / "run.json")
+    process = program.start(victims.on_threads(victims.resumed(arguments), rng.choice((1, 2))), out, ranks=on)
+    # Most kills are after the start, when there is more to lose; some are during the start.
+    if arguments[0] != "report" and rng.random() < 0.9:
+        victims.wait_until_it_runs(process, out, before)
+    end = time.monotonic() + rng.uniform(0., duration)
+    while time.monotonic() < end and process.poll() is None:
+        time.sleep(0.005)
+    # A signal that mpirun receives before it has started the ranks does not concern latcon.
+    if process.poll() is None and on == 1 and rng.random() < 0.1:
+        told["asked_to_stop"] += 1
+        process.terminate()
+        _, said = process.communicate(timeout=120)
+        # It may end before it checks for signals; before the handlers are installed a signal simply ends it.
+        if process.returncode not in (130, -15, *victims.DONE):
+            raise Failure(f"exit {process.returncode} when asked to stop: {said}")
+    elif process.poll() is None:
+        told["kills"] += 1
+        victims.kill(process)
+        return False
+    else:
+        _, said = process.communicate()
+        if process.returncode not in victims.DONE:
+            raise Failure(f"exit {process.returncode}: {said}")
+    return process.returncode in victims.DONE
+
+
+def compare(name, out, expected):
+    different = victims.differences(victims.contents(out), expected)
+    if different:
+        raise Failure(f"{name}: not what the undisturbed run wrote: {', '.join(different)}")
