@@ -6,6 +6,7 @@
 #include "multigrid_cases.h"
 
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/grid/grid_tools.h>
 
 #include <gtest/gtest.h>
 
@@ -31,6 +32,36 @@ Sheet::Vector wavy_state(const Sheet &sheet)
                  const double wave = 300. * (X[0] + 2. * X[1]);
                  return Tensor<1, 2>({0.3 * X[0] + 2e-4 * std::sin(wave), 0.3 * X[1] + 2e-4 * std::sin(wave + 1.)});
                });
+}
+
+// A law that changes on a line between two columns of cells.
+class TwoPieces : public continuum::Material
+{
+public:
+  const Material &at(const Point<2> &X) const override { return X[0] < 0.625 * length ? left : right; }
+  continuum::Response evaluate(const Tensor<2, 2> &F, const continuum::Order order) const override
+  {
+    return left.evaluate(F, order);
+  }
+  double thickness_stretch(const Tensor<2, 2> &F) const override { return left.thickness_stretch(F); }
+
+  const continuum::MooneyRivlin left = rubber_sheet(), right = rubber_sheet(0.3);
+};
+
+// Of four columns of trapezoids that become narrower, each has its own points.
+TEST(Assembly, FindsTheLawOfEveryPoint)
+{
+  const TwoPieces law;
+  Mesh mesh(MPI_COMM_WORLD);
+  continuum::make_rectangle(mesh, rectangle(4, 2));
+  const auto moved = [](const Point<2> &X)
+  { return Point<2>(X[0] * (1.5 - 0.5 * X[0] / length), X[1] * (1. + 0.5 * X[0] / length)); };
+  dealii::GridTools::transform(moved, mesh);
+  const Sheet sheet(mesh, law, 2);
+  const Tensor<2, 2> F = matrix(1.5, 0.1, 0.2, 1.2);
+  const auto u = nodal(sheet, [&F](const Point<2> &X) { return F * Tensor<1, 2>(X) - Tensor<1, 2>(X); });
+  const double expected = (law.left.energy(F) * 179. + law.right.energy(F) * 131.) / 256. * length * height;
+  EXPECT_NEAR(sheet.energy(u), expected, 1e-12 * expected);
 }
 
 // Sums in another order: each of the up to 100 terms of an entry is rounded once.

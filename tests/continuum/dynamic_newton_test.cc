@@ -83,18 +83,24 @@ TEST(DynamicSolver, GmresAgreesWithTheDirectSolver)
   EXPECT_GT(ledger.dissipated, 0.1 * ledger.stored);
 }
 
-// Whole Newton steps for arctan u = 0 diverge from |u| > 1.39; with a line search they converge.
-TEST(NewtonSolver, ReducesTheResidualWithoutAnEnergy)
+struct State
 {
-  struct State
-  {
-    double free, reference, energy;
-  };
+  double free, reference, energy;
+};
+
+Vector one_unknown(const double value)
+{
   dealii::IndexSet one(1);
   one.add_index(0);
   Vector u(one, MPI_COMM_SELF);
-  u(0) = 3.;
-  u.compress(dealii::VectorOperation::insert);
+  u = value;
+  return u;
+}
+
+// Whole Newton steps for arctan u = 0 diverge from |u| > 1.39; with a line search they converge.
+TEST(NewtonSolver, ReducesTheResidualWithoutAnEnergy)
+{
+  Vector u = one_unknown(3.);
   const auto evaluate = [](const Vector &at) { return State{std::abs(std::atan(at(0))), 1., 0.}; };
   std::vector<bool> keeps;
   double tangent_at = 0.;
@@ -123,6 +129,48 @@ TEST(NewtonSolver, ReducesTheResidualWithoutAnEnergy)
   {
     EXPECT_LT(history[i].residual, history[i - 1].residual);
     EXPECT_TRUE(i == keeps.size() || keeps[i] == (history[i].residual <= 0.01 * history[i - 1].residual));
+  }
+}
+
+// Given states in place of an equation, with a slope of -1, a noise of 0.1 and a tolerance of 1e-6.
+TEST(NewtonSolver, AcceptsStepsAndAsksForForcingByItsRules)
+{
+  std::vector<State> given{{0.0101, 1., 0.09991},                  // the energy may rise by 0.1 - 1e-4
+                           {0.9, 1., 0.09996},                     // half a step: by 0.1 - 5e-5
+                           {0.5, 1., 0.09997},                     // a quarter: accepted
+                           {0.1, 1., 0.},         {1e-3, 1., 7.},  // a residual a hundredfold smaller, at any energy
+                           {2e-5, 1., 0.},        {1e-6, 1., 9.}}; // within the tolerance, at any energy
+  auto next = given.begin();
+  std::vector<double> forcings, lengths;
+  double slope = -1.;
+  const NewtonSolver<State> newton(
+    {1e-6, 20, 10, 0.6}, {[&](const Vector &) { return *next++; }, [](const State &, const Vector &) { return 0.; },
+                          [&](const State &, const Vector &, const double forcing, bool, Vector &)
+                          {
+                            forcings.push_back(forcing);
+                            return NewtonStep{0, slope};
+                          },
+                          [](const State &) { return 0.1; }, nullptr});
+  std::vector<NewtonIteration> history;
+  Vector u = one_unknown(0.);
+  State state{1., 1., 0.};
+  EXPECT_EQ(newton.solve(u, state, 1, 1., 0, history), "");
+  EXPECT_EQ(next, given.end());
+  for (const NewtonIteration &iteration : history)
+    lengths.push_back(iteration.step_length);
+  EXPECT_EQ(lengths, (std::vector<double>{1., 0.25, 1., 1., 1., 1.}));
+  // 0.9 times the squared reduction of the residual, at most 0.6; where less than a hundred tolerances are left for
+  // that, a tenth of the tolerance.
+  const std::vector<double> expected{0.6, 0.9 * 0.25, 0.9 * 0.04, 1e-4, 5e-3};
+  ASSERT_EQ(forcings.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_NEAR(forcings[i], expected[i], 1e-12);
+
+  for (const double not_downhill : {0., std::nan("")})
+  {
+    slope = not_downhill;
+    state.free = 1.;
+    EXPECT_EQ(newton.solve(u, state, 1, 1., 0, history), "the tangent is not positive definite along the Newton step");
   }
 }
 

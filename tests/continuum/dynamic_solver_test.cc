@@ -387,6 +387,7 @@ TEST(DynamicSolver, RefusesImpossibleInput)
   // A held edge that is not at the prescribed position, fields with one component, a load factor that is not finite.
   DynamicSolver held(mesh, law, {{edge::left, constant(0.01, 0.)}}, {density, 0.}, {1e-3});
   EXPECT_THROW(held.start(), InvalidInput);
+  EXPECT_THROW(held.start(constant(0.01 + 1e-8, 0.)), InvalidInput); // 6e-8 of the extent
   EXPECT_NO_THROW(held.start(constant(0.01, 0.)));
   DynamicSolver free(mesh, law, {}, {density, 0.}, {1e-3});
   EXPECT_THROW(free.start(std::make_shared<dealii::Functions::ZeroFunction<2>>(1)), InvalidInput);

@@ -164,33 +164,42 @@ TEST(GradientEquilibrium, HasNoNegativeGradientEnergy)
 // along Y: in both cells beside a face, whose n is 4, R is a polynomial of degree p - 1 across the face with the
 // squared mean (s p / 2 h)^2, so that W_g = c |G|^2 / 2 has the energy n c s^2 p^2 / 4 h per length of the column, and
 // dashpots at rest dissipate n p^2 / 2 h times the power of the rate s e_y (x) NN. theory-continuum.md, eqs. (C.59) and
-// (C.63).
+// (C.63). Where cells on the right are half as large, a cell on the left has n = 5, and R of each half of its face is
+// the projection of what vanishes along the other half.
 TEST(GradientEquilibrium, LiftsAKinkAsInClosedForm)
 {
   const IsotropicGradient gradient(5e5, 0.01);
   const FibreViscosity local_dashpots = network_viscosity(300.);
   const FibreViscosity dashpots = network_viscosity(300., 0.01);
-  constexpr double h = 0.02, s = 0.3, n = 4.;
+  constexpr double h = 0.02, s = 0.3;
   FieldDerivatives rate{};
   rate[1][n_first] = s;
   PointIntegrand power;
   clear(power, Order::value);
   dashpots.gradient()->add_density({}, rate, Order::value, 0., power);
-  for (const unsigned int p : {2u, 3u, 4u})
+  // Degree, n of the cells on the left times their squared projections, and size of the cells on the right.
+  for (const auto &[p, n_left, h_right] :
+       {std::tuple(2u, 4., h), std::tuple(3u, 4., h), std::tuple(4u, 4., h), std::tuple(2u, 5. * 7. / 8., h / 2.),
+        std::tuple(3u, 5. * 7. / 8., h / 2.), std::tuple(4u, 5. * 119. / 128., h / 2.)})
   {
     RectangleMesh mesh({4. * h, 2. * h, 4, 2, false, true});
+    for (const auto &cell : mesh.active_cell_iterators())
+      if (h_right < h && cell->center()[0] > 2. * h)
+        cell->set_refine_flag();
+    mesh.execute_coarsening_and_refinement();
+    const double n_by_h = 0.5 * (n_left / h + 4. / h_right);
     BoundaryConditions along_y;
     along_y.periodic = {{edge::bottom, edge::top, 1}};
     Constitution laws(law, gradient);
     laws.penalty = 0.;
     const Sheet with(mesh, laws, p, along_y), without(mesh, law, p, along_y);
     const auto u = nodal(with, [](const Point<2> &X) { return Tensor<1, 2>({0., s * std::max(0., X[0] - 2. * h)}); });
-    const double expected = n * gradient.modulus() * s * s * p * p / (4. * h) * 2. * h;
+    const double expected = n_by_h * gradient.modulus() * s * s * p * p / 4. * 2. * h;
     // Round-off of two energies of the order of 1e3 J/m.
     EXPECT_NEAR(with.energy(u) - without.energy(u), expected, 1e-11 * without.energy(u)) << p;
     const double of_stretches = RateForces(with, &local_dashpots, nullptr).dissipation(with.make_ghosted(), u, {});
     const double of_both = RateForces(with, &dashpots, nullptr).dissipation(with.make_ghosted(), u, {});
-    EXPECT_NEAR(of_both - of_stretches, power.value * n * p * p / (2. * h) * 2. * h, 1e-10 * of_both) << p;
+    EXPECT_NEAR(of_both - of_stretches, power.value * n_by_h * p * p / 2. * 2. * h, 1e-10 * of_both) << p;
   }
 }
 
@@ -284,6 +293,26 @@ TEST(GradientEquilibrium, InexactStepsEndAtTheSameEquilibrium)
     for (std::size_t p = 0; p < exact.states.size(); ++p)
       EXPECT_LT((inexact.states[p].displacement - exact.states[p].displacement).norm(), 1e-9 * length);
   }
+}
+
+// At parts of the load, with a prescribed normal gradient, on which the stiffness of a nonlinear law depends.
+TEST(GradientEquilibrium, NewtonIsQuadraticInEveryLoadStep)
+{
+  const LatticeGradient gradient = rubber_gradient(0.02);
+  RectangleMesh mesh(rectangle(6, 4));
+  BoundaryConditions conditions(bump_problem(1.5, 1.5, 0.));
+  conditions.normal_gradients.push_back({edge::top, std::make_shared<Field>(
+                                                      [](const Point<2> &X) {
+                                                        return Tensor<1, 2>({X[0], 0.8});
+                                                      })});
+  StaticSettings settings;
+  settings.degree = 2;
+  settings.first_load_step = 0.25;
+  StaticSolver solver(mesh, Constitution(law, gradient), conditions, settings);
+  const std::vector<NewtonIteration> all = solver.solve().iterations;
+  EXPECT_LT(all[0].load_factor, 1.);
+  const double order = std::log(all[2].residual / all[1].residual) / std::log(all[1].residual / all[0].residual);
+  EXPECT_GE(order, 1.8);
 }
 
 // With zero length the gradient law has no effect; in homogeneous states it has no effect at any length.

@@ -48,7 +48,10 @@ TEST(StaticSolver, PassesPatchTestOnDistortedMesh)
       StaticSettings settings;
       settings.degree = degree;
       settings.relative_tolerance = 1e-12;
-      StaticSolver solver(mesh, *law, on_all_edges(affine(F)), settings);
+      auto conditions = on_all_edges(affine(F));
+      conditions[0].components = dealii::ComponentMask(std::vector<bool>{true, false}); // one component at a time
+      conditions.push_back({edge::left, affine(F), dealii::ComponentMask(std::vector<bool>{false, true})});
+      StaticSolver solver(mesh, *law, conditions, settings);
       solver.solve();
 
       const double W = law->energy(F);
@@ -84,7 +87,7 @@ TEST(StaticSolver, ReactionIsTheDerivativeOfTheEnergy)
   {
     const auto raised = std::make_shared<Field>(
       [lift](const Point<2> &X) {
-        return Tensor<1, 2>({0.4 * X[0], (X[1] > 0. ? lift : 0.)});
+        return Tensor<1, 2>({(0.4 + 2. * X[0]) * X[0], (X[1] > 0. ? lift : 0.)});
       });
     const auto wall = std::make_shared<Field>([](const Point<2> &) { return Tensor<1, 2>({0., 1.}); });
     // Not the second component of the wall, which other edges hold at its ends.
@@ -346,6 +349,15 @@ TEST(StaticSolver, ThrowsWithHistoryWhenItDoesNotConverge)
     const auto &report = failure.report();
     EXPECT_FALSE(report.iterations.empty());
     EXPECT_FALSE(report.load_steps.back().accepted);
+    double reached = 0.;
+    for (std::size_t n = 0; n + 1 < report.load_steps.size(); ++n)
+    {
+      const LoadStep &step = report.load_steps[n];
+      if (step.accepted)
+        reached = step.load_factor;
+      else // half of what was refused
+        EXPECT_EQ(report.load_steps[n + 1].load_factor, 0.5 * (reached + step.load_factor)) << report.text();
+    }
     EXPECT_GT(report.load_factor, 0.5);
     EXPECT_LT(report.load_factor, 2. / 3.); // where det F = 0
     EXPECT_EQ(report.load_factor, solver.load_factor());
@@ -375,6 +387,36 @@ TEST(StaticSolver, StopsAtTheRoundOffOfTheResidual)
     EXPECT_LE(last.residual, last.tolerance);
     EXPECT_GE(last.residual, 0.01 * last.tolerance);
   }
+
+  // Where the only free node does not move, there is the round-off of stresses alone.
+  RectangleMesh mesh(rectangle(2, 2));
+  const Point<2> node(0.4 * length, 0.1 * height);
+  mesh.begin_active()->vertex(3) = node;
+  const Tensor<2, 2> F = matrix(1.8, 0.2, 0.1, 1.4);
+  const auto about_node =
+    std::make_shared<Field>([&](const Point<2> &X) { return F * Tensor<1, 2>(X - node) - Tensor<1, 2>(X - node); });
+  StaticSettings settings;
+  settings.degree = 1;
+  settings.relative_tolerance = 1e-30;
+  const NewtonIteration last = StaticSolver(mesh, rubber, on_all_edges(about_node), settings).solve().iterations.back();
+  EXPECT_GT(last.tolerance, 1e-16 * rubber.first_piola_stress(F).norm() * height);
+}
+
+// A force along x that balances itself, for which the roller at the left needs none.
+TEST(StaticSolver, MeasuresTheResidualByDeadLoadsAsWell)
+{
+  RectangleMesh mesh(rectangle(12, 2));
+  const auto zero = affine(matrix(1., 0., 0., 1.));
+  BoundaryConditions conditions{{edge::left, zero, dealii::ComponentMask(std::vector<bool>{true, false})},
+                                {edge::bottom, zero, dealii::ComponentMask(std::vector<bool>{false, true})}};
+  conditions.body_force = BodyForce{std::make_shared<Field>(
+    [](const Point<2> &X) {
+      return Tensor<1, 2>({1e4 * std::sin(2. * pi * X[0] / length), 0.});
+    })};
+  StaticSettings settings;
+  StaticSolver solver(mesh, rubber, conditions, settings);
+  const NewtonIteration last = solver.solve().iterations.back();
+  EXPECT_GE(last.tolerance, settings.relative_tolerance * solver.sheet().loads().l2_norm());
 }
 
 TEST(StaticSolver, RefusesImpossibleInput)

@@ -90,6 +90,17 @@ TEST(Cutout, NotchLeavesNoBondAcrossItAndKeepsMirrorSymmetry)
   }
 }
 
+// The sheet and its notch scaled by any factor lose the same sites.
+TEST(Cutout, NotchIsTheSameAtEveryScale)
+{
+  for (const double spacing : {1e-9, 1., 1e9})
+  {
+    const TriangularLattice sheet(spacing, 24. * spacing, 24. * spacing, Orientation::rows_across_crack);
+    const State state = with(sheet, Notch{9. * spacing}, Eigen::Matrix2d::Identity());
+    EXPECT_EQ(std::count(state.removed.begin(), state.removed.end(), 1), 6) << spacing;
+  }
+}
+
 // 21 columns; rows 0 to 22 at Y = (row - 11) sqrt3 / 2, odd ones (the middle among them) shifted by half a spacing.
 TriangularLattice along()
 {
@@ -150,7 +161,11 @@ TEST(Seed, LooksOnlyWhereItIs)
     ASSERT_EQ(line.size(), 4u);
     EXPECT_NEAR(sheet.reference(line.front()).x(), 5e5, 1.);
     EXPECT_EQ(sheet.reference(line.front()).y(), 0.);
-    EXPECT_EQ(seed_sites(sheet, SeedSlit{5e5, 0., 10., 10.}).size(), 115u);
+    const std::vector<std::size_t> slit = seed_sites(sheet, SeedSlit{5e5, 0., 10., 10.});
+    EXPECT_EQ(slit.size(), 115u);
+    const auto X = [&sheet](std::size_t place)
+    { return std::pair(sheet.reference(place).x(), sheet.reference(place).y()); };
+    EXPECT_TRUE(std::is_sorted(slit.begin(), slit.end(), [&](auto a, auto b) { return X(a) < X(b); }));
     EXPECT_THROW(seed_sites(sheet, SeedSlit{0., 0., 1e6, 1e5}), std::invalid_argument);
   }
 }

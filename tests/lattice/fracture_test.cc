@@ -267,6 +267,17 @@ TEST(Fracture, OwnsTheBreakingStretch)
                std::logic_error);
   state.x[far] += 0.2 * sheets::spacing;
   state.bonds.toughen(near, 0);
+  // Of all bonds the longest is not the nearest to its limit.
+  const std::optional<StretchedBond> nearest =
+    Fracture(sheet, material, 1.5, GivenToughening{2.}, F).nearest_to_breaking(state);
+  ASSERT_TRUE(nearest);
+  EXPECT_EQ(nearest->limit, 1.5);
+  for_each_bond(state, sheet,
+                [&](const Bond &bond)
+                {
+                  const bool is_toughened = bond.near == near && bond.kind == 0;
+                  EXPECT_TRUE(is_toughened || stretch(state, sheet, bond) <= nearest->stretch);
+                });
   const auto n_broken = [&](const Toughening &toughening)
   {
     Simulation simulation(sheet, material, state, 1e-12, Fracture(sheet, material, 1.5, toughening, F));

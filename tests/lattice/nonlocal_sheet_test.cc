@@ -242,4 +242,21 @@ TEST(NonlocalCrack, RefusesWhatItCannotDo)
   EXPECT_FALSE(StrainGradientFit(square).at(state, square.index(square.rows() / 2, square.columns() / 2)));
 }
 
+// theory.md, eq. (N.2): the fit is exact for a quadratic field.
+TEST(StrainGradientFit, IsTheGradientOfAQuadraticField)
+{
+  const TriangularLattice triangular = sheets::square(8.);
+  State state = homogeneous_state(triangular, sheets::rubber(), loaded(), Edges::held);
+  for (const std::size_t place : sheets::sites(triangular))
+  {
+    const Eigen::Vector2d X = triangular.reference(place);
+    state.x[place] += 3. * X.x() * X.x() + 5. * X.x() * X.y();
+    state.y[place] += 7. * X.y() * X.y();
+  }
+  const auto G = StrainGradientFit(triangular).at(state, triangular.index(4, 4));
+  ASSERT_TRUE(G);
+  EXPECT_NEAR((G->x - (Eigen::Matrix2d() << 6., 5., 5., 0.).finished()).norm(), 0., 1e-8);
+  EXPECT_NEAR((G->y - (Eigen::Matrix2d() << 0., 0., 0., 14.).finished()).norm(), 0., 1e-8);
+}
+
 } // namespace lattice_nonlocal_sheet_test

@@ -31,7 +31,7 @@ CLAIMS = ["claims_tests", "verification_tests"]
 PLACES = {
     "support/": ["support_tests"],
     "lattice/": ["lattice_tests", "LatticeRanks.AgreeOn2"],
-    "continuum/": ["continuum_tests"],
+    "continuum/": ["continuum_tests", "Ranks.AgreeOn2"],
     "verification/": CLAIMS,
     "verification/analysis/": ["analysis_tests"],
     "verification/input/": ["verification_tests"],
@@ -40,7 +40,7 @@ PLACES = {
     "verification/elements/": COMMANDS,
 }
 # Address space [bytes] and size of files of a test, since a fault may allocate or write without end.
-LIMITS = ["prlimit", f"--as={6 << 30}", f"--fsize={1 << 28}", "--core=0"]
+LIMITS = ["prlimit", f"--as={6 << 30}", f"--fsize={1 << 29}", "--core=0"]
 
 
 def tests_for(file):

@@ -67,6 +67,13 @@ TEST(RowPartition, SharesOutAllRows)
     std::iota(all.begin(), all.end(), 0);
     EXPECT_EQ(band.all_gather(own), all);
     EXPECT_FALSE(band.owns(0)) << "the margin is nobody's";
+
+    std::vector<std::size_t> field(sheet.n_places(), rows);
+    for (const std::size_t row : own)
+      field[sheet.index(row, 3)] = row;
+    band.gather(field, {1, rows});
+    for (std::size_t row = 1; band.is_first() && row < rows; ++row)
+      EXPECT_EQ(field[sheet.index(row, 3)], row);
   }
 }
 

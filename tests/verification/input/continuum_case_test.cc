@@ -50,6 +50,10 @@ TEST(ContinuumCase, ReadsEveryEdge)
   EXPECT_EQ(input.edges[2].displacement.x, "loading");
   EXPECT_EQ(input.edges[4].condition, EdgeCase::Condition::free);
   EXPECT_NEAR(input.edges[4].traction.field()(1, 0.1, 0.2), 2. * std::acos(-1.), 1e-15);
+  EXPECT_EQ(input.edges[4].traction.field()(0, 0.1, 0.2), 0.);
+  const auto loading = input.edges[2].displacement.field((Eigen::Matrix2d() << 2., 3., 5., 7.).finished());
+  EXPECT_NEAR(loading(0, 0.1, 0.2), 0.1 + 0.6, 1e-15);
+  EXPECT_NEAR(loading(1, 0.1, 0.2), 0.5 + 1.2, 1e-15);
 }
 
 // Overrides, and the entry that their one problem names; none: they are accepted.

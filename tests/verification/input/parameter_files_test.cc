@@ -2,6 +2,7 @@
 #include "tests/verification/input/sample_case.h"
 
 #include "tests/support/temporary_folder.h"
+#include "verification/input/case_text.h"
 
 #include <random>
 #include <sys/stat.h>
@@ -59,6 +60,22 @@ TEST(Parameters, UnreadableFilesAreOneProblem)
   EXPECT_NE(read_problem(""), "");
   std::ofstream(folder / "a.prm") << good << "set rows = 1\n";
   EXPECT_EQ(read_problem(folder / "a.prm").find((folder / "a.prm") + ":4: "), 0u);
+}
+
+// No character is cut, wherever the middle begins and ends; bytes that are none are shown.
+TEST(Parameters, LongTextLosesItsMiddleBetweenCharacters)
+{
+  std::string text;
+  for (int i = 0; i < 50; ++i)
+    text += "\xf0\x9f\xa6\x86";
+  for (int shift = 0; shift < 4; ++shift)
+  {
+    const std::string shown = printable(std::string(shift, 'a') + text + std::string(shift, 'b'));
+    EXPECT_EQ(shown.find("\\x"), std::string::npos) << shown;
+    EXPECT_LE(shown.size(), 85u);
+    EXPECT_GT(shown.size(), 78u);
+  }
+  EXPECT_EQ(printable(std::string(200, '\x80')).size(), 4u * (60 - 3 + 20 - 3) + 5u);
 }
 
 TEST(Parameters, HostileTextGivesShortPrintableProblems)
