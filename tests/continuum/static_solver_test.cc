@@ -176,6 +176,7 @@ TEST(StaticSolver, StartsAnewIfTheStateOfACoarserMeshFails)
   EXPECT_EQ(report.load_steps.front().load_factor, 1.);
   EXPECT_TRUE(report.load_steps.back().accepted);
   EXPECT_EQ(report.load_factor, 1.);
+  ASSERT_FALSE(load_factors.empty());
   EXPECT_EQ(load_factors.back(), 1.);
   EXPECT_NEAR(iterative.total_energy(), direct.total_energy(), 1e-12 * direct.total_energy());
 }
