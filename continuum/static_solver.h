@@ -34,10 +34,10 @@ struct StaticSettings
 ///
 /// Each load step starts with a predictor, the linear response to the increment of load and prescribed displacement,
 /// followed by Newton's method with backtracking on the energy. If systems are solved iteratively and the first load
-/// step is 1, the equilibrium on a coarser mesh, found likewise, replaces the predictor where it can. Only minima are
-/// wanted; the energy distinguishes them from saddle points, the norm of the residual does not. A Newton step that
-/// leads to det F <= 0 anywhere is halved. A load step that does not converge is halved; after one that converges fast
-/// the next one is larger.
+/// step is 1, the equilibrium on the mesh coarsened once, computed in the same way, replaces the predictor unless that
+/// fails. Only minima are wanted; the energy distinguishes them from saddle points, the norm of the residual does not.
+/// A Newton step that leads to det F <= 0 anywhere is halved. A load step that does not converge is halved; after one
+/// that converges fast the next one is larger.
 ///
 /// The residual converges to relative_tolerance times the reference force (norm of the nodal reactions and dead loads),
 /// or to the round-off of its own evaluation where that is larger (theory-continuum.md, eq. (C.19)).

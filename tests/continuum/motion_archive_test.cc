@@ -263,7 +263,7 @@ void expect_same(const End &found, const End &expected)
   }
 }
 
-// A motion is the same on one rank as on all, and each number of ranks goes on with what the other saved.
+// A motion is the same on one rank as on all, and each number of ranks continues from the checkpoint of the other.
 template <class M>
 void expect_same_on_any_number_of_ranks()
 {

@@ -78,6 +78,14 @@ inline unsigned int most_linear_iterations(const latcon::continuum::SolverReport
   return most;
 }
 
+/// Order q of r_(k+1) = C r_k^q from three residuals of Newton's method, beginning with the one of index `first`.
+inline double newton_order(const std::vector<latcon::continuum::NewtonIteration> &iterations, const std::size_t first)
+{
+  const auto logarithm = [&](const std::size_t k)
+  { return std::log(iterations[first + k + 1].residual / iterations[first + k].residual); };
+  return logarithm(1) / logarithm(0);
+}
+
 /// Returns a random second gradient G_iJK [1/m], symmetric in J and K, with entries up to 0.3 / `length` [m].
 inline Tensor<3, 2> random_gradient(std::mt19937 &generator, const double length)
 {
