@@ -1,7 +1,8 @@
-// Moves a sheet by a number of steps and prints what that took, as JSON: what whole programs are compared by.
+// Moves a sheet by a number of steps and prints what that took, as JSON. The instruction set is the best that the
+// variable LATCON_INSTRUCTION_SET of the environment allows.
 //
 // lattice_motion WORK SITES STEPS REPETITIONS THREADS STAGES [LAMMPS_DATA [POSITIONS]]
-//   WORK         everything, nearest or linear
+//   WORK         see sheets.h; formulas: root, quotient and law of six bonds per site alone, STEPS times
 //   SITES        number of sites, about
 //   STEPS        steps of a repetition; as many come before the first and are not timed
 //   STAGES       of a step of Runge-Kutta-Chebyshev; 0: velocity Verlet
@@ -9,15 +10,18 @@
 //   POSITIONS    file that gets x and y of all sites [m] after each of these times, a site a line in the order of
 //   LAMMPS
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
 #include <omp.h>
 #include <sys/resource.h>
 
+#include "tests/benchmarks/bond_formulas.h"
 #include "tests/benchmarks/lammps_data.h"
 #include "tests/benchmarks/sheets.h"
 
@@ -25,6 +29,56 @@ using namespace latcon;
 
 namespace
 {
+
+// Time of a number of calls [s].
+template <class Call>
+double seconds_of(std::size_t n, const Call &call)
+{
+  const auto start = std::chrono::steady_clock::now();
+  for (std::size_t i = 0; i < n; ++i)
+    call();
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  return taken.count();
+}
+
+// From and to arrays that fit into the first-level cache, by the instruction set of the steps: a lower bound of a step,
+// which also gathers, moves and monitors.
+nlohmann::ordered_json formulas(std::size_t steps, std::size_t repetitions)
+{
+  constexpr std::size_t sites = 64, n = 6 * sites;
+  const lattice::MooneyRivlinBond law(1e5, 1.5e5);
+  const lattice::kernels::BondConstants bond{sheets::spacing, 4e-4, 0.07};
+  std::vector<double> dx(n), dy(n), dvx(n), dvy(n), fx(n), fy(n);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const double angle = 0.1 * static_cast<double>(i);
+    dx[i] = 1.5e-3 * std::cos(angle);
+    dy[i] = 1.2e-3 * std::sin(angle);
+    dvx[i] = std::sin(3. * angle);
+    dvy[i] = std::cos(5. * angle);
+  }
+  double power = 0.;
+  const auto call = [&]
+  {
+    power =
+      lattice::kernels::bond_formulas(law, bond, n, dx.data(), dy.data(), dvx.data(), dvy.data(), fx.data(), fy.data());
+  };
+  seconds_of(steps, call);
+  std::vector<double> seconds;
+  for (std::size_t i = 0; i < repetitions; ++i)
+    seconds.push_back(seconds_of(steps, call));
+  double expected = 0.;
+  bool agrees = true;
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const auto one = lattice::kernels::bond_force(law, bond, 1., dx[i], dy[i], dvx[i], dvy[i]);
+    agrees = agrees && fx[i] == one.x && fy[i] == one.y;
+    expected += one.viscous_power;
+  }
+  if (!agrees || !(std::abs(power - expected) <= n * std::numeric_limits<double>::epsilon() * expected))
+    throw std::runtime_error("forces differ from those of single bonds");
+  return {{"sites", sites}, {"steps", steps}, {"seconds", seconds}};
+}
 
 double peak_memory()
 {
@@ -51,13 +105,10 @@ nlohmann::ordered_json moved(benchmarks::Motion &motion, std::size_t steps, std:
 {
   const auto advance = [&]
   {
-    const auto start = std::chrono::steady_clock::now();
-    for (std::size_t step = 0; step < steps; ++step)
-      motion.simulation.step();
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    const double taken = seconds_of(steps, [&] { motion.simulation.step(); });
     if (positions.is_open())
       write_positions(motion, positions);
-    return taken.count();
+    return taken;
   };
   advance();
   std::vector<double> seconds;
@@ -75,11 +126,23 @@ nlohmann::ordered_json moved(benchmarks::Motion &motion, std::size_t steps, std:
           {"peak_memory_bytes", peak_memory()}};
 }
 
+void print(nlohmann::ordered_json result)
+{
+  result["instruction_sets"] = lattice::kernels::instruction_sets();
+  std::cout << result.dump() << "\n";
+}
+
 int run(const std::vector<std::string> &arguments)
 {
   if (arguments.size() < 6)
     throw std::invalid_argument("lattice_motion WORK SITES STEPS REPETITIONS THREADS STAGES [LAMMPS_DATA [POSITIONS]]");
   omp_set_num_threads(std::stoi(arguments[4]));
+  const std::size_t steps = std::stoul(arguments[2]), repetitions = std::stoul(arguments[3]);
+  if (arguments[0] == "formulas")
+  {
+    print(formulas(steps, repetitions));
+    return 0;
+  }
   const benchmarks::Work work = benchmarks::work_of(arguments[0]);
   benchmarks::Motion motion(work, std::stod(arguments[1]), static_cast<unsigned int>(std::stoul(arguments[5])));
   if (arguments.size() > 6)
@@ -91,7 +154,7 @@ int run(const std::vector<std::string> &arguments)
   std::ofstream positions;
   if (arguments.size() > 7)
     positions.open(arguments[7]);
-  std::cout << moved(motion, std::stoul(arguments[2]), std::stoul(arguments[3]), positions).dump() << "\n";
+  print(moved(motion, steps, repetitions, positions));
   if (positions.is_open() && !positions.flush())
     throw std::runtime_error("cannot write " + arguments[7]);
   return 0;

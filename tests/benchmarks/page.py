@@ -40,12 +40,12 @@ def seconds_text(seconds):
 
 
 def kernel_table(part):
-    rows = [[row["work"], row["target"] or row["used"], number(row["sites"]), ns(best(row["seconds_per_site"])),
+    rows = [[row["work"], row["target"], number(row["sites"]), ns(best(row["seconds_per_site"])),
              per_cent(spread(row["seconds_per_site"]))] for row in part["rows"]]
     note = ("`everything`: Mooney-Rivlin bonds to twelve neighbours, dashpots, breaking and toughening; `nearest`: the same "
             "with six neighbours; `one_branch`, `three_branches`: `everything` with Maxwell branches in all bonds; "
-            "`linear`: only linear bonds to twelve neighbours; `reference`: only forces, bond by bond; `formulas`: root, quotient "
-            "and force law of six bonds per site alone, in the first-level cache.")
+            "`linear`: only linear bonds to twelve neighbours; `formulas`: root, quotient and force law of six bonds per site "
+            "alone, in the first-level cache.")
     return [Table("Kernel, one core", ["bonds", "instruction set", "sites", "ns per site and step", "spread"], rows, note)]
 
 
@@ -81,47 +81,32 @@ def sizes_table(part):
 
 
 def ranks_table(part):
+    one, two = map(best, part["seconds"])
+    return [Table("A sheet on two ranks", ["`latcon lattice`", "1 core [s]", "speed-up, 2 ranks", "largest spread"],
+                  [[part["what"], seconds_text(one), f"{one / two:.2f}", per_cent(max(map(spread, part["seconds"])))]],
+                  "Time of the motion, without setup.")]
+
+
+def crack_table(part):
     rows = []
-    for (command, case), times in summary.by_command(part).items():
-        one = best(times[1, 1])
-        rows.append([f"`latcon {command}`, {case}", seconds_text(one), f"{one / best(times[1, 2]):.2f}",
-                     f"{one / best(times[2, 1]):.2f}", per_cent(max(map(spread, times.values())))])
-    header = ["command", "1 core [s]", "speed-up, 2 threads", "speed-up, 2 ranks", "largest spread"]
-    return [Table("Whole programs on threads and ranks", header, rows, "Time of the motion, without setup.")]
-
-
-def fig1_table(part):
-    rows = [[row["command"], seconds_text(best(row["seconds"])), per_cent(spread(row["seconds"])),
-             ", ".join(f"{name} {seconds_text(value)}" for name, value in row["phases"].items())] for row in part["rows"]]
-    header = ["command", "[s]", "spread", "phases of the last run [s]"]
-    return [Table(f"The crack of {part['case']} on two threads", header, rows)]
-
-
-def integrator_table(part):
-    first = best(part["rows"][0]["seconds"])
-    rows = []
-    for row in part["rows"]:
-        crack = row["crack"]
-        evaluations = round(crack["end_time"] / row["time_step"] * row["stages"])
-        rows.append([row["integrator"], seconds_text(best(row["seconds"])), f"{first / best(row['seconds']):.2f}",
-                     f"{row['time_step']:.3g}", str(row["stages"]), number(evaluations), str(crack["pattern"]),
-                     *(summary.measured_text(crack, name) for name in ("speed_lagrangian", "wavelength", "amplitude"))])
-    header = ["integrator", "[s]", "gain", "time step [s]", "stages", "evaluations", "pattern", "speed [m/s]",
-              "wavelength [m]", "amplitude [m]"]
-    return [Table(f"Integrators, {part['case']}, one thread", header, rows)]
+    for name, row in part["rows"].items():
+        evaluations = round(row["end_time"] / row["time_step"] * row["stages"])
+        rows.append([name, seconds_text(best(row["seconds"])), per_cent(spread(row["seconds"])), seconds_text(best(row["motion"])),
+                     f"{row['time_step']:.3g}", number(evaluations),
+                     ", ".join(f"{phase} {seconds_text(value)}" for phase, value in row["phases"].items())])
+    header = ["run", "[s]", "spread", "motion [s]", "time step [s]", "evaluations", "phases of the last run [s]"]
+    return [Table(f"The crack of {part['case']}", header, rows)]
 
 
 def fem_table(part):
     rows = []
     for problem in part["problems"]:
-        ours, two, theirs = problem["latcon"], problem.get("latcon_2_ranks"), problem.get("dolfinx")
+        ours, two, theirs = (problem[name] for name in ("latcon", "latcon_2_ranks", "dolfinx"))
         phases = [seconds_text(ours[name]) for name in ("assembly", "preconditioner", "linear_solve")]
         rows.append([number(problem["unknowns"]), str(problem["degree"]), seconds_text(ours["seconds"]), " + ".join(phases),
-                     f"{ours['seconds'] / two['seconds']:.2f}" if two else "-",
-                     seconds_text(theirs["seconds"]) if theirs else "-",
-                     f"{problem['ratio']:.1f}" if theirs else "-", " ".join(map(str, ours["krylov_iterations"])),
-                     f"{ours['bytes_per_unknown']:.0f}", f"{theirs['bytes_per_unknown']:.0f}" if theirs else "-",
-                     f"{problem['energy_difference']:.0e}" if theirs else "-"])
+                     f"{ours['seconds'] / two['seconds']:.2f}", seconds_text(theirs["seconds"]), f"{problem['ratio']:.1f}",
+                     " ".join(map(str, ours["krylov_iterations"])), f"{ours['bytes_per_unknown']:.0f}",
+                     f"{theirs['bytes_per_unknown']:.0f}", f"{problem['energy_difference']:.0e}"])
     header = ["unknowns", "degree", "latcon [s]", "assembly + preconditioner + solution [s]", "speed-up, 2 ranks",
               "dolfinx [s]", "dolfinx / latcon", "Krylov iterations", "bytes per unknown", "dolfinx's", "energies differ"]
     return [Table("Finite elements against dolfinx", header, rows)]
@@ -158,8 +143,8 @@ def model_tables(parts):
     return [Table("Predicted efficiency on many ranks", header, rows, note)]
 
 
-TABLES = {"kernel": kernel_table, "lammps": lammps_table, "sizes": sizes_table, "ranks": ranks_table, "fig1": fig1_table,
-          "integrator": integrator_table, "fem": fem_table, "messages": messages_table}
+TABLES = {"kernel": kernel_table, "lammps": lammps_table, "sizes": sizes_table, "ranks": ranks_table,
+          "crack": crack_table, "fem": fem_table, "messages": messages_table}
 
 
 def tables(document):

@@ -43,43 +43,26 @@ class Plan:
         return max(5, round((1e6 if self.quick else 2e7) / sites))
 
 
-def motion(plan, work, sites, steps, threads, *data, stages=0):
+def motion(plan, work, sites, steps, threads, *data, stages=0, instruction_set=None):
     """One repetition of a motion of the sheet by lattice_motion."""
-    return run_json([plan.program("lattice_motion"), work, sites, steps, 1, threads, stages, *data])
+    return run_json([plan.program("lattice_motion"), work, sites, steps, 1, threads, stages, *data],
+                    environment=instruction_set and dict(ENVIRONMENT, LATCON_INSTRUCTION_SET=instruction_set))
 
 
 def kernel(plan):
-    """Steps on one thread for each kind of bonds and instruction set, and a force evaluation bond by bond."""
-    program = plan.program("lattice_kernel")
-    filters = {"": "^(formulas|reference/.*|step/.*/(10000|25000))$" if plan.quick else "."}
-    for target in run([program, "--targets"]).split():
-        filters[target] = "^(formulas|step/everything/25000)$" if plan.quick else "^(formulas|step/.*/(25000|1000000))$"
+    """Steps on one thread for each kind of bonds and instruction set, and the formulas of six bonds per site alone."""
+    sets = motion(plan, "formulas", 0, 1, 1)["instruction_sets"]
+    sizes = {"formulas": (64,), **dict.fromkeys(("everything", "nearest", "one_branch", "three_branches", "linear"),
+                                                (1e4, 2.5e4) if plan.quick else (1e4, 2.5e4, 1e5, 1e6))}
     rows = []
-    for target, expression in filters.items():
-        path = plan.folder("kernel") / "kernel.json"
-        run([program, *([f"--target={target}"] if target else []), f"--benchmark_filter={expression}",
-             f"--benchmark_repetitions={plan.rounds}", "--benchmark_enable_random_interleaving=true",
-             f"--benchmark_min_time={0.02 if plan.quick else 0.3}", f"--benchmark_out={path}",
-             "--benchmark_out_format=json"])
-        rows += kernel_rows(json.loads(path.read_text(encoding="utf-8")), target)
-    order = ("formulas", "everything", "nearest", "one_branch", "three_branches", "linear", "reference")
-    return {"rows": sorted(rows, key=lambda row: (order.index(row["work"]), row["target"], row["sites"]))}
-
-
-def kernel_rows(document, target):
-    """Rows of Google Benchmark's output, one per kind of bonds and size, with repetitions in seconds per site and step.
-    @param target requested instruction set; "" for the one chosen by the program"""
-    rows = {}
-    for entry in document["benchmarks"]:
-        if entry["run_type"] != "iteration":
-            continue
-        if entry.get("error_occurred"):
-            raise Failed(f"{entry['name']}: {entry['error_message']}")
-        row = rows.setdefault(entry["run_name"], {
-            "work": entry["run_name"].rsplit("/", 1)[0].removeprefix("step/"), "sites": round(entry["sites"]),
-            "target": target, "used": document["context"].get("instruction_set", ""), "seconds_per_site": []})
-        row["seconds_per_site"].append(entry["s/site"])
-    return list(rows.values())
+    for work, all_sizes in sizes.items():
+        variants = {(name, sites): lambda name=name, sites=sites: motion(plan, work, sites, plan.steps(sites), 1, instruction_set=name)
+                    for name in sets for sites in all_sizes if name == sets[0] or sites in (64, 2.5e4, 1e6)}
+        for (name, sites), results in interleaved(variants, plan.rounds).items():
+            size, steps = results[0]["sites"], plan.steps(sites)
+            rows.append({"work": work, "target": name, "is_best": name == sets[0], "sites": size,
+                         "seconds_per_site": [result["seconds"][0] / (size * steps) for result in results]})
+    return {"rows": rows}
 
 
 def against_lammps(plan):
@@ -142,80 +125,48 @@ def latcon(plan, command, case, folder, *arguments, ranks=1, cache=None):
     return json.loads((folder / "run.json").read_text(encoding="utf-8"))
 
 
-def moving_sheet(plan):
-    """Arguments of `latcon lattice` for a moving sheet, and its description."""
+def ranks(plan):
+    """A sheet that latcon moves, on one core and on two ranks."""
+    folder = plan.folder("ranks")
     side, steps = (100, 4) if plan.quick else (1000, 20)
     entries = {"Sheet/length": f"{0.625 * side} mm", "Sheet/height": f"{0.625 * 0.866 * side} mm",
-               "Lattice/solution": "motion", "Time/integrator": "runge-kutta-chebyshev", "Time/step": "3e-6 s", "Time/end": f"{3e-6 * steps} s",
-               "Output/frame interval": "0 s", "Output/energy interval": "1000000"}
-    return [word for entry in entries.items() for word in ("--set", "=".join(entry))], f"{steps} steps of {side**2:,} sites"
-
-
-def ranks(plan):
-    """latcon on one core, on two threads and on two ranks: a moving sheet and a crack."""
-    folder = plan.folder("ranks")
-    sheet, what = moving_sheet(plan)
-    crack = "quick.prm" if plan.quick else "fig1.prm"
-    rows = []
-    for command, case, name, phase, arguments in (
-            ("lattice", "quick.prm", what, "motion", sheet),
-            ("fracture", crack, crack, "fracture", ["--skip-verification", "--no-report"])):
-        def once(n_ranks, threads):
-            info = latcon(plan, command, CASES / case, folder / "run", *arguments, "--threads", threads, ranks=n_ranks)
-            return info["wall_time_s"][phase]
-
-        variants = {key: lambda key=key: once(*key) for key in ((1, 1), (1, 2), (2, 1))}
-        for (n_ranks, threads), seconds in interleaved(variants, plan.rounds).items():
-            rows.append({"command": command, "case": name, "ranks": n_ranks, "threads": threads, "seconds": seconds})
+               "Lattice/solution": "motion", "Time/integrator": "runge-kutta-chebyshev", "Time/step": "3e-6 s",
+               "Time/end": f"{3e-6 * steps} s", "Output/frame interval": "0 s", "Output/energy interval": "1000000"}
+    words = [word for entry in entries.items() for word in ("--set", "=".join(entry))]
+    variants = {n: lambda n=n: latcon(plan, "lattice", CASES / "quick.prm", folder / "run", *words, "--threads", 1,
+                                      ranks=n)["wall_time_s"]["motion"] for n in (1, 2)}
+    seconds = interleaved(variants, plan.rounds)
     shutil.rmtree(folder)
-    return {"rows": rows}
+    return {"what": f"{steps} steps of {side**2:,} sites", "seconds": [seconds[n] for n in variants]}
 
 
-def fig1(plan):
-    """The crack of Fig. 1 from the command line: alone, with the preceding claims, and with its report."""
-    folder = plan.folder("fig1")
+def crack(plan):
+    """The crack of Fig. 1 from the command line: with both integrators, on threads and ranks, and with what comes before and after."""
+    folder = plan.folder("crack")
     case = CASES / ("quick.prm" if plan.quick else "fig1.prm")
-    words = {"crack alone": ["--skip-verification", "--no-report"],
-             "crack alone, Runge-Kutta-Chebyshev": ["--skip-verification", "--no-report", *choice("runge-kutta-chebyshev")]}
+    verlet, chebyshev = (("--set", f"Time/integrator={name}") for name in ("velocity-verlet", "runge-kutta-chebyshev"))
+    alone = ["--skip-verification", "--no-report"]
+    # Arguments, ranks and threads.
+    runs = {"velocity Verlet": ([*alone, *verlet], 1, 1), "velocity Verlet, 2 threads": ([*alone, *verlet], 1, 2),
+            "velocity Verlet, 2 ranks": ([*alone, *verlet], 2, 1), "Runge-Kutta-Chebyshev": ([*alone, *chebyshev], 1, 1),
+            "Runge-Kutta-Chebyshev, 2 threads": ([*alone, *chebyshev], 1, 2)}
     if not plan.quick:
-        words.update({"with the claims": ["--no-report"], "with the claims and the report": []})
+        runs |= {"with the claims, 2 threads": (["--no-report", *verlet], 1, 2), "with claims and report, 2 threads": (verlet, 1, 2)}
 
     def once(name):
+        words, n_ranks, threads = runs[name]
         shutil.rmtree(folder / "cache", ignore_errors=True)  # cached verdicts would be reused
         start = time.perf_counter()
-        info = latcon(plan, "fracture", case, folder / "run", "--threads", 2, *words[name], cache=folder / "cache")
-        return {"seconds": time.perf_counter() - start, "phases": info["wall_time_s"]}
+        info = latcon(plan, "fracture", case, folder / "run", *words, "--threads", threads, ranks=n_ranks, cache=folder / "cache")
+        return {"seconds": time.perf_counter() - start, "phases": info["wall_time_s"],
+                "end_time": json.loads((folder / "run" / "crack.json").read_text(encoding="utf-8"))["end_time"]}
 
-    results = interleaved({name: lambda name=name: once(name) for name in words}, plan.rounds)
-    return {"case": case.name, "rows": [{"command": name, "seconds": [run["seconds"] for run in runs], "phases": runs[-1]["phases"]}
-                                        for name, runs in results.items()]}
-
-
-def integrator(plan):
-    """The crack of Fig. 1 with velocity Verlet and with the stabilised integrator, on one thread."""
-    case = CASES / ("quick.prm" if plan.quick else "fig1.prm")
-    folder = plan.folder("integrator")
-    names = ("velocity-verlet", "runge-kutta-chebyshev")
-    try:
-        stepping = {name: time_stepping(run([plan.program("latcon"), "fracture", case, "--dry-run", *choice(name)]))
-                    for name in names}
-    except Failed as error:
-        raise Skipped("latcon has no entry `Time/integrator`") from error
-
-    def once(name):
-        info = latcon(plan, "fracture", case, folder, "--skip-verification", "--no-report", "--threads", "1", *choice(name))
-        crack = json.loads((folder / "crack.json").read_text(encoding="utf-8"))
-        return {"seconds": info["wall_time_s"]["fracture"],
-                "crack": {key: value for key, value in crack.items() if not isinstance(value, (list, dict))}}
-
-    results = interleaved({name: lambda name=name: once(name) for name in names}, plan.rounds)
-    return {"case": case.name,
-            "rows": [{"integrator": name, **stepping[name], "crack": runs[0]["crack"],
-                      "seconds": [r["seconds"] for r in runs]} for name, runs in results.items()]}
-
-
-def choice(name):
-    return "--set", f"Time/integrator={name}"
+    rows = {}
+    for name, results in interleaved({name: lambda name=name: once(name) for name in runs}, plan.rounds).items():
+        rows[name] = {"seconds": [result["seconds"] for result in results], "phases": results[-1]["phases"],
+                      "motion": [result["phases"]["fracture"] for result in results], "end_time": results[0]["end_time"],
+                      **time_stepping(run([plan.program("latcon"), "fracture", case, "--dry-run", *runs[name][0]]))}
+    return {"case": case.name, "rows": rows}
 
 
 def time_stepping(text):
@@ -243,5 +194,5 @@ def messages(plan):
             "allreduce_seconds": [result["allreduce_seconds"] for result in results]}
 
 
-PARTS = {"kernel": kernel, "lammps": against_lammps, "sizes": sizes, "ranks": ranks, "fig1": fig1,
-         "integrator": integrator, "fem": fem, "messages": messages}
+PARTS = {"kernel": kernel, "lammps": against_lammps, "sizes": sizes, "ranks": ranks, "crack": crack,
+         "fem": fem, "messages": messages}

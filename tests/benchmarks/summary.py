@@ -44,31 +44,14 @@ def lammps_row(row):
             "everything": best(row["everything_seconds"]) / work}
 
 
-def by_command(part):
-    """(command, case) -> (ranks, threads) -> seconds."""
-    result = {}
-    for row in part["rows"]:
-        result.setdefault((row["command"], row["case"]), {})[row["ranks"], row["threads"]] = row["seconds"]
-    return result
-
-
-def measured_text(crack, name):
-    """A quantity of crack.json with its uncertainty, if it was measured."""
-    return "-" if crack.get(name) is None else f"{crack[name]:.4g} ± {crack[name + '_uncertainty']:.1g}"
-
-
 # Rows of the targets: quantity, value, aim, and whether the value is to be `most` or `least` the aim. Each function takes all
 # parts that were measured, and has no rows if one that it needs is missing.
 
 
 def kernel_rows(parts):
-    rows = parts["kernel"]["rows"]
-    alone = [best(row["seconds_per_site"]) for row in rows if row["work"] == "formulas" and not row["target"]]
-    if not alone:
-        return []
-    return [(f"step with everything over root, quotient and force law alone, {row['sites']:,} sites",
-             best(row["seconds_per_site"]) / alone[0], 2., "most")
-            for row in rows if row["work"] == "everything" and not row["target"]]
+    seconds = {(row["work"], row["sites"]): best(row["seconds_per_site"]) for row in parts["kernel"]["rows"] if row["is_best"]}
+    return [(f"step with everything over root, quotient and force law alone, {sites:,} sites",
+             value / seconds["formulas", 64], 2., "most") for (work, sites), value in seconds.items() if work == "everything"]
 
 
 def sizes_rows(parts):
@@ -81,57 +64,50 @@ def sizes_rows(parts):
 
 
 def ranks_rows(parts):
-    aims = {"lattice": 1.8, "fracture": 1.7}
-    return [(f"speed-up on 2 {what}, latcon {command}, {case}", best(times[1, 1]) / best(times[key]), aims[command], "least")
-            for (command, case), times in by_command(parts["ranks"]).items()
-            for what, key in (("threads", (1, 2)), ("ranks", (2, 1)))]
-
-
-def fig1_rows(parts):
-    aims = {"crack alone": 10., "crack alone, Runge-Kutta-Chebyshev": 6.}
-    return [(f"{parts['fig1']['case']}, {row['command']} [s]", best(row["seconds"]), aims[row["command"]], "most")
-            for row in parts["fig1"]["rows"] if row["command"] in aims]
-
-
-def integrator_rows(parts):
-    plain, stabilised = (best(row["seconds"]) for row in parts["integrator"]["rows"])
-    return [("velocity Verlet over the stabilised integrator", plain / stabilised, 1., "least")]
+    one, two = map(best, parts["ranks"]["seconds"])
+    return [(f"speed-up on 2 ranks, latcon lattice, {parts['ranks']['what']}", one / two, 1.8, "least")]
 
 
 def time_to_solution(parts):
-    """Time of LAMMPS over that of latcon with Runge-Kutta-Chebyshev for the crack of the part `integrator`, if LAMMPS had its bonds
-    at the price of linear ones: its time per site and step, in the sheet of the part `lammps` of nearest size, times the sites and
-    the steps of velocity Verlet."""
-    plain, stabilised = parts["integrator"]["rows"]
+    """Time of LAMMPS over that of latcon with Runge-Kutta-Chebyshev for the crack of the part `crack`, if LAMMPS had its bonds at
+    the price of linear ones: its time per site and step, in the sheet of the part `lammps` of nearest size, times the sites and the
+    steps of velocity Verlet."""
+    plain, stabilised = (parts["crack"]["rows"][name] for name in ("velocity Verlet", "Runge-Kutta-Chebyshev"))
     sheet = min(parts["lammps"]["rows"], key=lambda row: abs(row["sites"] - plain["sites"]))
-    steps = plain["crack"]["end_time"] / plain["time_step"]
-    return lammps_row(sheet)["lammps"] * plain["sites"] * steps / best(stabilised["seconds"])
+    steps = plain["end_time"] / plain["time_step"]
+    return lammps_row(sheet)["lammps"] * plain["sites"] * steps / best(stabilised["motion"])
 
 
-def solution_rows(parts):
-    if "lammps" not in parts or not parts["integrator"]["rows"][0].get("sites"):
-        return []
-    return [(f"time to solution, LAMMPS-like stepping over latcon, {parts['integrator']['case']}", time_to_solution(parts), 12., "least")]
+def crack_rows(parts):
+    case, rows = parts["crack"]["case"], parts["crack"]["rows"]
+    motion = {name: best(row["motion"]) for name, row in rows.items()}
+    result = [(f"speed-up on 2 {what}, {case}", motion["velocity Verlet"] / motion[f"velocity Verlet, 2 {what}"], 1.7, "least")
+              for what in ("threads", "ranks")]
+    result += [(f"{case}, {name}, 2 threads [s]", best(rows[f"{name}, 2 threads"]["seconds"]), aim, "most")
+               for name, aim in (("velocity Verlet", 10.), ("Runge-Kutta-Chebyshev", 6.))]
+    result.append((f"velocity Verlet over Runge-Kutta-Chebyshev, {case}",
+                   motion["velocity Verlet"] / motion["Runge-Kutta-Chebyshev"], 1., "least"))
+    if "lammps" in parts:
+        result.append((f"time to solution, LAMMPS-like stepping over latcon, {case}", time_to_solution(parts), 12., "least"))
+    return result
 
 
 def fem_rows(parts):
     rows = []
     for problem in parts["fem"]["problems"]:
-        if problem.get("dolfinx"):
-            rows.append((f"dolfinx over latcon, {problem['unknowns']:,} unknowns", problem["ratio"],
-                         3. if problem["unknowns"] < 2e5 else 4., "least"))
+        rows.append((f"dolfinx over latcon, {problem['unknowns']:,} unknowns", problem["ratio"],
+                     3. if problem["unknowns"] < 2e5 else 4., "least"))
         rows.append((f"bytes per unknown, {problem['unknowns']:,} unknowns", problem["latcon"]["bytes_per_unknown"], 1800., "most"))
     return rows
 
 
-ROWS = (("kernel", kernel_rows), ("sizes", sizes_rows), ("ranks", ranks_rows), ("fig1", fig1_rows),
-        ("integrator", integrator_rows), ("integrator", solution_rows), ("fem", fem_rows))
+ROWS = {"kernel": kernel_rows, "sizes": sizes_rows, "ranks": ranks_rows, "crack": crack_rows, "fem": fem_rows}
 
 
 def rows(parts):
     """Rows (quantity, measured, target, "" or "missed") of the measured quantities. A number that is none misses its target."""
     result = []
-    for name, of_part in ROWS:
+    for name, of_part in ROWS.items():
         for quantity, value, aim, sense in of_part(parts) if name in parts else ():
             reached = value <= aim if sense == "most" else value >= aim
             sign = "<=" if sense == "most" else ">="

@@ -33,7 +33,7 @@ ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROO
                    OMP_NUM_THREADS="1", UBSAN_OPTIONS="halt_on_error=1:print_stacktrace=1")
 # Minutes each under valgrind, or without optimisation.
 SLOW = "--gtest_filter=-*BitsDoNotDependOn*:CrackMeasurement.*:EnergyBalance.*:Cutout.Relaxed*:RungeKuttaChebyshev.Is*:" \
-       "RungeKuttaChebyshev/*:TimeStepLimits.*:Fracture/*:EndLoads/*:LinkCells.Show*:CorrelatedNoise.*"
+       "RungeKuttaChebyshev/*:TimeStepLimits.*:Fracture/*:EndLoads/*:CorrelatedNoise.*"
 # Programs of tests that do not start MPI.
 SERIAL = ("lattice/lattice_tests", "verification/analysis_tests")
 # MPI keeps memory until the process ends, some of it in unloaded modules, which no suppression can name.
@@ -96,8 +96,7 @@ def tsan():
     fixed = ["setarch", "--addr-no-randomize"]  # where memory is placed at random over a wide range, ThreadSanitizer cannot start
     if platform.machine() == "x86_64":
         how["LATCON_INSTRUCTION_SET"] = "SSSE3"  # loads and stores of more than 16 bytes are not instrumented
-    return [*tests("clang", SERIAL, before=fixed, **how), ("motions", [*fixed, program("clang", "tests/arm64/motion_bits")], how),
-            crack("clang", before=fixed, **how)]
+    return [*tests("clang", SERIAL, before=fixed, **how), crack("clang", before=fixed, **how)]
 
 
 def valgrind():
@@ -109,7 +108,7 @@ def valgrind():
 PARTS = {"lto": (lto, "lto"), "clang": (list, "clang"), "cppcheck": (cppcheck,),
          "tidy": (tidy, "clang", "verification/latcon_git_commit", *(f"{folder}/CMakeFiles/latcon_{folder}.dir/cmake_pch.hxx.pch"
                                                                      for folder in ("continuum", "verification"))),
-         "asan": (asan, "debug"), "tsan": (tsan, "clang", "lattice_tests", "analysis_tests", "motion_bits", "latcon"),
+         "asan": (asan, "debug"), "tsan": (tsan, "clang", "lattice_tests", "analysis_tests", "latcon"),
          "valgrind": (valgrind, "release", "lattice_tests", "analysis_tests")}
 
 

@@ -28,7 +28,10 @@ TEST(BondMemory, ClosesTheEnergyBalanceThroughFracture)
                                          {0u, sheets::rubber_with_memory(0.)},
                                          {0u, sheets::plastic_rubber(0.)}})
   {
-    const auto simulation = running_crack::start(sheet, material, running_crack::stepping(sheet, material, stages));
+    running_crack::Choice choice;
+    choice.material = material;
+    choice.stepping = running_crack::stepping(sheet, material, stages);
+    const auto simulation = running_crack::start(sheet, choice);
     for (int step = 0; step < (stages > 0 ? 700 : 2000); ++step)
       simulation->step();
     const EnergyBalance e = simulation->energies();

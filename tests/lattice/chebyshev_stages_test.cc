@@ -95,39 +95,9 @@ TEST(ChebyshevStages, HoldAllWavesOfTheLattice)
     }
 }
 
-// All modes that (L.22) and (L.23) admit, by their extremes: bonds at kappa h = 1 and below it, contacts at the bound
-// for their damping, the real axis used up or not.
-// theory.md, eqs. (L.23) and (L.25).
-TEST(ChebyshevStages, AreStableForBondsAndContactsTogether)
-{
-  for (unsigned int s = 2; s <= most_stages; ++s)
-  {
-    const ChebyshevStages stages(s);
-    const double most_damping = 0.5 * stages.real_limit(); // h gamma / 2
-    for (const double kappa : {0., 0.5, 1.})
-      for (int i = 0; i <= 40; ++i)
-        for (int j = 0; j <= 40; ++j)
-        {
-          const double rho = 4. * i / 40., of_bonds = most_damping * j / 40.; // (h omega)^2 of contacts, a
-          const double e = rho * rho / 8., re = -of_bonds - e, square = 2. * kappa * of_bonds + rho;
-          if (-re > most_damping || square < re * re)
-            continue;
-          const Complex z(re, std::sqrt(square - re * re));
-          EXPECT_LE(std::abs(stages.amplification(z)), 1. + roundoff) << s << ' ' << z;
-        }
-    // The bound is sharp for two stages and slow modes, and contacts without dashpots have none.
-    const double rho = 0.01, less = 0.9 * rho * rho / 8.;
-    if (s == 2)
-    {
-      EXPECT_GT(std::abs(stages.amplification(Complex(-less, std::sqrt(rho - less * less)))), 1. + 1e-6);
-    }
-    for (const double y : {0.01, 0.1, 0.5})
-      EXPECT_GT(std::abs(stages.amplification(Complex(0., y))), 1. + 0.02 * std::pow(y, 4)) << s;
-  }
-}
-
 // The automatic step with contacts from far softer to far stiffer than bonds, and far less to far more viscous: what
 // two free sites that touch do, six around one, and a lattice of nothing but contacts.
+// theory.md, eqs. (L.23) and (L.25).
 TEST(ChebyshevStages, AreStableWithContactsOfAnyStiffnessAndViscosity)
 {
   const TriangularLattice sheet = sheets::square(12);

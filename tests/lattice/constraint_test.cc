@@ -112,35 +112,4 @@ TEST(Constraint, IsGivenOnce)
   EXPECT_THROW(piecewise_linear({0., 1.}, {start}), std::invalid_argument);
 }
 
-// A steady force on each site of a free sheet; its work is boundary work.
-class Pull : public SiteForces
-{
-public:
-  explicit Pull(std::vector<std::size_t> sites) : sites_(std::move(sites)) {}
-  const std::vector<SiteForce> &evaluate(State &, Field &, Field &) override
-  {
-    forces_.clear();
-    for (const std::size_t place : sites_)
-      forces_.push_back({place, Eigen::Vector2d(3., 1.)});
-    return forces_;
-  }
-
-private:
-  std::vector<std::size_t> sites_;
-};
-
-TEST(Simulation, CountsTheWorkOfAddedForces)
-{
-  const TriangularLattice sheet = sheets::square(8);
-  const Material material = sheets::rubber();
-  Simulation simulation(sheet, material, homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free),
-                        2.5e-8);
-  simulation.add(std::make_unique<Pull>(sites_at(sheet, material, Edges::held)));
-  for (int step = 0; step < 400; ++step)
-    simulation.step();
-  const EnergyBalance e = simulation.energies();
-  EXPECT_GT(e.boundary_work, 0.);
-  EXPECT_LT(std::abs(e.imbalance()), 1e-5 * e.boundary_work);
-}
-
 } // namespace constraint_test

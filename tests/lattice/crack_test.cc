@@ -2,15 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <utility>
 
 #include <gtest/gtest.h>
 
-#include "lattice/fracture.h"
-#include "lattice/simulation.h"
-#include "lattice/time_step.h"
-#include "tests/lattice/sheets.h"
+#include "tests/lattice/running_crack.h"
 
 namespace crack_test
 {
@@ -19,31 +15,10 @@ using namespace latcon;
 
 using namespace lattice;
 
-struct Crack
+TriangularLattice sheet_of(Orientation orientation)
 {
-  Crack(Orientation orientation, Material bonds, double time_step_factor = 0.5,
-        const Toughening &toughening = BehindTipToughening{8. * sheets::spacing, 1000.}, double noise = 0.)
-    : sheet(sheets::spacing, 60. * sheets::spacing, 40. * sheets::spacing, orientation), material(std::move(bonds))
-  {
-    const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
-    State state = homogeneous_state(sheet, material, F, Edges::held);
-    add_noise(state, sheet, noise * sheets::spacing, 1);
-    simulation = std::make_unique<Simulation>(sheet, material, std::move(state),
-                                              time_step_factor * time_step_limits(sheet, material, 0.3).combined,
-                                              Fracture(sheet, material, 3.05, toughening, F));
-    // A slit on the line y = 0: along a row, or one site of every second row.
-    std::vector<std::size_t> seed;
-    if (orientation == Orientation::rows_along_crack)
-      seed = sheets::middle_row(sheet, 6, 8);
-    else
-      for (std::size_t row = 6; row < 14; row += 2)
-        seed.push_back(sheet.index(row, sheet.columns() / 2));
-    simulation->cut(seed);
-  }
-  TriangularLattice sheet;
-  Material material;
-  std::unique_ptr<Simulation> simulation;
-};
+  return {sheets::spacing, 60. * sheets::spacing, 40. * sheets::spacing, orientation};
+}
 
 class SymmetricSeed : public testing::TestWithParam<std::pair<Orientation, Material>>
 {
@@ -58,11 +33,17 @@ INSTANTIATE_TEST_SUITE_P(Fracture, SymmetricSeed,
 TEST_P(SymmetricSeed, StaysSymmetricToTheLastBitAndItsLedgerCloses)
 {
   const auto &[orientation, material] = GetParam();
-  Crack crack(orientation, material);
+  const TriangularLattice sheet = sheet_of(orientation);
+  running_crack::Choice choice;
+  choice.material = material;
+  choice.stepping = 0.5 * time_step_limits(sheet, material, 0.3).combined;
+  choice.toughening = BehindTipToughening{8. * sheets::spacing, 1000.};
+  choice.noise = 0.;
+  const auto crack = running_crack::start(sheet, choice);
   std::map<std::size_t, std::size_t> broken; // by shell
   double lowest = 0., highest = 0.;
   for (int step = 0; step < 6000; ++step)
-    for (const BrokenBond &bond : crack.simulation->step())
+    for (const BrokenBond &bond : crack->step())
     {
       ++broken[shell_of(bond.kind)];
       lowest = std::min(lowest, bond.midpoint.y());
@@ -72,13 +53,13 @@ TEST_P(SymmetricSeed, StaysSymmetricToTheLastBitAndItsLedgerCloses)
   for (const auto &[shell, n] : broken)
     EXPECT_GT(n, 40u) << shell;
   EXPECT_EQ(lowest, -highest);
-  for (const std::size_t place : sheets::sites(crack.sheet))
+  for (const std::size_t place : sheets::sites(sheet))
   {
-    const std::size_t mirror = sheets::mirrored(crack.sheet, place);
-    ASSERT_EQ(crack.simulation->state().x[place], crack.simulation->state().x[mirror]);
-    ASSERT_EQ(crack.simulation->state().y[place], -crack.simulation->state().y[mirror]);
+    const std::size_t mirror = sheets::mirrored(sheet, place);
+    ASSERT_EQ(crack->state().x[place], crack->state().x[mirror]);
+    ASSERT_EQ(crack->state().y[place], -crack->state().y[mirror]);
   }
-  const EnergyBalance e = crack.simulation->energies();
+  const EnergyBalance e = crack->energies();
   EXPECT_GT(e.viscous, 1e-3 * e.initial);
   EXPECT_GT(e.broken, 1e-3 * e.initial);
   EXPECT_LT(std::abs(e.imbalance()), 1e-6 * e.initial);
@@ -87,17 +68,20 @@ TEST_P(SymmetricSeed, StaysSymmetricToTheLastBitAndItsLedgerCloses)
 // Flanks and debris touch in a crack without toughening.
 TEST(Contact, LedgerClosesThroughACrackWhoseDebrisTouches)
 {
-  Crack crack(Orientation::rows_along_crack, sheets::rubber(), 0.9, NoToughening{}, 0.05);
-  Simulation &simulation = *crack.simulation;
-  simulation.enable_contact(contact_like_nearest_bond(crack.sheet, crack.material, sheets::spacing, 1., 1.));
+  const TriangularLattice sheet = sheet_of(Orientation::rows_along_crack);
+  running_crack::Choice choice;
+  choice.stepping = 0.9 * time_step_limits(sheet, choice.material, 0.3).combined;
+  choice.toughening = NoToughening{};
+  choice.contact = choice.contact_strength = 1.;
+  const auto crack = running_crack::start(sheet, choice);
   std::size_t most = 0;
   for (int step = 0; step < 6000; ++step)
   {
-    simulation.step();
-    most = std::max(most, simulation.contact()->n_touching());
+    crack->step();
+    most = std::max(most, crack->contact()->n_touching());
   }
   EXPECT_GT(most, 5u);
-  const EnergyBalance e = simulation.energies();
+  const EnergyBalance e = crack->energies();
   EXPECT_GT(e.contact, 1e-4 * e.initial);
   EXPECT_LT(std::abs(e.imbalance()), 1e-4 * e.initial);
 }

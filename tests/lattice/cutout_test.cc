@@ -170,14 +170,4 @@ TEST(Seed, LooksOnlyWhereItIs)
   }
 }
 
-TEST(Seed, RefusesWhatDoesNotFit)
-{
-  const TriangularLattice sheet = along();
-  EXPECT_THROW(seed_sites(sheet, SeedLine{18., 0., 4}), std::invalid_argument);
-  EXPECT_THROW(seed_sites(sheet, SeedLine{3., 9., 4}), std::invalid_argument);
-  EXPECT_THROW(seed_sites(sheet, SeedSlit{4., 0.3, 2., 0.1}), std::invalid_argument); // between two rows
-  EXPECT_THROW(seed_sites(sheet, SeedSlit{4., 0., 2., 16.}), std::invalid_argument);  // into the held rows
-  EXPECT_THROW(seed_sites(sheet, SeedSlit{30., 0., 2., 2.}), std::invalid_argument);
-}
-
 } // namespace cutout_test

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lattice/simulation.h"
-#include "tests/lattice/sheets.h"
+#include "tests/lattice/running_crack.h"
 
 namespace fracture_test
 {
@@ -97,36 +96,6 @@ TEST(Fracture, BreaksWhatIsBeyondTheLimitForGood)
   EXPECT_TRUE(sheet.apply().empty());
   EXPECT_EQ(sheet.n_bonds(), 17u);
   EXPECT_EQ(sheet.limit(0, 0, 0), 0.);
-}
-
-// The corner's bond along the row is at 1.4 of 1.5 and grows by 1 m/s; the one across stays whole.
-TEST(Fracture, LooksAheadToTheMomentOfBreaking)
-{
-  TenSites sheet{NoToughening{}};
-  const std::size_t corner = sheet.sheet.index(0, 0);
-  sheet.state.x[corner] -= 0.4;
-  sheet.state.vx[corner] = -1.;
-  EXPECT_TRUE(sheet.apply().empty());
-  sheet.fracture.set_lookahead(0.09);
-  EXPECT_TRUE(sheet.apply().empty());
-  sheet.fracture.set_lookahead(0.11);
-  const std::vector<BrokenBond> broken = sheet.apply();
-  ASSERT_EQ(broken.size(), 1u);
-  EXPECT_EQ(broken[0].near, corner);
-  EXPECT_NEAR(broken[0].stretch, 1.4, 1e-12); // where it is, as its energy
-}
-
-// A bond at its length that shortens by 1 m/s is to toughen below 0.8.
-TEST(Fracture, LooksAheadToTheMomentOfRetraction)
-{
-  TenSites sheet{RetractionToughening{0.8, 3.}};
-  sheet.state.vx[sheet.sheet.index(0, 0)] = 1.;
-  sheet.fracture.set_lookahead(0.19);
-  sheet.apply();
-  EXPECT_EQ(sheet.limit(0, 0, 0), 1.5);
-  sheet.fracture.set_lookahead(0.21);
-  sheet.apply();
-  EXPECT_EQ(sheet.limit(0, 0, 0), 4.5);
 }
 
 // A bond within a few units in the last place of its limit, and a little farther, in many directions: the row is
@@ -366,18 +335,12 @@ TEST(Fracture, ToughensAllBondsBehindARunningTip)
   {
     const double distance = 2.2 * sheets::spacing, side = 40. * sheets::spacing;
     const TriangularLattice sheet(sheets::spacing, side, side, orientation);
-    const Material material = sheets::rubber();
-    const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
-    State state = homogeneous_state(sheet, material, F, Edges::held);
-    add_noise(state, sheet, 0.01 * sheets::spacing, 1);
-    Simulation simulation(sheet, material, std::move(state), TimeStepping{4e-6, 7},
-                          Fracture(sheet, material, 3.05, BehindTipToughening{distance, 2.}, F));
-    std::vector<std::size_t> seed;
-    for (const std::size_t place : sheets::sites(sheet))
-      if (std::abs(sheet.reference(place).y()) < 0.6 * sheets::spacing &&
-          sheet.reference(place).x() > 4. * sheets::spacing && sheet.reference(place).x() < 9. * sheets::spacing)
-        seed.push_back(place);
-    simulation.cut(seed);
+    running_crack::Choice choice;
+    choice.stepping = {4e-6, 7};
+    choice.toughening = BehindTipToughening{distance, 2.};
+    choice.noise = 0.01;
+    const auto crack = running_crack::start(sheet, choice);
+    Simulation &simulation = *crack;
     ASSERT_TRUE(simulation.tip());
     double first_tip = 0., tip = 0.;
     for (int step = 0; step <= 220; ++step)

@@ -12,7 +12,7 @@
 #include "lattice/time_step.h"
 #include "tests/lattice/sheets.h"
 
-/// A crack that runs through a small noisy sheet, and the comparison of two simulations bit by bit.
+/// A crack that runs through a noisy sheet, and the comparison of two simulations bit by bit.
 namespace running_crack
 {
 
@@ -30,23 +30,49 @@ inline latcon::lattice::TimeStepping stepping(const latcon::lattice::TriangularL
   return stages > 0 ? latcon::lattice::TimeStepping(3. * step, stages) : latcon::lattice::TimeStepping(step);
 }
 
-inline std::unique_ptr<latcon::lattice::Simulation> start(const latcon::lattice::TriangularLattice &sheet,
-                                                          const latcon::lattice::Material &material,
-                                                          const latcon::lattice::TimeStepping &how,
-                                                          bool has_contact = false)
+/// How the crack of start() runs.
+struct Choice
+{
+  using End = latcon::lattice::EndLoads::End;
+  latcon::lattice::Material material = sheets::rubber();
+  latcon::lattice::TimeStepping stepping = 0.;
+  latcon::lattice::Toughening toughening = latcon::lattice::BehindTipToughening{4. * sheets::spacing, 3.};
+  double noise = 0.05;           ///< in spacings
+  double contact = 0.;           ///< distance in spacings; 0: none
+  double contact_strength = 0.1; ///< stiffness and viscosity in those of a bond
+  End left = End::held, right = End::held;
+  Eigen::Matrix2d turn = Eigen::Matrix2d::Identity(); ///< of the whole sheet
+};
+
+/// A crack from a slit at Y = 0 in a stretched sheet, held along its long edges.
+inline std::unique_ptr<latcon::lattice::Simulation> start(const latcon::lattice::RowPartition &band,
+                                                          const Choice &choice)
 {
   using namespace latcon::lattice;
-  const Eigen::Matrix2d F = sheets::stretched(2.3, 2.9);
-  State state = homogeneous_state(sheet, material, F, Edges::held);
-  add_noise(state, sheet, 0.05 * sheets::spacing, 1);
-  auto simulation = std::make_unique<Simulation>(sheet, material, std::move(state), how,
-                                                 Fracture(sheet, material, 3.05, BehindTipToughening{2.5e-3, 3.}, F));
-  if (has_contact)
-    simulation->enable_contact(contact_like_nearest_bond(sheet, material, 3. * sheets::spacing, 0.1, 0.1));
+  const TriangularLattice &sheet = band.lattice();
+  const double d = sheet.is_triangular() ? sheet.spacing() : sheets::spacing;
+  const Eigen::Matrix2d F = choice.turn * sheets::stretched(2.3, 2.9);
+  const bool is_left_held = choice.left == EndLoads::End::held, is_right_held = choice.right == EndLoads::End::held;
+  State state =
+    homogeneous_state(band, choice.material, sheets::stretched(2.3, 2.9), {is_left_held, is_right_held, true, true});
+  add_noise(state, band, choice.noise * d, 1);
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+  {
+    const Eigen::Vector2d x = choice.turn * Eigen::Vector2d(state.x[place], state.y[place]);
+    state.x[place] = x.x();
+    state.y[place] = x.y();
+  }
+  auto simulation = std::make_unique<Simulation>(band, choice.material, std::move(state), choice.stepping,
+                                                 Fracture(band, choice.material, 3.05, choice.toughening, F));
+  if (!is_left_held || !is_right_held)
+    simulation->load_ends(F, choice.left, choice.right);
+  if (choice.contact > 0.)
+    simulation->enable_contact(contact_like_nearest_bond(sheet, choice.material, choice.contact * d,
+                                                         choice.contact_strength, choice.contact_strength));
   if (sheet.is_triangular())
-    simulation->cut(sheets::middle_row(sheet, 4, 8));
+    simulation->cut(seed_sites(sheet, SeedSlit{4. * d, 0., 7.5 * d, 1.1 * d}));
   else
-    simulation->cut_bonds(bonds_across(sheet, 4. * sheets::spacing, 12. * sheets::spacing, 0.1 * sheets::spacing));
+    simulation->cut_bonds(bonds_across(sheet, 4. * d, 12. * d, 0.1 * d));
   return simulation;
 }
 

@@ -6,9 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lattice/simulation.h"
-#include "lattice/time_step.h"
-#include "tests/lattice/sheets.h"
+#include "tests/lattice/running_crack.h"
 
 namespace lattice_symmetry_test
 {
@@ -16,9 +14,6 @@ namespace lattice_symmetry_test
 using namespace latcon;
 
 using namespace lattice;
-
-const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
-constexpr double breaking_stretch = 3.05;
 
 // Units of a sheet in those of another one: whatever has none, angles, stretches, numbers of bonds, stays as it is.
 //
@@ -52,49 +47,20 @@ Material rubber_in(const Units &units)
 // A bond that broke: step, place of its near end, kind.
 using Break = std::tuple<int, std::size_t, std::size_t>;
 
-// A small sheet with a seed crack that runs.
+// A small sheet with a crack whose flanks touch, in some units.
 struct Crack
 {
-  struct Choice
+  explicit Crack(running_crack::Choice choice, const Units &units = {}, unsigned int stages = 0)
+    : sheet(units.length * sheets::spacing, 60. * units.length * sheets::spacing, 36. * units.length * sheets::spacing,
+            Orientation::rows_along_crack)
   {
-    Units units;
-    Orientation orientation = Orientation::rows_along_crack;
-    Toughening toughening = BehindTipToughening{8. * sheets::spacing, 1000.};
-    unsigned int stages = 0;
-    bool touches = true;
-    bool absorbs = false; // at its short ends
-    Eigen::Matrix2d turn = Eigen::Matrix2d::Identity();
-  };
-
-  explicit Crack(const Choice &choice)
-    : sheet(choice.units.length * sheets::spacing, 60. * choice.units.length * sheets::spacing,
-            36. * choice.units.length * sheets::spacing, choice.orientation),
-      material(rubber_in(choice.units))
-  {
-    const double l = choice.units.length, d = l * sheets::spacing;
-    const Edges edges{!choice.absorbs, !choice.absorbs, true, true};
-    State initial = homogeneous_state(sheet, material, F, edges);
-    add_noise(initial, sheet, 0.05 * d, 1);
-    for (const std::size_t place : sheets::sites(sheet))
-    {
-      const Eigen::Vector2d x = choice.turn * Eigen::Vector2d(initial.x[place], initial.y[place]);
-      initial.x[place] = x.x();
-      initial.y[place] = x.y();
-    }
-    const Eigen::Matrix2d deformation = choice.turn * F;
-    Toughening toughening = choice.toughening;
-    if (auto *behind = std::get_if<BehindTipToughening>(&toughening))
-      behind->distance *= l;
-    const TimeStepLimits limits = time_step_limits(sheet, material, 0.3);
-    const TimeStepping stepping = choice.stages == 0 ? TimeStepping(0.9 * limits.combined)
-                                                     : TimeStepping(chebyshev_step(sheet, material, 1.), choice.stages);
-    simulation = std::make_unique<Simulation>(sheet, material, std::move(initial), stepping,
-                                              Fracture(sheet, material, breaking_stretch, toughening, deformation));
-    if (choice.touches)
-      simulation->enable_contact(contact_like_nearest_bond(sheet, material, d, 1., 1.));
-    if (choice.absorbs)
-      simulation->load_ends(deformation, EndLoads::End::absorbing, EndLoads::End::free);
-    simulation->cut(sheets::middle_row(sheet, 6, 8));
+    choice.material = rubber_in(units);
+    choice.stepping = stages == 0 ? TimeStepping(0.9 * time_step_limits(sheet, choice.material, 0.3).combined)
+                                  : TimeStepping(chebyshev_step(sheet, choice.material, 1.), stages);
+    choice.contact = 3.;
+    if (auto *behind = std::get_if<BehindTipToughening>(&choice.toughening))
+      behind->distance *= units.length;
+    simulation = running_crack::start(sheet, choice);
   }
 
   std::vector<Break> run(int steps)
@@ -107,7 +73,6 @@ struct Crack
   }
 
   TriangularLattice sheet;
-  Material material;
   std::unique_ptr<Simulation> simulation;
 };
 
@@ -140,17 +105,16 @@ INSTANTIATE_TEST_SUITE_P(Stages, Similarity, testing::Values(0u, 4u));
 TEST_P(Similarity, CrackInOtherUnitsIsTheSameCrack)
 {
   const int steps = GetParam() == 0 ? 2500 : 250;
-  Crack::Choice choice;
-  choice.stages = GetParam();
-  choice.absorbs = true;
-  Crack one(choice);
+  running_crack::Choice choice;
+  choice.left = EndLoads::End::absorbing;
+  choice.right = EndLoads::End::free;
+  Crack one(choice, {}, GetParam());
   const std::vector<Break> breaks = one.run(steps);
   EXPECT_GT(breaks.size(), 50u);
   EXPECT_NE(one.simulation->energies().contact, 0.) << "flanks or debris must have touched";
   for (const Units &units : {Units{4., 1., 1.}, Units{1., 4., 16.}, Units{0.25, 0.25, 4.}})
   {
-    choice.units = units;
-    Crack other(choice);
+    Crack other(choice, units, GetParam());
     EXPECT_EQ(other.simulation->time_step(), units.time() * one.simulation->time_step());
     EXPECT_EQ(other.run(steps), breaks);
     expect_scaled(one, other, units);
@@ -162,7 +126,7 @@ TEST(Objectivity, CrackInASheetOnItsSideIsTheSameCrack)
 {
   for (const Toughening &toughening : {Toughening(NoToughening{}), Toughening(RetractionToughening{0.8, 3.})})
   {
-    Crack::Choice choice;
+    running_crack::Choice choice;
     choice.toughening = toughening;
     Crack upright(choice);
     choice.turn << 0., -1., 1., 0.;

@@ -59,20 +59,6 @@ TEST_P(BothOrientations, SitesHaveSixNeighboursAtEachOfTheRightDistances)
   EXPECT_EQ(material.coordination(), 18u);
 }
 
-TEST_P(BothOrientations, BondDirectionsAreTheStatedOnes)
-{
-  const TriangularLattice sheet = sheets::square(12, GetParam());
-  // Angles modulo 180 degrees of kinds 0 to 8; turned by 30 degrees means x and y exchanged here.
-  const double along[] = {0., 60., 120., 30., 150., 90., 0., 60., 120.};
-  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
-  {
-    const Eigen::Vector2d R = sheet.bond_vector(kind);
-    const double angle = std::atan2(R.y(), R.x()) * 180. / M_PI;
-    const double expected = GetParam() == Orientation::rows_along_crack ? along[kind] : 90. - along[kind];
-    EXPECT_NEAR(angle, expected, 1e-9) << kind;
-  }
-}
-
 TEST_P(BothOrientations, ExtentIsThatOfTheOutermostSites)
 {
   const TriangularLattice sheet(sheets::spacing, 0.02, 0.01, GetParam());

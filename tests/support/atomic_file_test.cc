@@ -69,16 +69,6 @@ private:
   rlimit before_{};
 };
 
-TEST(AtomicFile, WritesMoreThanOneBlockAndEveryByte)
-{
-  const TemporaryFolder folder;
-  std::string text;
-  for (int i = 0; i < 3000000; ++i)
-    text += static_cast<char>(i % 256);
-  write_atomically(folder / "large", text, Sync::no);
-  EXPECT_TRUE(content_of(folder / "large") == text);
-}
-
 TEST(AtomicFile, HasTheRightsOfAnyOtherFile)
 {
   const TemporaryFolder folder;
@@ -136,18 +126,6 @@ TEST(AtomicFile, PartsHaveNamesThatNobodyForesees)
   ASSERT_EQ(found.size(), 2U);
   for (const fs::path &part : found)
     EXPECT_EQ(part.filename().string().size(), std::string("a..part").size() + 16);
-}
-
-TEST(AtomicFile, LinksInItsPlaceAreReplaced)
-{
-  const TemporaryFolder folder;
-  std::ofstream(folder / "victim") << "mine";
-  fs::create_symlink(folder / "victim", folder / "a.txt");
-  fs::create_symlink(folder / "victim", folder / "a.txt.part");
-  write_atomically(folder / "a.txt", "new", Sync::no);
-  EXPECT_EQ(content_of(folder / "victim"), "mine");
-  EXPECT_EQ(content_of(folder / "a.txt"), "new");
-  EXPECT_FALSE(fs::is_symlink(folder / "a.txt"));
 }
 
 TEST(AtomicFile, FailuresNameTheReasonAndLeaveTheOldFile)

@@ -56,34 +56,17 @@ public:
     close(ready[0]);
     close(ready[1]);
   }
-  ~Holder() { end(); }
+  ~Holder()
+  {
+    kill(process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+  }
 
   pid_t process() const { return process_; }
-
-  void end()
-  {
-    if (process_ > 0)
-    {
-      kill(process_, SIGKILL);
-      waitpid(process_, nullptr, 0);
-    }
-    process_ = 0;
-  }
 
 private:
   pid_t process_ = 0;
 };
-
-TEST(FolderLock, IsRefusedWithTheProcessThatHasIt)
-{
-  const TemporaryFolder folder;
-  Holder holder(folder.path());
-  const std::string told = refusal(folder.path());
-  EXPECT_EQ(told.find(folder.path() + " is in use by process " + std::to_string(holder.process()) + " on "), 0U)
-    << told;
-  holder.end(); // by SIGKILL
-  EXPECT_EQ(refusal(folder.path()), "");
-}
 
 TEST(FolderLock, WaitsForAProcessThatIsAboutToEnd)
 {
@@ -115,21 +98,6 @@ TEST(FolderLock, IsNotInherited)
   EXPECT_EQ(waitpid(child, nullptr, WNOHANG), 0);
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
-}
-
-TEST(FolderLock, NoticesThatTheFolderHasGone)
-{
-  const TemporaryFolder folder;
-  const std::string out = folder / "out";
-  fs::create_directory(out);
-  const FolderLock lock(out);
-  EXPECT_TRUE(lock.is_in_place());
-  fs::remove_all(out);
-  EXPECT_FALSE(lock.is_in_place());
-  fs::create_directory(out);
-  EXPECT_FALSE(lock.is_in_place());
-  std::ofstream(out + "/.latcon.lock") << "of another process";
-  EXPECT_FALSE(lock.is_in_place());
 }
 
 TEST(FolderLock, FilesAreNotWrittenToAFolderThatTookThePlace)

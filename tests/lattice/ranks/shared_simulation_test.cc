@@ -1,13 +1,12 @@
 // A sheet that ranks share against the same sheet on one rank, bit by bit.
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 
 #include <gtest/gtest.h>
 
 #include "../nonlocal_sheets.h"
-#include "lattice/seed.h"
-#include "lattice/simulation.h"
-#include "lattice/time_step.h"
+#include "tests/lattice/running_crack.h"
 
 namespace shared_simulation_test
 {
@@ -15,6 +14,13 @@ namespace shared_simulation_test
 using namespace latcon;
 
 using namespace lattice;
+
+TEST(Ranks, AreAsManyAsTheTestWants)
+{
+  int n = 0;
+  MPI_Comm_size(MPI_COMM_WORLD, &n);
+  EXPECT_EQ(std::to_string(n), std::getenv("LATCON_RANKS"));
+}
 
 void expect_same_energies(const EnergyBalance &shared, const EnergyBalance &alone)
 {
@@ -71,36 +77,16 @@ struct Variant
   }
 };
 
-struct Crack
+std::unique_ptr<Simulation> crack_of(const Variant &variant, const RowPartition &band)
 {
-  Crack(const Variant &variant, const RowPartition &band)
-  {
-    const Material &material = variant.material;
-    const TriangularLattice &sheet = band.lattice();
-    const Eigen::Matrix2d F = sheets::stretched(2.3, 2.9);
-    State state = homogeneous_state(band, material, F, {true, variant.right == EndLoads::End::held, true, true});
-    add_noise(state, band, 0.05 * sheets::spacing, 1);
-    simulation = std::make_unique<Simulation>(band, material, std::move(state),
-                                              0.9 * time_step_limits(sheet, material, 0.3).combined,
-                                              Fracture(band, material, 3.05, variant.toughening, F));
-    if (variant.right != EndLoads::End::held)
-      simulation->load_ends(F, EndLoads::End::held, variant.right);
-    if (variant.contact > 0.)
-      simulation->enable_contact(
-        contact_like_nearest_bond(sheet, material, variant.contact * sheets::spacing, 0.1, 0.1));
-    // A line of sites at Y = 0 along X, in one row or one in every second row.
-    std::vector<std::size_t> seed;
-    for (std::size_t n = 4; n < 12; ++n)
-      if (variant.orientation == Orientation::rows_along_crack)
-        seed.push_back(sheet.index(sheet.rows() / 2, n));
-      else if (n % 2 == 0)
-        seed.push_back(sheet.index(n, sheet.columns() / 2));
-    simulation->cut(seed);
-    if (variant.scatter)
-      simulation->cut_bonds(bonds_across(sheet, 4. * sheets::spacing, 12. * sheets::spacing, 0.1 * sheets::spacing));
-  }
-  std::unique_ptr<Simulation> simulation;
-};
+  running_crack::Choice choice;
+  choice.material = variant.material;
+  choice.stepping = 0.9 * time_step_limits(band.lattice(), variant.material, 0.3).combined;
+  choice.toughening = variant.toughening;
+  choice.contact = variant.contact;
+  choice.right = variant.right;
+  return running_crack::start(band, choice);
+}
 
 class SharedCrack : public testing::TestWithParam<Variant>
 {
@@ -147,8 +133,8 @@ TEST_P(SharedCrack, HasTheBitsOfOneRank)
 {
   const Variant &variant = GetParam();
   const TriangularLattice sheet = variant.sheet();
-  Crack shared(variant, RowPartition(sheet, MPI_COMM_WORLD)), alone(variant, sheet);
-  Simulation &ours = *shared.simulation, &theirs = *alone.simulation;
+  const auto shared = crack_of(variant, RowPartition(sheet, MPI_COMM_WORLD)), alone = crack_of(variant, sheet);
+  Simulation &ours = *shared, &theirs = *alone;
   std::size_t touching = 0;
   for (int step = 0; step < variant.steps; ++step)
   {

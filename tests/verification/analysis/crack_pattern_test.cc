@@ -20,47 +20,32 @@ using namespace latcon;
 
 using namespace synthetic_crack;
 
-/// Crack that splits at X = 50 mm into two branches at +-30 degrees, which are alternately slightly ahead.
-struct BranchedCrack
-{
-  std::vector<TipRecord> tip;
-  std::vector<BreakRecord> breaks;
-
-  BranchedCrack()
-  {
-    const double X_branch = 0.05;
-    const auto branch = [=](double X) { return std::max(0., std::tan(pi / 6.) * (X - X_branch)); };
-    SyntheticCrack crack;
-    crack.path = [=](double X)
-    {
-      const auto turn = static_cast<unsigned int>(X / (5. * d));
-      return (std::mt19937(turn)() >> 16) % 2 == 0 ? branch(X) : -branch(X);
-    };
-    tip = crack.record(1);
-    break_along(breaks, branch, seed_tip, crack.X_last);
-    break_along(
-      breaks, [=](double X) { return -branch(X); }, X_branch, crack.X_last);
-  }
-};
-
+// A crack that splits at X = 50 mm into two branches at +-30 degrees, which are alternately slightly ahead.
 TEST(CrackMeasurement, TwoDivergingStrandsBranch)
 {
-  const BranchedCrack crack;
-  const CrackMeasurement m = measure_crack(crack.tip, crack.breaks, options_for(crack.tip));
+  const double X_branch = 0.05;
+  const auto branch = [=](double X) { return std::max(0., std::tan(pi / 6.) * (X - X_branch)); };
+  SyntheticCrack crack;
+  crack.path = [=](double X)
+  {
+    const auto turn = static_cast<unsigned int>(X / (5. * d));
+    return (std::mt19937(turn)() >> 16) % 2 == 0 ? branch(X) : -branch(X);
+  };
+  const std::vector<TipRecord> tip = crack.record(1);
+  std::vector<BreakRecord> breaks;
+  break_along(breaks, branch, seed_tip, crack.X_last);
+  break_along(
+    breaks, [=](double X) { return -branch(X); }, X_branch, crack.X_last);
+  const CrackMeasurement m = measure_crack(tip, breaks, options_for(tip));
   EXPECT_EQ(m.pattern, CrackPattern::branching) << m.reason;
   EXPECT_FALSE(m.wavelength);
   // From where the distance of the strands is 10 d (plus 2 d of width), 12 d / (2 tan 30) after the fork, to 0.9 L, to
   // within a column of 4 d at each end.
-  const double expected = (0.9 * length - 0.05 - 12. * d / (2. * std::tan(pi / 6.))) / (0.9 * length - seed_tip);
+  const double expected = (0.9 * length - X_branch - 12. * d / (2. * std::tan(pi / 6.))) / (0.9 * length - seed_tip);
   EXPECT_NEAR(m.branched_fraction, expected, 8. * d / (0.9 * length - seed_tip));
-}
-
-TEST(CrackMeasurement, WithoutBreaksNothingBranches)
-{
-  const BranchedCrack crack;
-  const CrackMeasurement m = measure_crack(crack.tip, {}, options_for(crack.tip));
-  EXPECT_EQ(m.pattern, CrackPattern::undecided) << m.reason;
-  EXPECT_EQ(m.branched_fraction, 0.);
+  const CrackMeasurement without_breaks = measure_crack(tip, {}, options_for(tip));
+  EXPECT_EQ(without_breaks.pattern, CrackPattern::undecided) << without_breaks.reason;
+  EXPECT_EQ(without_breaks.branched_fraction, 0.);
 }
 
 class CrackMeasurementDamage : public testing::Test
@@ -225,6 +210,7 @@ TEST(CrackMeasurement, SentenceNamesTheCriterionThatDecided)
   };
   SyntheticCrack crack;
   crack.on_sites = false;
+  expect(measure(crack), CrackPattern::straight, {"the path has no waviness"});
   crack.path = sinusoid(wavelength, 0.4 * d);
   expect(measure(crack), CrackPattern::straight, {"an amplitude of 0.4 d, less than the 0.75 d of an oscillation"});
   crack.path = sinusoid(wavelength, 3. * d);

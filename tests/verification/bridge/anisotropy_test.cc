@@ -37,22 +37,6 @@ continuum::CauchyBorn quick_law()
   return cauchy_born(input.lattice(), input.material());
 }
 
-TEST(RotationMean, SumsTheAmplitudesOfHarmonics)
-{
-  const auto angle = [](const Eigen::Matrix2d &R) { return std::atan2(R(1, 0), R(0, 0)); };
-  const RotationMean found = over_rotations(
-    [&](const Eigen::Matrix2d &R)
-    {
-      const double t = 6. * angle(R);
-      return Eigen::Vector2d(3. + 0.5 * std::cos(t) + 0.2 * std::sin(3. * t), -7. + 1.2 * std::cos(t + 0.4));
-    });
-  EXPECT_NEAR(found.mean(0), 3., 1e-14);
-  EXPECT_NEAR(found.mean(1), -7., 1e-14);
-  EXPECT_NEAR(found.bound, std::hypot(0.5, 1.2) + 0.2, 1e-13);
-  EXPECT_EQ(lattice_rotation(0), Eigen::Matrix2d(Eigen::Matrix2d::Identity()));
-  EXPECT_THROW(rotation_mean(Eigen::MatrixXd::Zero(1, n_lattice_rotations + 1)), std::invalid_argument);
-}
-
 // theory-comparison.md, eqs. (H.14) and (H.15): bounds relative to the values of the lattice, computed by an
 // independent script from the Fourier coefficients of one bond of each shell. The energy attains its bound.
 TEST(RotationMean, BoundsWhatTheNetworkLeavesOut)

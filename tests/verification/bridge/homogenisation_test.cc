@@ -80,43 +80,4 @@ TEST(Calibration, IsTheBestRatioOnThePath)
       << offset;
 }
 
-// Branches are on the families of the elastic law; numbers are those of the lattice. theory-viscoelastic.md, eq. (V.1).
-TEST(Homogenisation, GivesFibresTheBranchesOfTheirBonds)
-{
-  Case input = subjects::paper_case();
-  EXPECT_EQ(homogenised_memory(input.lattice(), input.material()), nullptr);
-  input.nearest.branch_moduli = {2e5, 1e5};
-  input.nearest.relaxation_times = {2e-5, 2e-4};
-  input.next_nearest.branch_moduli = {3e5};
-  input.next_nearest.relaxation_times = {1e-5};
-  const auto memory = homogenised_memory(input.lattice(), input.material());
-  const auto law = cauchy_born(input.lattice(), input.material());
-  ASSERT_EQ(memory->families().size(), law.families().size());
-  EXPECT_EQ(memory->n_numbers(), 3u);
-  for (std::size_t family = 0; family < law.families().size(); ++family)
-  {
-    const continuum::MaxwellFibres &fibres = memory->families()[family];
-    EXPECT_EQ(fibres.direction, law.families()[family].direction);
-    EXPECT_EQ(fibres.weight, law.families()[family].weight);
-    const bool is_nearest = family < lattice::n_nearest_kinds;
-    ASSERT_EQ(fibres.branches.size(), is_nearest ? 2u : 1u);
-    EXPECT_EQ(fibres.first_number, is_nearest ? 0u : 2u);
-    EXPECT_EQ(fibres.branches[0].modulus, is_nearest ? 2e5 : 3e5);
-    EXPECT_EQ(fibres.branches[0].relaxation_time, is_nearest ? 2e-5 : 1e-5);
-  }
-  EXPECT_EQ(memory->gradient(), nullptr);
-  const double gradient_length = gradient_lengths(input.lattice(), input.material()).lattice;
-  const auto with_gradient = homogenised_memory(input.lattice(), input.material(), gradient_length);
-  EXPECT_EQ(with_gradient->gradient()->n_variables(), 2u * memory->n_variables());
-  EXPECT_EQ(with_gradient->gradient_length(), gradient_length);
-  EXPECT_EQ(with_gradient->families().back().length, bond_families(input.lattice(), input.material()).back().length);
-  // Branches of next-nearest neighbours alone begin at 0.
-  input.nearest.branch_moduli = {};
-  input.nearest.relaxation_times = {};
-  const auto next_nearest = homogenised_memory(input.lattice(), input.material());
-  ASSERT_EQ(next_nearest->families().size(), lattice::n_nearest_kinds);
-  EXPECT_EQ(next_nearest->families()[0].first_number, 0u);
-  EXPECT_EQ(next_nearest->families()[0].weight, law.families()[lattice::n_nearest_kinds].weight);
-}
-
 } // namespace homogenisation_test

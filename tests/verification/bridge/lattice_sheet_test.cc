@@ -2,11 +2,13 @@
 // the entry to change.
 #include "verification/bridge/lattice_sheet.h"
 
-#include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "support/errors.h"
+#include "tests/verification/input/sentences.h"
+#include "tests/verification/input/small_case.h"
+#include "verification/bridge/affine_displacement.h"
 
 namespace lattice_sheet_test
 {
@@ -15,53 +17,10 @@ using namespace latcon;
 using namespace bridge;
 using namespace input;
 
-using Lines = std::vector<std::string>;
-using Check = void (*)(const Case &, Parameters &, const std::string &);
+using small_case::Lines;
 
-const Lines sheet = {"Sheet/spacing=1 mm",        "Sheet/length=20 mm",      "Sheet/height=20 mm",
-                     "Material/density=1000",     "Loading/strain x=0",      "Loading/strain y=0.2",
-                     "Right edge/condition=free", "Left edge/condition=free"};
-
-// Reads the case with these entries instead of those above.
-Case read(const Lines &overrides, Parameters &parameters)
-{
-  Case input;
-  input.declare(parameters);
-  parameters.read_text("", "a.prm");
-  Lines all = overrides;
-  for (const std::string &entry : sheet)
-    if (std::none_of(overrides.begin(), overrides.end(),
-                     [&](const std::string &other)
-                     { return other.substr(0, other.find('=')) == entry.substr(0, entry.find('=')); }))
-      all.push_back(entry);
-  parameters.read_overrides(all);
-  input.check(parameters);
-  return input;
-}
-
-Lines problems(const Lines &overrides, Check check = require_lattice_sheet)
-{
-  Parameters parameters;
-  check(read(overrides, parameters), parameters, "`it`");
-  try
-  {
-    parameters.finish();
-  }
-  catch (const latcon::support::InputError &error)
-  {
-    return error.problems();
-  }
-  return {};
-}
-
-void expect_refused(const std::string &entry, const Lines &overrides)
-{
-  const Lines found = problems(overrides);
-  ASSERT_EQ(found.size(), 1u) << entry << "\n"
-                              << (found.empty() ? "no problem" : latcon::support::InputError(found).what());
-  EXPECT_NE(found[0].find(entry), std::string::npos) << found[0];
-  EXPECT_NE(found[0].find("`it`"), std::string::npos) << found[0];
-}
+const Lines sheet = {"Loading/strain x=0", "Loading/strain y=0.2", "Right edge/condition=free",
+                     "Left edge/condition=free"};
 
 std::size_t count(const lattice::SiteFlags &flags, const lattice::TriangularLattice &lattice, double y)
 {
@@ -73,8 +32,15 @@ std::size_t count(const lattice::SiteFlags &flags, const lattice::TriangularLatt
 
 TEST(LatticeSheet, HasTheEdgesAndTheHoleOfTheCase)
 {
+  Parameters of_periodic;
+  Case periodic;
+  small_case::read({"Left edge/condition=periodic", "Right edge/condition=periodic"}, periodic, of_periodic, sheet);
+  EXPECT_TRUE(periodic.lattice().periodic().x);
+  EXPECT_FALSE(periodic.lattice().periodic().y);
+
   Parameters parameters;
-  Case input = read({"Sheet/hole radius=4 mm"}, parameters);
+  Case input;
+  small_case::read({"Sheet/hole radius=4 mm"}, input, parameters, sheet);
   const lattice::TriangularLattice lattice = input.lattice();
   const lattice::State state = lattice_state(input, lattice);
   EXPECT_GT(count(state.held, lattice, 100.), 40u);
@@ -86,54 +52,57 @@ TEST(LatticeSheet, HasTheEdgesAndTheHoleOfTheCase)
   EXPECT_EQ(count(lattice_state(input, lattice).removed, lattice, 100.), 6u); // sites at 0, 1, ... 5 mm
 }
 
-TEST(LatticeSheet, IsPeriodicWhereItsEdgesAre)
+TEST(Case, NamesTheEntryThatDoesNotFit)
 {
-  const Lines both = {"Left edge/condition=periodic", "Right edge/condition=periodic"};
-  EXPECT_TRUE(problems(both).empty());
+  for (const sentences::Sentence &own : sentences::of({"case", "lattice"}))
+  {
+    Case input;
+    const bool is_lattice = own.kind == "lattice";
+    const Lines found = small_case::problems(sentences::entries(own.input), input, is_lattice ? sheet : Lines(),
+                                             [&](const Case &of, Parameters &p)
+                                             {
+                                               if (is_lattice)
+                                                 require_lattice_sheet(of, p, "`it`");
+                                             });
+    SCOPED_TRACE(testing::PrintToString(own) + testing::PrintToString(found));
+    ASSERT_EQ(found.size(), own.message == "accepted" ? 0u : 1u);
+    if (!found.empty())
+    {
+      EXPECT_NE(found[0].find(own.message), std::string::npos);
+      EXPECT_TRUE(!is_lattice || found[0].find("`it`") != std::string::npos);
+    }
+  }
+}
+
+TEST(ContinuumCase, ReadsEveryEdge)
+{
+  ContinuumCase input;
   Parameters parameters;
-  const Case input = read(both, parameters);
-  EXPECT_TRUE(input.lattice().periodic().x);
-  EXPECT_FALSE(input.lattice().periodic().y);
-  // The finite elements keep the undeformed period in equilibrium, and start with the stretched one in motion.
-  expect_refused("Loading/strain x", {both[0], both[1], "Loading/strain x=0.1"});
-  EXPECT_TRUE(problems({both[0], both[1], "Loading/strain x=0.1", "Lattice/solution=motion"}).empty());
+  input.declare(parameters);
+  parameters.read_text("subsection Top edge\n  set displacement x = 1e-3 * y\n  set displacement y = free\nend\n"
+                       "subsection Inner edge\n  set traction y = 2*pi\nend\n",
+                       "a.prm");
+  parameters.finish();
+  EXPECT_EQ(input.edges[3].displacement.x, "1e-3 * y");
+  EXPECT_EQ(input.edges[3].displacement.y, "free");
+  EXPECT_EQ(input.edges[2].displacement.x, "loading");
+  EXPECT_EQ(input.edges[4].condition, EdgeCase::Condition::free);
+  EXPECT_NEAR(input.edges[4].traction.field()(1, 0.1, 0.2), 2. * std::acos(-1.), 1e-15);
+  EXPECT_EQ(input.edges[4].traction.field()(0, 0.1, 0.2), 0.);
+  const auto loading = input.edges[2].displacement.field((Eigen::Matrix2d() << 2., 3., 5., 7.).finished());
+  EXPECT_NEAR(loading(0, 0.1, 0.2), 0.1 + 0.6, 1e-15);
+  EXPECT_NEAR(loading(1, 0.1, 0.2), 0.5 + 1.2, 1e-15);
 }
 
-TEST(LatticeSheet, RefusesWhatTheLatticeCannotDo)
+TEST(FieldFunction, GradientsOfExpressionsAreOfFourthOrder)
 {
-  EXPECT_TRUE(problems({"Sheet/notch length=5 mm"}).empty());
-  EXPECT_TRUE(problems({"Continuum/gradient=lattice", "Top edge/normal gradient=loading"}).empty());
-  expect_refused("Top edge/displacement x", {"Top edge/displacement x=free"});
-  expect_refused("Top edge/displacement y", {"Top edge/displacement y=1e-3*x"});
-  expect_refused("Left edge/traction y", {"Left edge/traction y=1"});
-  expect_refused("Top edge/double traction x", {"Continuum/gradient=lattice", "Top edge/double traction x=1"});
-  expect_refused("Top edge/normal gradient", {"Continuum/gradient=lattice", "Top edge/normal gradient=clamped"});
-  expect_refused("Inner edge/condition", {"Sheet/hole radius=4 mm", "Inner edge/condition=held"});
-  expect_refused("Continuum/mesh file", {"Continuum/mesh file=a.msh"});
-  expect_refused("Body force/force y", {"Body force/force y=1"});
-  const Lines free = {"Bottom edge/condition=free", "Top edge/condition=free", "Continuum/solution=motion"};
-  expect_refused("Left edge/condition", free);
-  const std::string motion = "Lattice/solution=motion";
-  EXPECT_TRUE(problems({free[0], free[1], free[2], motion}).empty());
-  expect_refused("Initial state/velocity x", {motion, "Initial state/velocity x=1"});
-  const Lines roller = {"Top edge/displacement x=free", motion};
-  EXPECT_TRUE(problems(roller).empty());
-  EXPECT_TRUE(problems({"Loading/history times=1", "Loading/history strain y=2", motion}).empty());
-  expect_refused("Top edge/displacement x", {"Top edge/displacement x=free", "Top edge/displacement y=0", motion});
-  expect_refused("Initial state/base", {motion, "Initial state/base=undeformed"});
-}
-
-TEST(LatticeSheet, ThatBreaksIsWholeAndHeld)
-{
-  const Check check = [](const Case &input, Parameters &p, const std::string &) { require_fracture_case(input, p); };
-  const std::string stretch = "Fracture/breaking stretch=3", end = "Time/end=1";
-  const Lines found = problems({"Sheet/hole radius=4 mm", stretch, end}, check);
-  ASSERT_EQ(found.size(), 3u);
-  EXPECT_NE(found[0].find("Sheet/hole radius"), std::string::npos);
-  EXPECT_NE(found[1].find("Left edge/condition"), std::string::npos);
-  EXPECT_NE(found[2].find("Right edge/condition"), std::string::npos);
-  const std::string left = "Left edge/condition=held", right = "Right edge/condition=held";
-  EXPECT_EQ(problems({left, right, "Top edge/displacement x=0", stretch, end}, check).size(), 1u);
+  FieldCase sine;
+  sine.x = "sin(100 * x)";
+  const double extent = 0.02;
+  // Five-point formula: h^4 / 30 times the fifth derivative 100^5, and round-off over h.
+  const double h = 1e-3 * extent;
+  EXPECT_NEAR(FieldFunction(sine, extent).gradient({0.003, 0.}, 0)[0], 100. * std::cos(0.3),
+              std::pow(h, 4) * 1e10 / 30. + 1e-15 / h);
 }
 
 } // namespace lattice_sheet_test

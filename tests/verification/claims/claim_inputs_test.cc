@@ -2,6 +2,7 @@
 #include "verification/claims/claim_inputs.h"
 
 #include "support/errors.h"
+#include "tests/verification/claims/subjects.h"
 #include "verification/bridge/subject.h"
 
 #include <gtest/gtest.h>
@@ -44,18 +45,6 @@ bool is_unread(const std::string &section, const std::string &name)
          unread_of_shells.count(name) != 0 || (section == "Continuum" && name != "ratio");
 }
 
-Case some_case()
-{
-  Case input;
-  input.spacing = 0.625e-3;
-  input.length = 0.03;
-  input.height = 0.02;
-  input.density = 944.;
-  input.strain_x = 1.3;
-  input.strain_y = 1.8;
-  return input;
-}
-
 // All entries of a case with their values.
 std::map<std::string, std::string> entries(Case input)
 {
@@ -89,11 +78,11 @@ std::optional<Case> with_another(const std::string &key, const std::string &valu
     candidates.push_back(other);
   for (const std::string &candidate : candidates)
   {
-    Case changed = some_case();
+    Case changed = subjects::paper_case();
     Parameters parameters;
     changed.declare(parameters);
     std::vector<std::string> overrides{key + "=" + candidate};
-    for (const auto &[required, text] : entries(some_case()))
+    for (const auto &[required, text] : entries(subjects::paper_case()))
       if (required != key)
         overrides.push_back(required + "=" + text);
     parameters.read_overrides(overrides);
@@ -113,7 +102,7 @@ std::optional<Case> with_another(const std::string &key, const std::string &valu
 
 TEST(ClaimInputs, EveryEntryChangesThemOrIsReadByNoClaim)
 {
-  const Case input = some_case();
+  const Case input = subjects::paper_case();
   const std::string text = claims::claim_inputs_text(input);
   std::size_t n_read = 0;
   for (const auto &[key, value] : entries(input))
@@ -130,7 +119,7 @@ TEST(ClaimInputs, EveryEntryChangesThemOrIsReadByNoClaim)
 
 TEST(ClaimInputs, MakeTheSubjectOfTheCase)
 {
-  Case input = some_case();
+  Case input = subjects::paper_case();
   input.orientation = lattice::Orientation::rows_across_crack;
   input.nearest.a = 1. / 3.;
   input.nearest.branch_moduli = {1e5 / 3., 2e5};
@@ -153,26 +142,20 @@ TEST(ClaimInputs, MakeTheSubjectOfTheCase)
   EXPECT_EQ(read.mooney_rivlin->energy_residual, whole.mooney_rivlin->energy_residual);
 }
 
-TEST(ClaimInputs, HaveTheEntriesThatAClaimDeclares)
+// A claim that read an entry that is neither listed nor declared would find its default, whatever the case says.
+TEST(ClaimInputs, HideWhatIsNeitherListedNorDeclared)
 {
-  Case input = some_case();
-  input.noise_seed = 42;
-  EXPECT_EQ(claims::claim_inputs(input, {"Lattice/noise seed"}).noise_seed, 42u);
-  EXPECT_EQ(claims::claim_inputs_text(input, {"Lattice/noise seed"}).size(),
-            claims::claim_inputs_text(input).size() + std::string("Lattice/noise seed=42\n").size());
-  EXPECT_THROW((void)claims::claim_inputs(input, {"Lattice/noise sed"}), std::logic_error);
-}
-
-// A claim that read an entry that is not listed would find its default, whatever the case says.
-TEST(ClaimInputs, HideWhatIsNotListed)
-{
-  Case input = some_case();
+  Case input = subjects::paper_case();
   input.continuum.penalty = 7.;
   input.noise_seed = 42;
   const Case read = claims::claim_inputs(input);
   EXPECT_EQ(read.continuum.penalty, Case().continuum.penalty);
   EXPECT_EQ(read.noise_seed, Case().noise_seed);
   EXPECT_NE(read.length, input.length);
+  EXPECT_EQ(claims::claim_inputs(input, {"Lattice/noise seed"}).noise_seed, 42u);
+  EXPECT_EQ(claims::claim_inputs_text(input, {"Lattice/noise seed"}).size(),
+            claims::claim_inputs_text(input).size() + std::string("Lattice/noise seed=42\n").size());
+  EXPECT_THROW((void)claims::claim_inputs(input, {"Lattice/noise sed"}), std::logic_error);
 }
 
 } // namespace claim_inputs_test

@@ -91,13 +91,6 @@ TEST(CutStudy, HoldsWithAHoleInBothOrientationsAndForBothShellSets)
   expect_holds(subject(input, subjects::nearest_only(input)), local_study());
 }
 
-TEST(CutStudy, HoldsWithANotchForBothShellSets)
-{
-  const Case input = subjects::paper_case();
-  for (const Subject &right : {paper_subject(), subject(input, subjects::nearest_only(input))})
-    expect_holds(right, notch_study(true));
-}
-
 // The sheet without a cut between held edges: the force on the top edge is that of all columns, those next to a free
 // edge included.
 TEST(CutStudy, ForcesOnAnEdgeIncludeThoseNextToAFreeEdge)

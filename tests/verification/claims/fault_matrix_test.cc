@@ -281,9 +281,6 @@ TEST(Surroundings, AreThoseOfTheirClosedForms)
     const Results waves = wave_speeds_claim(subject, options).results;
     EXPECT_TRUE(waves.all_hold()) << waves.verdict_text(6);
   }
-  const Subject subject = bridge::subject(subjects::paper_case());
-  const Results right = absorbing_end_rows(subject);
-  EXPECT_TRUE(right.all_hold()) << right.verdict_text(3);
 }
 
 } // namespace fault_matrix_test

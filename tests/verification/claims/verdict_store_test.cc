@@ -1,5 +1,6 @@
 // Verdicts come back as they were stored, and only for the inputs for which they were found.
 #include "tests/support/temporary_folder.h"
+#include "tests/verification/claims/subjects.h"
 
 #include "support/errors.h"
 #include "verification/claims/verdict_store.h"
@@ -25,16 +26,6 @@ using claims::Verdicts;
 using input::Case;
 using input::sha256;
 
-Case some_case()
-{
-  Case input;
-  input.spacing = 0.625e-3;
-  input.length = 0.03;
-  input.height = 0.02;
-  input.density = 944.;
-  return input;
-}
-
 claims::Claim named(const std::string &name)
 {
   claims::Claim claim;
@@ -58,16 +49,9 @@ std::string replaced(std::string text, const std::string &from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
-// FIPS 180-4's own example, and the hash of nothing.
-TEST(Sha256, HasTheKnownValues)
-{
-  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-}
-
 TEST(VerdictKey, IsThatOfProgramClaimsSizeRanksAndInputs)
 {
-  const Case input = some_case();
+  const Case input = subjects::paper_case();
   const bridge::Laws lattice_laws = bridge::laws_of_lattice();
   const claims::Claim energy = named("energy");
   const std::string hash = verdict_key(input, {energy}, lattice_laws, true, 1).hash;

@@ -74,31 +74,4 @@ TEST(Oscillation, FindsFrequencyAndDecayIfThereAreSuch)
   EXPECT_THROW(fit_oscillation(dies_out, 1.), std::runtime_error);
 }
 
-TEST(WaveCell, HoldsWholeWavelengthsNearTheLengthAskedFor)
-{
-  for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
-    for (const WaveDirection &direction : {WaveDirection{1, 0}, {0, 1}, {1, 1}, {3, 1}, {1, 2}})
-      for (const double kd : {0.05, 0.3, 1., 2.})
-      {
-        const WaveCell cell = wave_cell(1e-3, orientation, direction, kd);
-        EXPECT_NEAR(cell.K.norm() * 1e-3, kd, 0.021 * kd);
-        EXPECT_LT((cell.K.normalized() - unit_vector(direction, orientation)).norm(), 1e-14);
-        for (const double turns : {cell.K.x() * cell.sheet.length(), cell.K.y() * cell.sheet.height()})
-          EXPECT_NEAR(turns / (2. * M_PI), std::round(turns / (2. * M_PI)), 1e-9);
-      }
-}
-
-TEST(WaveDirection, HasTheAnglesThatTheClaimsName)
-{
-  for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
-  {
-    const auto directions = wave_directions(orientation);
-    EXPECT_NEAR(angle(directions[0], orientation), 0., 1e-13);
-    EXPECT_NEAR(angle(directions[1], orientation), 30., 1e-13);
-    EXPECT_NEAR(angle(directions[2], orientation), 90., 1e-13);
-    const double odd = std::fmod(angle(directions[3], orientation), 30.);
-    EXPECT_GT(std::min(odd, 30. - odd), 5.);
-  }
-}
-
 } // namespace wave_speeds_test

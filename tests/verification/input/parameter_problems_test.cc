@@ -53,20 +53,6 @@ TEST(Parameters, NearestKeyIsOfTheSameSectionIfBothFit)
                     "First, Second");
 }
 
-TEST(Parameters, OldSectionsNameWhatReplacedThem)
-{
-  double length = 1.;
-  Parameters p;
-  p.add("Sheet", "length", length, any_number, "m", "one");
-  p.read_text("subsection Damage\n  set length = 1\nend\n", "a.prm");
-  p.read_overrides({"Damage/length=1"});
-  const std::vector<std::string> all = problems_of(p);
-  ASSERT_EQ(all.size(), 2u);
-  EXPECT_EQ(all[0], "a.prm:1: unknown subsection 'Damage'; replaced by Nonlocal and Fracture (docs/continuum-crack.md); known: Sheet");
-  EXPECT_EQ(all[1], "--set: Damage/length = 1: unknown subsection 'Damage'; replaced by Nonlocal and Fracture "
-                    "(docs/continuum-crack.md); known: Sheet");
-}
-
 TEST(Parameters, RangesHoldAtTheirEnds)
 {
   EXPECT_TRUE(Above(0.).contains(5e-324));

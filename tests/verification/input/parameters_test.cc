@@ -51,24 +51,6 @@ TEST(Parameters, FillsEveryKindOfEntry)
   EXPECT_EQ(values(sample), values(other_than_default()));
 }
 
-TEST(Parameters, DefaultsStayWhereNothingIsSet)
-{
-  const Sample sample = read(good);
-  EXPECT_EQ(sample.spacing, 1.);
-  EXPECT_EQ(sample.area_factor, 0.6667);
-  EXPECT_EQ(sample.title, "sample");
-  EXPECT_EQ(sample.stretches, (std::vector<double>{1., 2.}));
-  EXPECT_FALSE(sample.time_step);
-}
-
-TEST(Parameters, OverridesWinOverTheFile)
-{
-  const Sample sample = read(good, {"Lattice/spacing=2 cm", " Run / title = x=y ", "Fracture/rule=retraction"});
-  EXPECT_EQ(sample.spacing, 0.02);
-  EXPECT_EQ(sample.title, "x=y");
-  EXPECT_EQ(sample.rule, Rule::retraction);
-}
-
 TEST(Parameters, AnyLineEndsAndNoneAtTheEnd)
 {
   EXPECT_EQ(read("subsection Lattice\r\nset spacing = 2\r\nend").spacing, 2.);
@@ -151,16 +133,6 @@ TEST(Parameters, ResolvedCaseIsDocumentedAndInSI)
   EXPECT_NE(text.find("# Distance d of nearest sites [m] (> 0; required)"), std::string::npos) << text;
   EXPECT_EQ(text.find("# default"), std::string::npos) << "a required entry has none, the others are at theirs";
   EXPECT_LT(text.find("subsection Lattice"), text.find("subsection Fracture")) << "not in the order of declaration";
-}
-
-TEST(Parameters, LinesChangeWithEveryValue)
-{
-  const std::string original = lines_of(good);
-  for (const std::string change :
-       {"Lattice/spacing=1.0000000000000002", "Lattice/nearest neighbour area factor=0.5", "Lattice/rows=4",
-        "Lattice/periodic=true", "Lattice/law=linear", "Lattice/density=2", "Fracture/rule=retraction",
-        "Fracture/stretches=2, 1", "Run/steps=101", "Run/seed=8", "Run/title=other", "Run/time step=1"})
-    EXPECT_NE(lines_of(good, {change}), original) << change;
 }
 
 TEST(Parameters, LinesDoNotDependOnHowTheCaseIsWritten)

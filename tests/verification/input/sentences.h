@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <ostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,16 @@ inline std::string unescaped(const std::string &text)
     i += letter == std::string::npos ? 0 : 1;
   }
   return result;
+}
+
+/// The entries of an input, which semicolons separate.
+inline std::vector<std::string> entries(const std::string &input)
+{
+  std::vector<std::string> all;
+  std::istringstream parts(input);
+  for (std::string part; std::getline(parts >> std::ws, part, ';');)
+    all.push_back(part);
+  return all;
 }
 
 /// Those of some kinds.

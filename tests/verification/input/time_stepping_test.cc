@@ -1,12 +1,9 @@
 // Time stepping of the lattice as chosen by a case. Refused choices: tests/verification/refusals.txt.
-#include <algorithm>
-
 #include <gtest/gtest.h>
 
 #include "lattice/chebyshev_stages.h"
 #include "lattice/contact.h"
-#include "support/errors.h"
-#include "verification/input/case.h"
+#include "tests/verification/input/small_case.h"
 
 namespace time_stepping_test
 {
@@ -14,26 +11,17 @@ namespace time_stepping_test
 using namespace latcon;
 using namespace input;
 
-using Lines = std::vector<std::string>;
+using small_case::Lines;
 
 constexpr const char *chebyshev = "Time/integrator=runge-kutta-chebyshev";
 
-// The rubber of fig1.prm in a small sheet.
+// The rubber of fig1.prm.
 void read(const Lines &overrides, Case &input)
 {
   Parameters parameters;
-  input.declare(parameters);
-  parameters.read_text("", "a.prm");
-  Lines all = overrides;
-  for (const std::string entry : {"Sheet/spacing=0.625 mm", "Sheet/length=20 mm", "Sheet/height=20 mm",
-                                  "Material/density=944", "Loading/strain x=1.3", "Loading/strain y=1.8",
-                                  "Nearest neighbours/viscosity=65.625", "Next-nearest neighbours/viscosity=196.875"})
-    if (std::none_of(overrides.begin(), overrides.end(),
-                     [&](const std::string &other)
-                     { return other.substr(0, other.find('=')) == entry.substr(0, entry.find('=')); }))
-      all.push_back(entry);
-  parameters.read_overrides(all);
-  input.check(parameters);
+  small_case::read(overrides, input, parameters,
+                   {"Sheet/spacing=0.625 mm", "Loading/strain x=1.3", "Loading/strain y=1.8",
+                    "Nearest neighbours/viscosity=65.625", "Next-nearest neighbours/viscosity=196.875"});
   parameters.finish();
 }
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,8 +11,8 @@
 
 #include "support/errors.h"
 #include "tests/verification/input/sentences.h"
+#include "tests/verification/input/small_case.h"
 #include "verification/claims/claim_inputs.h"
-#include "verification/input/case.h"
 #include "verification/input/expression_parser.h"
 
 namespace user_law_test
@@ -36,22 +35,8 @@ const std::map<std::string, double> constants{{"mu", 2.}, {"alpha", -3.}};
 
 TEST(ExpressionParser, HasTheUsualGrammar)
 {
-  for (const auto &[text, at_two] : std::vector<std::pair<std::string, double>>{{"lam", 2.},
-                                                                                {"mu/2*(lam^2 + 2/lam - 3)", 2.},
-                                                                                {"-lam^2", -4.},
-                                                                                {"2^3^2", 512.},
-                                                                                {"(-lam)^2", 4.},
-                                                                                {"lam^-2", 0.25},
-                                                                                {"lam^alpha", 0.125},
-                                                                                {"mu*-lam", -4.},
-                                                                                {"6/3/2", 1.},
-                                                                                {"5-2-1", 2.},
-                                                                                {"1e-3*lam + .5", 0.502},
-                                                                                {"sqrt(8*lam) - exp(0)", 3.},
-                                                                                {"log(lam*0.5)", 0.},
-                                                                                {" ( lam ) ", 2.},
-                                                                                {"log (lam*0.5)", 0.}})
-    EXPECT_EQ(value(input::parse_expression(text, "lam", constants), 2.), at_two) << text;
+  for (const sentences::Sentence &own : sentences::of({"value"}))
+    EXPECT_EQ(value(input::parse_expression(own.input, "lam", constants), 2.), std::stod(own.message)) << own;
   // exp(lam ln(lam))
   EXPECT_NEAR(value(input::parse_expression("lam^lam", "lam", constants), 2.), 4., 1e-14);
 }
@@ -82,30 +67,14 @@ TEST(ExpressionParser, NamesTheColumnOfAMistakeAndWhatIsAllowed)
 }
 
 // What a case says about the entries of nearest neighbours, and others; empty for nothing.
-std::string problems(const std::vector<std::string> &settings, const std::vector<std::string> &others = {},
+std::string problems(const std::vector<std::string> &settings, std::vector<std::string> all = {},
                      input::Case *read = nullptr)
 {
-  input::Case input;
-  input::Parameters parameters;
-  input.declare(parameters);
-  std::vector<std::string> all{"Sheet/spacing=1 mm",   "Sheet/length=4 cm",    "Sheet/height=2 cm",
-                               "Material/density=944", "Loading/strain x=0.5", "Loading/strain y=0.5"};
   for (const std::string &setting : settings)
     all.push_back("Nearest neighbours/" + setting);
-  all.insert(all.end(), others.begin(), others.end());
-  parameters.read_overrides(all);
-  input.check(parameters);
-  try
-  {
-    parameters.finish();
-  }
-  catch (const support::InputError &error)
-  {
-    return error.what();
-  }
-  if (read != nullptr)
-    *read = input;
-  return "";
+  input::Case input;
+  const small_case::Lines found = small_case::problems(all, read != nullptr ? *read : input);
+  return found.empty() ? "" : support::InputError(found).what();
 }
 
 const std::string psi = "psi=mu/2*(lam^2 + 2/lam - 3)";
@@ -177,11 +146,7 @@ TEST(UserLaw, SaysWhichEntryIsWrong)
 {
   for (const sentences::Sentence &own : sentences::of({"law"}))
   {
-    std::vector<std::string> settings;
-    std::istringstream all(own.input);
-    for (std::string setting; std::getline(all >> std::ws, setting, ';');)
-      settings.push_back(setting);
-    const std::string found = problems(settings);
+    const std::string found = problems(sentences::entries(own.input));
     EXPECT_NE(found.find(own.message), std::string::npos) << own << "\n" << found;
     EXPECT_NE(found.find("; with Nearest neighbours/law"), std::string::npos) << found;
   }

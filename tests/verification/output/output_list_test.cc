@@ -53,6 +53,8 @@ TEST_F(OutputList, NamesWhatWasWrittenOnceAndSorted)
 
 TEST_F(OutputList, FilesOfTheRunBeforeAreMovedAndNoOthers)
 {
+  fs::create_directory(folder / "earlier-run"); // of the user
+  put("earlier-run/crack.csv");
   begin_output_list(folder);
   written("crack.csv", "first");
   put("lattice-0000.vtp", "first");
@@ -61,37 +63,28 @@ TEST_F(OutputList, FilesOfTheRunBeforeAreMovedAndNoOthers)
   put("notes.txt");
   fs::create_directory(folder / "crack.csv.d");
   fs::create_symlink(folder / "notes.txt", folder / "lattice-0002.vtp");
-  EXPECT_EQ(archive_earlier_output(folder, {}), folder / "earlier-run");
+  EXPECT_EQ(archive_earlier_output(folder, {}), folder / "earlier-run-2");
   for (const char *name : {"crack.csv", "lattice-0000.vtp", "lattice-0001.vtp"})
   {
     EXPECT_FALSE(has(name)) << name;
-    EXPECT_EQ(content(folder / "earlier-run" / name), "first") << name;
+    EXPECT_EQ(content(folder / "earlier-run-2" / name), "first") << name;
   }
   for (const char *name : {"lattice-mine.vtp", "notes.txt", "crack.csv.d", "lattice-0002.vtp"})
     EXPECT_TRUE(has(name)) << name;
 
   EXPECT_EQ(archive_earlier_output(folder, {}), fs::path()); // nothing is left to move
 
-  put("earlier-run/mine.txt");
+  put("earlier-run-2/mine.txt");
   begin_output_list(folder);
   written("crack.csv", "second");
-  EXPECT_EQ(archive_earlier_output(folder, {}), folder / "earlier-run-2");
-  EXPECT_EQ(content(folder / "earlier-run-2/crack.csv"), "second");
-  EXPECT_FALSE(has("earlier-run-2/lattice-0000.vtp"));
-  // The files of the first run remain.
-  EXPECT_EQ(content(folder / "earlier-run/crack.csv"), "first");
-  EXPECT_TRUE(has("earlier-run/lattice-0000.vtp"));
-  EXPECT_TRUE(has("earlier-run/mine.txt"));
-}
-
-TEST_F(OutputList, AFolderOfTheUsersIsNotUsed)
-{
-  fs::create_directory(folder / "earlier-run");
-  put("earlier-run/crack.csv");
-  begin_output_list(folder);
-  written("crack.csv");
-  EXPECT_EQ(archive_earlier_output(folder, {}), folder / "earlier-run-2");
+  EXPECT_EQ(archive_earlier_output(folder, {}), folder / "earlier-run-3");
+  EXPECT_EQ(content(folder / "earlier-run-3/crack.csv"), "second");
+  EXPECT_FALSE(has("earlier-run-3/lattice-0000.vtp"));
   EXPECT_EQ(content(folder / "earlier-run/crack.csv"), "user");
+  // The files of the first run remain.
+  EXPECT_EQ(content(folder / "earlier-run-2/crack.csv"), "first");
+  EXPECT_TRUE(has("earlier-run-2/lattice-0000.vtp"));
+  EXPECT_TRUE(has("earlier-run-2/mine.txt"));
 }
 
 } // namespace output_list_test

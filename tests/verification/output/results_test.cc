@@ -1,8 +1,6 @@
 // A result holds if and only if its error is a finite number within its tolerance; files and table agree.
-#include "tests/support/temporary_folder.h"
-
 #include "support/errors.h"
-#include "verification/output/results.h"
+#include "verification/claims/rows.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -44,7 +42,7 @@ Results sample()
   row.tolerance.reason = "half, for a test";
   row.gate = true;
   results.add(row);
-  row = checked(not_a_number, 1e-10);
+  row = checked(-not_a_number, 1e-10);
   EXPECT_EQ(row.tolerance.reason, "");
   row.claim = "a \"quoted\", odd claim";
   row.unit = "\"";
@@ -164,16 +162,6 @@ TEST(Results, CsvHasTheSameRows)
             "energy,energy density,J/m^3,,,,,,reported,,false,claim\n");
 }
 
-TEST(Results, WritesBothFilesOrSaysWhyNot)
-{
-  const TemporaryFolder folder;
-  const Results results = sample();
-  results.write(folder.path());
-  EXPECT_EQ(content_of(folder / "results.json"), results.json());
-  EXPECT_EQ(content_of(folder / "results.csv"), results.csv());
-  EXPECT_THROW(results.write(folder / "missing"), latcon::support::OutputError);
-}
-
 TEST(Results, TextThatIsNotUtf8DoesNotLoseTheFile)
 {
   Results results;
@@ -197,24 +185,17 @@ TEST(Results, TableShowsNamesUnitsAndSevenDigits)
                        "energy  energy density [J/m^3]  0.3333333             2000000  1.23e-11      1e-10  holds\n");
 }
 
-TEST(Results, SayHowTheChecksCameOutAndWhichFail)
+TEST(ClaimOutcome, JoinsTablesOfTheSameName)
 {
-  Results results;
-  EXPECT_EQ(results.verdict_text(3), "nothing was checked\n");
-  results.add(checked(0.5, {}));
-  EXPECT_EQ(results.verdict_text(3), "nothing was checked\n");
-  results.add(checked(0.5, 1.));
-  EXPECT_EQ(results.verdict_text(3), "1 check holds\n");
-  results.add(checked(0.25, 1.));
-  EXPECT_EQ(results.verdict_text(3), "2 checks hold\n");
-  results.add(checked(not_a_number, 0.5));
-  EXPECT_EQ(results.verdict_text(3), "1 of 3 checks fails:\n  energy: energy density: error nan, tolerance 0.5\n");
-  results.add(checked(2., 1e-10));
-  results.add(checked({}, 1.));
-  EXPECT_EQ(results.verdict_text(2), "3 of 5 checks fail:\n  energy: energy density: error nan, tolerance 0.5\n"
-                                     "  energy: energy density: error 2, tolerance 1e-10\n"
-                                     "  and 1 more, see results.csv\n");
-  EXPECT_EQ(results.count(Verdict::reported), 1u);
+  claims::ClaimOutcome first, second;
+  first.table("t", {"a"}).add({1.});
+  second.table("t", {"a"}).add({2.});
+  second.table("u", {"b"}).add({3.});
+  second.results.add(checked(0., 1.));
+  first.add(second);
+  EXPECT_EQ(first.tables.at("t").csv(), "a\n1\n2\n");
+  EXPECT_EQ(first.tables.at("u").csv(), "b\n3\n");
+  EXPECT_EQ(first.results.rows().size(), 1u);
 }
 
 } // namespace results_test

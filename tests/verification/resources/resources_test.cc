@@ -1,7 +1,5 @@
-// Estimates of what a run takes: sizes are those of the sheets, and no size is too large for an estimate.
+// Estimates of what a run takes: sizes are those of the sheets. Memory and time: dry_run_test.py.
 #include "verification/resources/resources.h"
-
-#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -14,40 +12,18 @@ using namespace latcon;
 using namespace input;
 using namespace resources;
 
-Case square(double length, double spacing)
+Case square()
 {
   Case input;
-  input.spacing = spacing;
-  input.length = input.height = length;
+  input.spacing = 1e-3;
+  input.length = input.height = 0.02;
   input.density = 1000.;
   return input;
 }
 
-TEST(Resources, MemoryOfALatticeGrowsAsItsSites)
-{
-  const auto total = [](double length)
-  {
-    const MemoryNeed need = lattice_memory(square(length, 1e-3), RunKind::dynamics);
-    return need.shared + need.first_rank;
-  };
-  EXPECT_NEAR(total(1.) / total(0.5), 4., 0.1);
-  EXPECT_GT(total(1.), 1.1547e6 * 500.); // 1.1547 sites to a square spacing
-  EXPECT_LT(total(1.), 1.1547e6 * 2000.);
-}
-
-TEST(Resources, TheLargestSheetHasAnEstimate)
-{
-  const auto total = [](double length)
-  {
-    const MemoryNeed need = lattice_memory(square(length, 1e-3), RunKind::fracture, true);
-    return need.shared + need.first_rank;
-  };
-  EXPECT_NEAR(total(1e3) / total(10.), 1e4, 100.); // edges of the smaller sheet, 4 rows of 10^4
-}
-
 TEST(Resources, UnknownsOfARectangleAreThoseOfItsNodes)
 {
-  Case input = square(0.02, 1e-3);
+  Case input = square();
   input.continuum.cells_x = input.continuum.cells_y = 24;
   input.continuum.degree = 3;
   const ContinuumSize size = continuum_size(input);
@@ -61,7 +37,7 @@ TEST(Resources, UnknownsOfARectangleAreThoseOfItsNodes)
 
 TEST(Resources, AdaptiveCyclesAddThreeCellsForEachThatIsRefined)
 {
-  Case input = square(0.02, 1e-3);
+  Case input = square();
   input.continuum.adaptive_cycles = 2;
   input.continuum.refined_fraction = 1.;
   const ContinuumSize size = continuum_size(input);
@@ -70,7 +46,7 @@ TEST(Resources, AdaptiveCyclesAddThreeCellsForEachThatIsRefined)
 
 TEST(Resources, MoreUnknownsThanHaveNumbersAreRefused)
 {
-  Case input = square(0.02, 1e-3);
+  Case input = square();
   input.continuum.cells_x = input.continuum.cells_y = 65536;
   EXPECT_THROW((void)continuum_size(input), latcon::support::InputError);
   input.continuum.cells_x = input.continuum.cells_y = 2;
@@ -81,7 +57,7 @@ TEST(Resources, MoreUnknownsThanHaveNumbersAreRefused)
 
 TEST(Resources, StepsThatCannotBeCountedAreTold)
 {
-  Case input = square(0.02, 1e-3);
+  Case input = square();
   Parameters parameters;
   input.declare(parameters);
   input.end_time = 1.;
