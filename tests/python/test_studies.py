@@ -60,11 +60,10 @@ def test_a_repeated_sweep_uses_its_runs_again(swept):
     assert sweep(directory, progress=False).equals(data) and [file.stat().st_mtime_ns for file in files] == times
 
 
-@pytest.mark.parametrize("executor, tasks", [(concurrent.futures.ThreadPoolExecutor(2), None), (Lazy(), 2)])
-def test_any_executor_gives_the_same_numbers(swept, tmp_path, executor, tasks):
+def test_any_executor_gives_the_same_numbers(swept, tmp_path):
     lines = []
-    assert sweep(tmp_path / "out", executor=executor, tasks=tasks, progress=lines.append).equals(swept[1])
-    assert lines[-1] == ("3 of 4 tasks" if tasks is None else "1 of 2 tasks")
+    assert sweep(tmp_path / "out", executor=Lazy(), tasks=2, progress=lines.append).equals(swept[1])
+    assert lines[-1] == "1 of 2 tasks"
 
 
 @pytest.mark.parametrize("code, error", [(3, None), (4, None), (5, latcon.OutputFailed), (130, latcon.Interrupted)])

@@ -68,8 +68,7 @@ def test_periodic_sheets_are_the_same_sheet(tmp_path, out):
 
 def test_equal_sheets_agree(once, out):
     tolerances = [word for name in FIELDS for word in ("--tolerance", f"{name}=1e-6")]
-    for continuum in [once.continuum, once.runs / "pieces" / "continuum.pvd", once.continuum / "continuum_0001.vtu",
-                      once.runs / "pieces" / "continuum_0001.pvtu"]:
+    for continuum in (once.continuum / "continuum_0001.vtu", once.runs / "pieces" / "continuum.pvd"):
         compare(out, once.lattice, continuum, *tolerances)
         assert json.loads((out / "results.json").read_text())["verdict"] == "holds"
     assert found(out)["sites outside the finite element sheet"]["lattice"] == "0"
@@ -127,7 +126,6 @@ def test_sites_in_excluded_circles_are_not_compared(once, out):
     chosen = (values(theirs, "held") == 0) & ~circles
     assert int(rows["free sites inside"]["lattice"]) == chosen.sum()
     expect_norm(theirs, rows["displacement, rms difference"], "displacement", chosen, np.mean)
-    refused(out, ["cannot be compared"], once.lattice, once.continuum, "--exclude", "0,0,1 m")
 
 
 # One homogeneous deformation, also in the left half of the sheet.
@@ -146,27 +144,24 @@ def test_ranks_leave_no_trace(once, tmp_path, out):
     compare(out, once.lattice, once.continuum)
     names = ["difference.pvd", "difference_sites.vtp", "difference_continuum.vtu", "results.json", "results.csv"]
     one = {name: (out / name).read_bytes() for name in names}
-    latcon_on_ranks(3, "compare", once.lattice, once.continuum, "--output-dir", tmp_path / "ranks")
+    latcon_on_ranks(2, "compare", once.lattice, once.continuum, "--output-dir", tmp_path / "ranks")
     for name in names:
         assert one[name] == (tmp_path / "ranks" / name).read_bytes(), name
-    latcon_on_ranks(3, "compare", once.continuum, once.lattice, "--output-dir", tmp_path / "none", expect=2)
-    assert not (tmp_path / "none").exists()
 
 
 def test_motions_end_at_the_same_time(once, out):
     lattice, continuum = once.runs / "lattice-moves", once.runs / "continuum-moves"
-    compare(out, lattice, continuum)
+    compare(out, lattice, continuum, "--time", "0.02 ms")
     assert frames(out / "difference.pvd")[0][0] / 2e-5 == pytest.approx(1., abs=1e-9)
     assert "velocity, rms difference" in found(out)
-    compare(out, lattice, continuum, "--time", "0.02 ms")
     compare(out, lattice, continuum, "--lattice-time", "0", "--continuum-time", "2e-5")
     row = found(out)["time"]
     assert (row["lattice"], float(row["continuum"])) == ("0", 2e-5)
 
 
 def test_bad_input_touches_nothing(once, out):
-    compare(out, once.lattice, once.continuum)
-    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    out.mkdir()
+    (out / "results.json").write_text("of another comparison")
     # Each option names all that is wrong with it.
     refused(out, ["--tolerance speed=1", "displacement", "larger than 0"], once.lattice, once.continuum, "--tolerance", "speed=1",
             "--tolerance", "displacement=0")
@@ -174,8 +169,9 @@ def test_bad_input_touches_nothing(once, out):
             "--exclude", "1,2", "--exclude", "0,0,0", "--exclude", "0,1 furlong,1")
     refused(out, ["furlong"], once.lattice, once.continuum, "--time", "1 furlong")
     refused(out, ["--time is for both"], once.lattice, once.continuum, "--time", "1", "--lattice-time", "1")
+    refused(out, ["cannot be compared"], once.lattice, once.continuum, "--exclude", "0,0,1 m")
     refused(once.lattice, ["whose run.json and results.json would be lost"], once.lattice, once.continuum)
     refused(out, ["--set"], once.lattice, once.continuum, "--set", "Sheet/length=1")
     (once.runs / "pieces" / "continuum_0000.1.vtu").unlink()
     refused(out, ["continuum_0000"], once.lattice, once.runs / "pieces", "--time", "0")
-    assert before == {path.name: path.read_bytes() for path in out.iterdir()}
+    assert [(path.name, path.read_text()) for path in out.iterdir()] == [("results.json", "of another comparison")]

@@ -30,16 +30,22 @@ def compare(out, *arguments):
     return run.stdout, json.loads((out / "compare.json").read_text())
 
 
+@pytest.fixture(scope="module")
+def compared(module_path, pair):
+    """What was printed of the two, and compare.json."""
+    return compare(module_path / "compared", *pair)
+
+
 def refused(*arguments):
     run = latcon("compare", *arguments, expect=2)
     assert run.stdout == ""
     return run.stderr
 
 
-def test_quantities_are_those_of_the_runs(pair, out):
-    text, found = compare(out, *pair)
+def test_quantities_are_those_of_the_runs(module_path, pair, compared):
+    text, found = compared
     rows = {row["name"]: row for row in found["quantities"]}
-    table = {row["quantity"]: row for row in read_csv(out / "compare.csv")}
+    table = {row["quantity"]: row for row in read_csv(module_path / "compared" / "compare.csv")}
     assert list(rows) == list(table)
     for file, names in [("crack.json", ["speed_lagrangian", "speed_laboratory", "bonds_broken"]),
                         ("near_tip.json", ["wedge_angle"])]:
@@ -59,15 +65,15 @@ def test_quantities_are_those_of_the_runs(pair, out):
     assert re.search(r"(?m)^pattern ", text)
 
 
-def test_entries_that_differ_are_listed(pair, out):
-    text, found = compare(out, *pair)
+def test_entries_that_differ_are_listed(compared):
+    text, found = compared
     assert found["entries"] == [{"key": "Lattice/noise seed", "unit": "", "first": "1", "second": "3"},
                       {"key": "Loading/strain y", "unit": "1", "first": "1.8", "second": "1.9"}]
     assert re.search(r"(?m)^Loading/strain y +1\.8 +1\.9$", text)
 
 
-def test_distance_of_the_paths_is_numpys(pair, out):
-    _, found = compare(out, *pair)
+def test_distance_of_the_paths_is_numpys(pair, compared):
+    _, found = compared
     paths = [np.genfromtxt(run / "crack.csv", delimiter=",", names=True) for run in pair]
     begin, end = max(path["X"][0] for path in paths), min(path["X"][-1] for path in paths)
     assert (found["paths"]["X_begin"], found["paths"]["X_end"]) == (begin, end)

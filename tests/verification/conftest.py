@@ -36,9 +36,10 @@ def start():
 
 @pytest.fixture(scope="session")
 def tiny_study():
-    """Output directory of the study TINY, which has run to its end, without its page."""
+    """Output directory of the study TINY, which has run to its end, without its page; beside it what was printed."""
     from studies import run, write_study
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "out"
-        run("study", write_study(pathlib.Path(folder)), "--output-dir", out, "--skip-verification", "--no-report")
+        (out.parent / "printed").write_text(
+            run("study", write_study(pathlib.Path(folder)), "--output-dir", out, "--skip-verification", "--no-report"))
         yield out

@@ -29,12 +29,6 @@ def sheared(out, *entries):
     return *extent, results(out), points, field(mesh, "displacement")
 
 
-def force_of(out, *entries):
-    """Over that of the local law."""
-    length, _, found, *_ = sheared(out, *entries)
-    return found[TOP_FORCE] / (MODULUS * length)
-
-
 def test_converges_to_the_closed_form(out):
     """theory-continuum.md, eq. (C.35)."""
     l = 4e-3
@@ -55,25 +49,6 @@ def test_converges_to_the_closed_form(out):
     for coarse, fine in zip(*errors):
         assert fine < 1.5e-5
         assert math.log2(coarse / fine) > 3.5
-
-
-def test_stiffening_by_size(out):
-    _, height, *_ = sheared(out)
-    for ratio in (0.05, 0.1, 0.2):
-        # Measured: 7.7e-6, 1.2e-6, 1.9e-7; in the first, the boundary layer is 1.6 cells thick.
-        force = force_of(out, f"Continuum/static length={ratio * height!r}", "Continuum/cells y=32")
-        assert abs(force / stiffening(ratio) - 1.) < 1.5e-5, ratio
-
-
-def test_local_law_is_the_limit(out):
-    free = ["Bottom edge/normal gradient=free", "Top edge/normal gradient=free"]
-    # Linear elements hold a uniform shear exactly; Newton stops at 1e-10.
-    assert force_of(out, "Continuum/gradient=none", "Continuum/degree=1", *free) == pytest.approx(1., abs=1e-9)
-    # Without clamping there is no boundary layer for any length.
-    assert force_of(out, *free) == pytest.approx(1., abs=1e-9)
-    # At most the stiffening 2 l/H due to a layer that the mesh does not resolve.
-    assert force_of(out, "Continuum/static length=1e-6") == pytest.approx(1., abs=2e-6 / 0.0194)
-    assert force_of(out, "Continuum/static length=0", *free) == pytest.approx(1., abs=1e-9)
 
 
 def mean_rod(F, a, b):
@@ -211,14 +186,14 @@ def test_large_strain_is_carried_with_gradient_energy(once):
         out = once.parent / law
         latcon("continuum", HOLE, "--output-dir", out,
                *settings(*FIG1, f"Continuum/law={law}", f"Continuum/gradient={gradient}",
-                         "Continuum/adaptive cycles=5"))
+                         "Continuum/adaptive cycles=2", "Continuum/reaction tolerance=1e-4"))
         assert results(out)["largest area ratio"] > 6.
 
 
 def test_loading_that_cannot_be_carried_is_4(once):
     run = latcon("continuum", HOLE, "--output-dir", once.parent / "torn",
                  *settings(*FIG1, "Continuum/law=mooney-rivlin", "Continuum/gradient=none",
-                           "Continuum/refinements=2", "Continuum/adaptive cycles=0"), expect=4)
+                           "Continuum/refinements=1", "Continuum/adaptive cycles=0"), expect=4)
     for part in ["equilibrium was found beyond load factor 0.", "rejected", "converged", "iteration  0  residual"]:
         assert part in run.stdout + run.stderr
     assert "no static equilibrium was found" in run.stderr

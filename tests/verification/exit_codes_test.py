@@ -29,8 +29,7 @@ def test_script_that_fails(out):
     assert code_in_file(out) == OUTPUT_FAILED
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("frame", ["lattice-0000.vtp", "motion-0000.vtp"])
+@pytest.mark.parametrize("ranks, frame", [(1, "lattice-0000.vtp"), (2, "motion-0000.vtp")])
 def test_frame_that_cannot_be_written_ends_a_run_that_takes_hours(out, ranks, frame):
     (out / frame).mkdir(parents=True)
     arguments = [*SHEET, "--set", "Time/end=10 s", "--set", "Fracture/breaking stretch=1000",

@@ -135,7 +135,9 @@ int main(int argc, char **argv)
   // Threads do not survive a fork.
   setenv("OMP_NUM_THREADS", "1", 1);
   setenv("OPENBLAS_NUM_THREADS", "1", 1);
-  const support::MpiSession mpi;
-  serve();
-  return 0;
+  {
+    const support::MpiSession mpi;
+    serve();
+  }
+  _exit(0); // what the module with the finite elements keeps would be released after it
 }

@@ -59,7 +59,6 @@ def test_help_on_an_entry_has_all_of_it():
         assert part in text
     assert latcon("help", "toughening").stdout == text
     assert "unit:     m;" in latcon("help", "near", "tip/ahead").stdout
-    assert "Sheet/spacing\n" in latcon("help", "Sheet/spacing").stdout
     assert latcon("help", "viscosity").stdout.count("default:") == 4  # of three shells and the contact
     assert latcon("help", "Contact").stdout == latcon("entries", "Contact").stdout
 
@@ -76,8 +75,7 @@ def test_init_makes_a_case_that_runs(tmp_path):
 
 
 def test_absurd_cost_needs_yes(out):
-    for command, *entries in [("fracture", *FINE), ("lattice", *FINE, "--set", "Lattice/solution=motion", "--set",
-                                                    "Time/end=1 s")]:
+    for command, *entries in [("fracture", *FINE), ("lattice", "--set", "Lattice/solution=motion", "--set", "Time/end=1e5 s")]:
         for mode in ([], ["--dry-run"]):
             run = latcon(command, "quick", *entries, *mode, "--output-dir", out, expect=2)
             assert re.search(r"the run would take about \S+ days, more than 10; .*; use --yes", run.stderr)

@@ -83,18 +83,6 @@ def test_patterns_are_those_of_the_paper(out):
     assert code == 0
 
 
-@quick_only
-def test_without_viscosity_the_crack_that_should_oscillate_runs_straight(tmp_path, out):
-    shipped = CASES.parent / "studies" / "patterns.json"
-    document = json.loads(shipped.read_text())
-    document.update(base=str(shipped.parent / document["base"]), runs={"fig1": document["runs"]["fig1"]}, claims=document["claims"][:1])
-    (tmp_path / "one.json").write_text(json.dumps(document))
-    code, claims = study(out, tmp_path / "one.json", "--quick", "--set", "Nearest neighbours/viscosity=10", "--set",
-                         "Next-nearest neighbours/viscosity=30")
-    assert claims[0]["rows"][0]["verdict"] == "does not hold"
-    assert code == 3
-
-
 @full_only
 def test_integrators_give_the_same_crack_and_long_steps_save_two_thirds(out):
     planned = {line.split()[0]: int(line.split()[2]) for line in latcon("study", "time-stepping", "--quick", "--dry-run").stdout.splitlines()

@@ -24,12 +24,9 @@ NONLOCAL = {"Sheet/spacing": "1 mm", "Sheet/length": "30 mm", "Sheet/height": "1
 # Command and entries.
 RUNS = {
     "absorbing end": (QUICK, {**SHEET, "Fracture/right end": "absorbing", "Time/end": "0.8 ms"}),
-    "history": (QUICK, {**SHEET, **HISTORY}),
+    "history and expression": (QUICK, {**SHEET, **HISTORY, **LAW}),
     "branches and disorder": (SPECTRUM, {**VISCOUS, **DISORDER, "Checkpoints/steps": 200, "Output/energy interval": 50}),
-    "branches in long steps": (SPECTRUM, {**VISCOUS, **LONG_STEPS}),
-    "expression": (QUICK, {**SHEET, **LAW}),
-    "expression and branches": (SPECTRUM, {**VISCOUS, **LAW, "Checkpoints/steps": 200}),
-    "nonlocal continuum": ([*QUICK, "--side", "continuum"], NONLOCAL),
+    "expression and branches in long steps": (SPECTRUM, {**VISCOUS, **LAW, **LONG_STEPS}),
     "scattered points": ([*QUICK, "--side", "continuum"], {**NONLOCAL, "Nonlocal/scatter": 0.5}),
     "motion": (["lattice", CASES / "quick.prm"], {"Lattice/solution": "motion", "Time/end": "0.1 ms", "Output/frame interval": "0.05 ms",
                                                   "Checkpoints/steps": 32}),
@@ -46,7 +43,7 @@ def test_ranks_threads_and_restarts_leave_the_same_files(tmp_path, name):
     assert "lattice-0002.vtp" in expected
     if case[0] == "fracture":
         assert json.loads(expected["crack.json"])["bonds_broken"] > 10
-    if name in ("absorbing end", "nonlocal continuum"):
+    if name in ("absorbing end", "scattered points"):
         assert json.loads(expected["near_tip.json"])["samples"] > 5
     latcon_on_ranks(2, *command, "--threads", 1, "--output-dir", shared, expect=run.returncode)
     expect_same(shared, expected)

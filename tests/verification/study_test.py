@@ -11,6 +11,7 @@ import pytest
 
 from program import CASES, LATCON, children, latcon, read_csv, wait_for
 from studies import TINY, Studies, run, words_of, write_study
+from verdicts_fixture import BUCKLED
 
 FOLDERS = ["base-1", "base-2", "low-1", "thin-1"]
 # The rubber of quick.prm itself, whose verdicts the fixture of the tests has left, for studies that verify it.
@@ -34,13 +35,12 @@ class TestStudy(Studies):
             document["runs"] = {"fine": {}, "coarse": {"set": {"Time/step": "16 us"}}}  # four times the automatic step
             document["claims"] = [{"claim": "It runs", "rows": [{"run": "fine", "quantity": "bonds_broken", "above": 1},
                                                                 {"run": "coarse", "quantity": "bonds_broken"}]}]
-        printed = self.study(change=change, expect=3, page=True)
+        printed = self.study(change=change, expect=3)
         assert re.search(r"coarse, seed 1: failed its checks: fracture: energy imbalance [^()]* \(ledger\)", printed)
         assert [line["state"] for line in read_csv(self.out / "study.csv")] == ["measured", "failed its checks"]
         claim, = json.loads(self.text("study.json"))["claims"]
         assert claim["verdict"] == "holds"  # no row needs the run that failed, but the study does
         assert [row["values"][0]["n"] for row in claim["rows"]] == [1, 0]
-        assert "coarse, seed 1: failed its checks</b> fracture: energy imbalance" in self.text("study.html")
         assert list(json.loads(self.text("runs/coarse-1/run.json"))["failed_rows"].values()) == ["ledger"]
         times = [path.stat().st_mtime_ns for path in sorted(self.out.glob("runs/*/crack.json"))]
         self.study("--resume", change=change, expect=3)  # such a run would end alike
@@ -49,15 +49,18 @@ class TestStudy(Studies):
     def text(self, name):
         return (self.out / name).read_text()
 
-    def times(self):
+    def times(self, names=FOLDERS):
         """Modification times of the runs."""
-        return {name: (self.out / "runs" / name / "crack.json").stat().st_mtime_ns for name in FOLDERS}
+        return {name: (self.out / "runs" / name / "crack.json").stat().st_mtime_ns for name in names}
 
-    def test_runs_everything_and_leaves_every_file(self):
-        environment = {name: value for name, value in os.environ.items() if not name.startswith("OMPI_")}
-        printed = self.study(env=environment, page=True, change=lambda document: document.update(pictures=["base"]))
+    def test_runs_everything_and_leaves_every_file(self, ended, tiny_study):
+        printed = (tiny_study.parent / "printed").read_text()
         assert "[4/4]" in printed
         assert max(map(len, printed.splitlines())) <= 120
+        assert not {"study.html", "pictures"} & set(os.listdir(self.out))
+        # A page is drawn of runs that are finished.
+        environment = {name: value for name, value in os.environ.items() if not name.startswith("OMPI_")}
+        self.study("--resume", env=environment, page=True, change=lambda document: document.update(pictures=["base"]))
         assert sorted(path.name for path in (self.out / "runs").iterdir()) == FOLDERS
         assert "report.html" not in os.listdir(self.out / "runs" / "base-1")
         document = json.loads(self.text("study.json"))
@@ -77,23 +80,9 @@ class TestStudy(Studies):
         assert 'class="banner holds"' not in page
         assert "http" not in page.replace("http://www.w3.org", "")
 
-    def test_claim_that_could_not_be_measured_is_3(self):
-        def change(document):  # a straight crack has no wavelength
-            document["runs"] = {"base": {}}
-            document["claims"][0]["rows"] = [{"run": "base", "quantity": "speed_lagrangian", "above": 1},
-                                             {"run": "base", "quantity": "wavelength", "above": 0}]
-        printed = self.study(change=change, expect=3)
-        assert "The crack runs: incomplete" in printed
-        assert "not measured in 1 of 1" in printed
-        assert json.loads(self.text("study.json"))["claims"][0]["verdict"] == "incomplete"
-        results = json.loads(self.text("results.json"))
-        assert [row["verdict"] for row in results["claims"]] == ["holds", "fails"]
-        assert (results["claims"][1]["error"], results["verdict"]) == ("nan", "fails")
-        assert json.loads(self.text("run.json"))["exit_code"] == 3
-
     def test_state_that_is_refused_is_reported(self):
         def change(document):
-            document["runs"] = {"base": {"set": {"Loading/strain x": -0.3}}}
+            document["runs"] = {"base": {"set": BUCKLED}}
             document["claims"][0]["rows"] = [{"run": "base", "quantity": "pattern"}]
         assert "refused: verification" in self.study(change=change, skip=False, expect=3)
         assert "refused: verification" in self.text("study.csv")
@@ -102,19 +91,33 @@ class TestStudy(Studies):
 
     def test_resume_repeats_nothing_and_gives_the_same_files(self, ended):
         before, first = self.times(), {name: self.text(name) for name in ("study.json", "study.csv", "results.json")}
-        assert not {"study.html", "pictures"} & set(os.listdir(self.out))
         assert "0 runs, 4 are finished already" in self.study("--resume")
         assert self.times() == before
         assert {name: self.text(name) for name in first} == first
 
-        def change(document):  # claims are not a part of the runs
-            document["claims"][0]["rows"][0]["above"] = 1000
+    def test_claims_are_no_part_of_the_runs(self, ended):
+        def change(document):  # a straight crack has no wavelength
+            first, = document["claims"]
+            first["rows"][0]["above"] = 1000
+            document["claims"].append({"claim": "It has waves", "rows": [{"run": "base", "quantity": "speed_lagrangian", "above": 1},
+                                                                         {"run": "base", "quantity": "wavelength", "above": 0}]})
         printed = self.study("--resume", change=change, expect=3)
-        assert "0 runs, 4 are finished already" in printed
-        assert "does not hold" in printed
+        for part in ("0 runs, 4 are finished already", "does not hold", "It has waves: incomplete", "not measured in 2 of 2"):
+            assert part in printed
+        assert [claim["verdict"] for claim in json.loads(self.text("study.json"))["claims"]] == ["does not hold", "incomplete"]
+        results = json.loads(self.text("results.json"))
+        assert [row["verdict"] for row in results["claims"]] == ["fails", "holds", "fails"]
+        assert (results["claims"][2]["error"], results["verdict"]) == ("nan", "fails")
+        assert json.loads(self.text("run.json"))["exit_code"] == 3
 
-        self.study()
-        assert not [name for name, when in self.times().items() if when == before[name]]
+    def test_runs_are_repeated_unless_it_resumes(self, ended):
+        before = self.times()["low-1"]
+
+        def change(document):
+            document["runs"] = {"low": document["runs"]["low"]}
+            del document["claims"]
+        self.study(change=change)
+        assert self.times(["low-1"])["low-1"] != before
 
     def test_resume_repeats_what_would_come_out_differently(self, ended):
         before = self.times()
@@ -133,26 +136,10 @@ class TestStudy(Studies):
         return subprocess.Popen([LATCON, "study", write_study(self.folder, change), "--output-dir", self.out, "--quiet", "--no-report",
                                  "--skip-verification", "--threads", threads, *arguments])
 
-    def test_edited_base_changes_no_run(self):
-        base = self.folder / "base.prm"
-        base.write_text((CASES / "quick.prm").read_text())
-
-        def change(document):
-            document.update(base=str(base), runs={"base": {"seeds": [1, 2]}})
-            document["claims"][0]["rows"] = document["claims"][0]["rows"][:1]
-        process = self.start(change=change)
-        assert wait_for(lambda: list(self.out.glob("runs/*")), process)
-        base.write_text(base.read_text().replace("strain y = 1.8", "strain y = 1.4"))
-        process.wait(120)
-        for seed in (1, 2):
-            case = self.text(f"runs/base-{seed}/case.prm")
-            assert re.search("set strain y *= (.*)", case).group(1) == "1.8"
-            assert self.text(f"cases/base-{seed}.prm") == case
-
     def test_runs_that_are_killed_continue_from_their_checkpoints(self):
         """One that the system kills, as when memory is exhausted, stops no other; then the whole study is killed."""
         def longer(document):
-            document["set"].update({"Sheet/length": "4 cm", "Time/end": "3 ms", "Checkpoints/steps": 64})
+            document["set"].update({"Time/end": "2 ms", "Checkpoints/steps": 256})
             document["runs"] = {"base": {"seeds": [1, 2]}}
             del document["claims"][0]["rows"][1]
         self.study(change=longer)
@@ -178,17 +165,25 @@ class TestStudy(Studies):
         assert not list(self.out.glob("runs/*.part"))
         assert "resumed_from" in json.loads(self.text("runs/base-1/run.json"))
 
-    def test_runs_fill_the_cores_with_one_thread_each(self):
-        process = self.start(threads="2", change=lambda document: document["set"].update({"Time/end": "2 ms"}))
+    def test_runs_fill_the_cores_with_one_thread_each_and_with_the_base_that_it_read(self):
+        base = self.folder / "base.prm"
+        base.write_text((CASES / "quick.prm").read_text())
+        process = self.start(threads="2", change=lambda document: document.update(base=str(base)))
         most_at_once, seen = 0, set()
         while process.poll() is None:
             runs = [words_of(child) for child in children(process.pid) if "fracture" in words_of(child)]
+            if runs and not seen:
+                base.write_text(base.read_text().replace("strain y = 1.8", "strain y = 1.4"))
             most_at_once = max(most_at_once, len(runs))
             seen |= {tuple(words) for words in runs}
             time.sleep(0.01)
         assert process.returncode == 0
         assert most_at_once == 2
         assert len(seen) == 4 and all(words[words.index("--threads") + 1] == "1" for words in seen)
+        for name in FOLDERS:
+            case = self.text(f"runs/{name}/case.prm")
+            assert re.search("set strain y *= (.*)", case).group(1) == "1.8"
+            assert self.text(f"cases/{name}.prm") == case
 
     def test_quick_study_verifies_the_base_case_once(self):
         # The row is not measured: no crack of the quick version runs far enough to have a speed.
@@ -205,7 +200,7 @@ class TestStudy(Studies):
 
     def test_quick_study_of_a_refused_base_runs_nothing(self):
         def change(document):
-            document["set"]["Loading/strain x"] = -0.3
+            document["set"].update(BUCKLED)
         self.study("--quick", change=change, skip=False, expect=3)
         assert not (self.out / "runs").exists()
 

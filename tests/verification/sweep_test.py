@@ -2,6 +2,7 @@
 import ctypes
 import json
 import os
+import shutil
 import struct
 import subprocess
 from pathlib import Path
@@ -77,11 +78,9 @@ class TestSweeps(Small):
         assert (self.out / "base.prm").read_bytes() == (CASES / "quick.prm").read_bytes()
         result = (self.out / "study.json").read_bytes()
         # In its own folder by default.
-        printed = self.run_study(self.out / "sweep.json", "--resume")
-        assert "0 runs, 4 are finished already" in printed
-        assert (self.out / "study.json").read_bytes() == result
         printed = self.run_study("sweep.json", "--resume", cwd=self.out)
         assert "0 runs, 4 are finished already" in printed
+        assert (self.out / "study.json").read_bytes() == result
         assert not (self.out / "output").exists()
 
         before = files_in(self.out)
@@ -105,9 +104,8 @@ class TestSweeps(Small):
         assert "0 runs, 1 are finished already" in self.run_study(path, "-o", self.out, "--resume")
         assert (self.out / "study.json").read_bytes() == before
         assert "refined 1 time where neighbours differ" in self.run_study(path, "--dry-run")
-        for words in (["--shard", "1/2"], ["--collect"]):
-            assert "refine = 1: a refined study does not run in shards" in (
-                self.run_study(path, "-o", self.folder / "shards", *words, expect=2))
+        assert "refine = 1: a refined study does not run in shards" in (
+            self.run_study(path, "-o", self.folder / "shards", "--shard", "1/2", expect=2))
         assert "does not run in shards" in self.run_study(path, "--slurm", "-o", self.folder / "shards", command="batch", expect=2)
 
     def test_own_study_of_this_name_does_not_run_beside_its_file(self):
@@ -137,8 +135,8 @@ class TestSweeps(Small):
         assert "6 runs" in self.run_study(self.out / "sweep.json", "--dry-run")
 
 class TestTroubles(Small):
-    def test_folder_of_another_study_is_refused_untouched(self):
-        self.run_study(self.write_study(), "-o", self.out, "--quiet")
+    def test_folder_of_another_study_is_refused_untouched(self, tiny_study):
+        shutil.copytree(tiny_study, self.out)
         before = files_in(self.out)
         other = self.write_study(lambda document: document.update(title="Another"))
         for command, *options in (("study", "--resume"), ("study", "--collect"), ("batch", "--slurm")):
@@ -148,10 +146,7 @@ class TestTroubles(Small):
 
     @needs_mount
     def test_node_without_packages_lacks_the_page_alone(self):
-        study = self.write_study()
-        self.run_study(study, "-o", self.out, "--quiet")
-        expected = {name: (self.out / name).read_bytes() for name in ("study.json", "study.csv", "results.json")}
-        bare = self.folder / "bare"
+        study, bare = self.write_study(), self.folder / "bare"
         without = ["unshare", "-m", "sh", "-c", 'mount --bind /dev/null "$(readlink -f /usr/bin/python3)" && exec "$@"', "sh"]
         printed = self.run_study(study, "-o", bare, launcher=without, expect=5)
         assert "cannot start /usr/bin/python3; install python3" in printed
@@ -162,9 +157,9 @@ class TestTroubles(Small):
         printed = self.run_study(study, "-o", bare, "--quiet", launcher=without, page=True)
         assert "apt-get install python3-pil" in printed
         assert "repeat the command with --resume" in printed
-        assert {name: (bare / name).read_bytes() for name in expected} == expected
+        assert {"study.json", "study.csv", "results.json"} <= set(os.listdir(bare))
         assert not (bare / "study.html").exists()
-        self.run_study(study, "-o", bare, "--resume", "--quiet", page=True)
+        assert "0 runs, 1 are finished already" in self.run_study(study, "-o", bare, "--resume", page=True)
         assert (bare / "study.html").exists()
         # A page of an earlier run is not announced.
         assert f"{bare}/study.html" not in self.run_study(study, "-o", bare, "--resume", launcher=without, page=True).splitlines()

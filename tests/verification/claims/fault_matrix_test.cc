@@ -259,7 +259,8 @@ TEST_P(FaultMatrix, FailsTheRowsThatSeeIt)
   }
 }
 
-// What a crack may use besides: contact and absorbing ends, either integrator.
+// What a crack may use besides: contact and absorbing ends, either integrator, and damped waves (theory-comparison.md,
+// eq. (H.9)).
 TEST(Surroundings, AreThoseOfTheirClosedForms)
 {
   for (const auto integrator :
@@ -275,7 +276,7 @@ TEST(Surroundings, AreThoseOfTheirClosedForms)
     EXPECT_EQ(faults::failing(stiffer, "restitution"), 1u) << stiffer.rows()[0].error.value_or(-1.);
     EXPECT_EQ(faults::failing(damped, "restitution"), 1u) << damped.rows()[0].error.value_or(-1.);
     if (integrator == input::Case::Integrator::velocity_verlet)
-      continue; // Claims.HoldForDampedWaves
+      continue; // its damped waves: verify_test.py
     WaveSpeedsOptions options = parts::waves({}, {subject.deformation});
     options.integrator = integrator;
     const Results waves = wave_speeds_claim(subject, options).results;
