@@ -65,12 +65,12 @@ void DynamicSolver::check_input() const
 void DynamicSolver::set_up()
 {
   apply_conditions();
-  sheet_.make_matrix(sheet_.conformity_constraints(), full_mass_);
-  sheet_.mass(inertia_.density, inertia_.length, sheet_.conformity_constraints(), full_mass_);
+  sheet_.make_matrix(sheet_.conformity_constraints(), full_mass_, true);
+  sheet_.add_mass(inertia_.density, inertia_.length, sheet_.conformity_constraints(), full_mass_);
   if (inertia_.length > 0.)
   {
-    sheet_.make_matrix(sheet_.conformity_constraints(), plain_mass_);
-    sheet_.mass(inertia_.density, 0., sheet_.conformity_constraints(), plain_mass_);
+    sheet_.make_matrix(sheet_.conformity_constraints(), plain_mass_, true);
+    sheet_.add_mass(inertia_.density, 0., sheet_.conformity_constraints(), plain_mass_);
   }
 
   double smallest = std::numeric_limits<double>::infinity();
@@ -96,13 +96,10 @@ void DynamicSolver::apply_conditions()
   homogeneous_.copy_from(homogeneous_constraints(sheet_, held));
 
   loads_ = sheet_.loads();
-  sheet_.make_matrix(homogeneous_, matrix_);
-  sheet_.make_matrix(homogeneous_, mass_);
-  sheet_.mass(inertia_.density, inertia_.length, homogeneous_, mass_);
-  // Viscosity at finite strain makes the matrix unsymmetric. The matrix of multigrid, which a restart rebuilds, must
-  // not depend on the history of branches.
-  linear_solver_ = std::make_unique<LinearSolver>(
-    sheet_, held, settings_.linear, rate_forces_.is_present() ? Symmetry::unsymmetric : Symmetry::symmetric);
+  // Viscosity at finite strain makes the matrix unsymmetric.
+  linear_solver_ =
+    std::make_unique<LinearSolver>(sheet_, homogeneous_, held, settings_.linear,
+                                   rate_forces_.is_present() ? Symmetry::unsymmetric : Symmetry::symmetric);
 }
 
 // Returns the fraction of the release forces that acts at `time` [-].

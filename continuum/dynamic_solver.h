@@ -224,9 +224,10 @@ private:
   void multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Vector &product) const;
   Residual evaluate(const Step &step, const Vector &u) const;
   Residual best_residual(const Step &step, const Vector &first, const Vector &second, Vector &u) const;
-  const Sheet::Matrix &level_mass(const Sheet &level, const dealii::AffineConstraints<double> &constraints);
-  Multigrid::Assembler level_assembler(double load_factor);
-  void assemble_matrix(const Vector &u, const Vector &v, const GradientLoad &load);
+  template <class AnyMatrix>
+  void weigh_and_add_mass(const Sheet &sheet, const dealii::AffineConstraints<double> &constraints, AnyMatrix &K) const;
+  Assembler level_assembler(double load_factor) const;
+  Assembler assembler(const Vector &v, const GradientLoad &load);
   void assemble(const Vector &u, const Vector &v, const GradientLoad &load);
   void record_multigrid_state(unsigned int before, const Vector &u, double load_factor);
   void restore_multigrid();
@@ -253,13 +254,10 @@ private:
   Vector full_lift_;                                    // prescribed displacement at load factor 1, zero elsewhere
   Vector loads_;                                        // nodal dead loads at load factor 1
   double smallest_cell_ = 0.;                           // extent [m]
-  Sheet::Matrix mass_;                                  // condensed by homogeneous_: for solving
   Sheet::Matrix full_mass_;                             // condensed by the conformity constraints alone: for forces
   Sheet::Matrix plain_mass_;                            // full_mass_ without micro-inertia
-  Sheet::Matrix matrix_;                                // of the Newton step
-  std::map<const Sheet *, Sheet::Matrix> level_masses_; // masses of coarser multigrid meshes, assembled on first use
   Vector elastic_diagonal_;                             // of the elastic tangent last assembled
-  Vector effective_diagonal_;                           // of matrix_
+  Vector effective_diagonal_;                           // of the matrix of the Newton step
 
   // State at which the linear solver last set up multigrid, with ghost entries: a restart rebuilds multigrid from it.
   Vector multigrid_displacement_;

@@ -110,10 +110,14 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time, const std::ve
   rhs.compress(VectorOperation::insert);
   Vector free_acceleration = sheet_.make_owned();
   linear_solver_->invalidate();
-  linear_solver_->update(u_ghosted, mass_,
-                         [this](const Sheet &level, const Vector &, const AffineConstraints<double> &constraints,
-                                Sheet::Matrix &M) { level.mass(inertia_.density, inertia_.length, constraints, M); });
-  linear_solver_->solve(mass_, free_acceleration, rhs);
+  const auto assemble_mass =
+    [this](const Sheet &level, const Vector &, const AffineConstraints<double> &constraints, auto &M)
+  {
+    M = 0.;
+    level.add_mass(inertia_.density, inertia_.length, constraints, M);
+  };
+  linear_solver_->update(u_ghosted, assemble_mass, assemble_mass);
+  linear_solver_->solve(free_acceleration, rhs);
   linear_solver_->invalidate();
   homogeneous_.distribute(free_acceleration);
   a += free_acceleration;

@@ -103,62 +103,56 @@ DynamicSolver::Residual DynamicSolver::best_residual(const Step &step, const Vec
   return *state;
 }
 
-// Returns the mass of a coarser mesh, assembled on first use.
-const Sheet::Matrix &DynamicSolver::level_mass(const Sheet &level, const AffineConstraints<double> &constraints)
-{
-  if (&level == &sheet_)
-    return mass_;
-  const auto [found, is_missing] = level_masses_.try_emplace(&level);
-  if (is_missing)
-  {
-    level.make_matrix(constraints, found->second);
-    level.mass(inertia_.density, inertia_.length, constraints, found->second);
-  }
-  return found->second;
-}
-
-// Returns the assembler of the derivative of the residual by the displacement at the end of the step, on a multigrid
-// mesh. The sheet is taken at rest, which drops the unsymmetric part of viscosity: it vanishes with the velocity.
-// Maxwell branches are taken relaxed: coarser meshes have no history.
-Multigrid::Assembler DynamicSolver::level_assembler(const double load_factor)
+// Turns the derivative K of the mean forces by the mean displacement into that of the residual by the displacement at
+// the end of the step.
+template <class AnyMatrix>
+void DynamicSolver::weigh_and_add_mass(const Sheet &sheet, const AffineConstraints<double> &constraints,
+                                       AnyMatrix &K) const
 {
   const NewmarkParameters &rule = settings_.rule;
-  const double dt = duration_;
-  const double mean = mean_duration();
-  return [=](const Sheet &level, const Vector &u, const AffineConstraints<double> &constraints, Sheet::Matrix &K)
+  K *= 1. - rule.alpha_f;
+  sheet.add_mass((1. - rule.alpha_m) / (rule.beta * duration_ * duration_) * inertia_.density, inertia_.length,
+                 constraints, K);
+}
+
+// Returns the assembler of this derivative on a coarser mesh. The sheet is taken at rest, which drops the unsymmetric
+// part of viscosity: it vanishes with the velocity. Maxwell branches are taken relaxed: coarser meshes have no history.
+Assembler DynamicSolver::level_assembler(const double load_factor) const
+{
+  return [=](const Sheet &level, const Vector &u, const AffineConstraints<double> &constraints, auto &K)
   {
     level.tangent(u, constraints, K, load_factor);
     RateForces relaxed = rate_forces_.on(level);
     relaxed.start(u, load_factor, {});
-    relaxed.add_tangent(mean, u, level.make_ghosted(), {load_factor}, rule.gamma / (rule.beta * dt), constraints, K);
-    K *= 1. - rule.alpha_f;
-    K.add((1. - rule.alpha_m) / (rule.beta * dt * dt), level_mass(level, constraints));
+    relaxed.add_tangent(mean_duration(), u, level.make_ghosted(), {load_factor},
+                        settings_.rule.gamma / (settings_.rule.beta * duration_), constraints, K);
+    weigh_and_add_mass(level, constraints, K);
   };
 }
 
-// Assembles this derivative and its diagonals on the mesh of the sheet, at a mean state.
-void DynamicSolver::assemble_matrix(const Vector &u, const Vector &v, const GradientLoad &load)
+// Returns the assembler of this derivative and its diagonals on the mesh of the sheet, at a mean velocity.
+Assembler DynamicSolver::assembler(const Vector &v, const GradientLoad &load)
 {
-  const auto take_diagonal = [&](Vector &diagonal)
+  return [&, load](const Sheet &, const Vector &u, const AffineConstraints<double> &constraints, auto &K)
   {
-    for (const types::global_dof_index i : sheet_.owned())
-      diagonal(i) = matrix_.diag_element(i);
-    diagonal.compress(VectorOperation::insert);
+    const auto take_diagonal = [&](Vector &diagonal)
+    {
+      for (const types::global_dof_index i : sheet_.owned())
+        diagonal(i) = K.diag_element(i);
+      diagonal.compress(VectorOperation::insert);
+    };
+    sheet_.tangent(u, constraints, K, load.factor);
+    take_diagonal(elastic_diagonal_);
+    rate_forces_.add_tangent(mean_duration(), u, v, load, settings_.rule.gamma / (settings_.rule.beta * duration_),
+                             constraints, K);
+    weigh_and_add_mass(sheet_, constraints, K);
+    take_diagonal(effective_diagonal_);
   };
-  const NewmarkParameters &rule = settings_.rule;
-  const double dt = duration_;
-  sheet_.tangent(u, homogeneous_, matrix_, load.factor);
-  take_diagonal(elastic_diagonal_);
-  rate_forces_.add_tangent(mean_duration(), u, v, load, rule.gamma / (rule.beta * dt), homogeneous_, matrix_);
-  matrix_ *= 1. - rule.alpha_f;
-  matrix_.add((1. - rule.alpha_m) / (rule.beta * dt * dt), mass_);
-  take_diagonal(effective_diagonal_);
 }
 
 void DynamicSolver::assemble(const Vector &u, const Vector &v, const GradientLoad &load)
 {
-  assemble_matrix(u, v, load);
-  linear_solver_->update(u, matrix_, level_assembler(load.factor));
+  linear_solver_->update(u, assembler(v, load), level_assembler(load.factor));
 }
 
 // Records the state at which the linear solver set up multigrid, if it has done so since the count `before`.
@@ -172,8 +166,9 @@ void DynamicSolver::record_multigrid_state(const unsigned int before, const Vect
 
 void DynamicSolver::restore_multigrid()
 {
-  assemble_matrix(multigrid_displacement_, sheet_.make_ghosted(), {multigrid_load_factor_});
-  linear_solver_->restore(multigrid_displacement_, matrix_, level_assembler(multigrid_load_factor_));
+  const Vector at_rest = sheet_.make_ghosted();
+  linear_solver_->restore(multigrid_displacement_, assembler(at_rest, {multigrid_load_factor_}),
+                          level_assembler(multigrid_load_factor_));
 }
 
 // Returns the round-off of the residual, eq. (C.45) [N/m].
@@ -233,7 +228,7 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
         if (homogeneous_.is_constrained(i))
           rhs(i) = 0.;
       rhs.compress(VectorOperation::insert);
-      const unsigned int iterations = linear_solver_->solve(matrix_, change, rhs, forcing);
+      const unsigned int iterations = linear_solver_->solve(change, rhs, forcing);
       record_multigrid_state(set_ups, tangent_at, load.factor);
       homogeneous_.distribute(change);
       return NewtonStep{iterations, 0.};

@@ -376,10 +376,11 @@ void add_forces(const Sheet &sheet, const Sheet::Vector &u, const PointForces &f
   guarded.rethrow_collectively(sheet.communicator());
 }
 
+template <class AnyMatrix>
 void add_tangent(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces,
-                 const AffineConstraints<double> &constraints, Sheet::Matrix &matrix)
+                 const AffineConstraints<double> &constraints, AnyMatrix &matrix)
 {
-  MatrixAssembly to_matrix(constraints, matrix);
+  auto &&to_matrix = assembly(constraints, matrix);
   const DeferredException guarded(
     [&]
     {
@@ -389,6 +390,11 @@ void add_tangent(const Sheet &sheet, const Sheet::Vector &u, const PointForces &
   matrix.compress(VectorOperation::add);
   guarded.rethrow_collectively(sheet.communicator());
 }
+
+template void add_tangent(const Sheet &, const Sheet::Vector &, const PointForces &, const AffineConstraints<double> &,
+                          Sheet::Matrix &);
+template void add_tangent(const Sheet &, const Sheet::Vector &, const PointForces &, const AffineConstraints<double> &,
+                          SinglePrecisionMatrix &);
 
 double integral(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces)
 {

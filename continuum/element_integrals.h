@@ -73,8 +73,10 @@ void add_forces(const Sheet &sheet, const Sheet::Vector &u, const PointForces &f
                 Sheet::Vector *magnitude);
 
 /// Adds the derivative of the nodal forces by u [N/m^2] to `matrix`, condensed by `constraints`.
+/// @tparam AnyMatrix Sheet::Matrix or SinglePrecisionMatrix
+template <class AnyMatrix>
 void add_tangent(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces,
-                 const dealii::AffineConstraints<double> &constraints, Sheet::Matrix &matrix);
+                 const dealii::AffineConstraints<double> &constraints, AnyMatrix &matrix);
 
 /// Returns the integral of the value of the densities over the sheet [W/m], which calls them at all points.
 double integral(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces);

@@ -12,9 +12,9 @@ using namespace dealii;
 
 namespace latcon::continuum
 {
-LinearSolver::LinearSolver(const Sheet &sheet, DirichletBoundaries held, const LinearSettings &settings,
-                           const Symmetry symmetry)
-  : sheet_(sheet), held_(std::move(held)), settings_(settings),
+LinearSolver::LinearSolver(const Sheet &sheet, const AffineConstraints<double> &constraints, DirichletBoundaries held,
+                           const LinearSettings &settings, const Symmetry symmetry)
+  : sheet_(sheet), constraints_(constraints), held_(std::move(held)), settings_(settings),
     is_direct_(sheet.dof_handler().n_dofs() <= settings.direct_limit || !sheet.conditions().periodic.empty()),
     symmetry_(symmetry)
 {
@@ -24,54 +24,75 @@ LinearSolver::LinearSolver(const Sheet &sheet, DirichletBoundaries held, const L
     throw InvalidInput("rebuild_ratio of the linear solver must be finite and >= 0");
 }
 
-void LinearSolver::update(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble)
+void LinearSolver::update(const Sheet::Vector &u, const Assembler &assemble, const Assembler &assemble_coarser)
 {
   is_fresh_ = false;
   if (is_direct_)
+  {
+    if (!matrix_)
+    {
+      matrix_ = std::make_unique<Sheet::Matrix>();
+      sheet_.make_matrix(constraints_, *matrix_);
+      direct_ = std::make_unique<DirectSolver>();
+    }
+    assemble(sheet_, u, constraints_, *matrix_);
     return;
+  }
+  if (!single_matrix_)
+  {
+    single_matrix_ = std::make_unique<SinglePrecisionMatrix>();
+    sheet_.make_matrix(constraints_, *single_matrix_);
+  }
+  assemble(sheet_, u, constraints_, *single_matrix_);
+  if (symmetry_ == Symmetry::symmetric)
+    single_matrix_->make_symmetric();
   state_.reinit(u);
   state_ = u;
-  assemble_ = assemble;
+  assemble_coarser_ = assemble_coarser;
   if (is_stale_)
-    set_up(K);
+    set_up();
+  else
+    multigrid_->set_finest(*single_matrix_);
 }
 
-void LinearSolver::set_up(const Sheet::Matrix &K)
+void LinearSolver::set_up()
 {
   if (!multigrid_)
-    multigrid_ = std::make_unique<Multigrid>(
-      sheet_, [this](const Sheet::Mesh &mesh) { return sheet_.clone_on(mesh); },
-      [](const Sheet &sheet, const AffineConstraints<double> &constraints, Sheet::Matrix &matrix)
-      { sheet.make_matrix(constraints, matrix); },
-      held_, settings_.multigrid);
+    multigrid_ = std::make_unique<Multigrid>(sheet_, held_, settings_.multigrid);
   is_stale_ = true; // also if the update throws
-  if (symmetry_ == Symmetry::symmetric)
-    multigrid_->update(state_, K, assemble_);
-  else
-  {
-    Sheet::Matrix symmetric;
-    symmetric.reinit(K); // with the sparsity of K
-    assemble_(sheet_, state_, multigrid_->constraints(), symmetric);
-    multigrid_->update(state_, symmetric, assemble_);
-  }
+  multigrid_->set_finest(*single_matrix_);
+  multigrid_->update(state_, assemble_coarser_);
   is_stale_ = false;
   is_fresh_ = true;
   baseline_iterations_ = 0.;
   ++n_set_ups_;
 }
 
-void LinearSolver::restore(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble)
+void LinearSolver::restore(const Sheet::Vector &u, const Assembler &assemble, const Assembler &assemble_coarser)
 {
   const double baseline_iterations = baseline_iterations_;
   const unsigned int n_set_ups = n_set_ups_;
   invalidate();
-  update(u, K, assemble);
+  update(u, assemble, assemble_coarser);
   baseline_iterations_ = baseline_iterations;
   n_set_ups_ = n_set_ups;
 }
 
-unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b,
-                                 const double relative_tolerance)
+double LinearSolver::diag_element(const types::global_dof_index i) const
+{
+  return matrix_ ? matrix_->diag_element(i) : single_matrix_ ? single_matrix_->diag_element(i) : 0.;
+}
+
+void LinearSolver::release()
+{
+  matrix_.reset();
+  direct_.reset();
+  multigrid_.reset();
+  single_matrix_.reset();
+  invalidate();
+}
+
+unsigned int LinearSolver::solve(Sheet::Vector &x, const Sheet::Vector &b, const double relative_tolerance)
 {
   // The exceptions of deal.II and Trilinos depend on collective results, so all ranks take the same branch.
   unsigned int iterations = 0;
@@ -83,12 +104,12 @@ unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const
     if (is_direct_)
     {
       if (!is_fresh_)
-        direct_.factorise(K);
+        direct_->factorise(*matrix_);
       is_fresh_ = true;
-      direct_.solve(x, b);
+      direct_->solve(x, b);
     }
     else
-      iterations = iterate(K, x, b, std::max(relative_tolerance, settings_.relative_tolerance));
+      iterations = iterate(x, b, std::max(relative_tolerance, settings_.relative_tolerance));
   }
   catch (const SolverControl::NoConvergence &failure)
   {
@@ -104,8 +125,7 @@ unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const
   return iterations;
 }
 
-unsigned int LinearSolver::iterate(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b,
-                                   const double relative_tolerance)
+unsigned int LinearSolver::iterate(Sheet::Vector &x, const Sheet::Vector &b, const double relative_tolerance)
 {
   Multigrid::Vector from;
   Multigrid::Vector to;
@@ -116,21 +136,21 @@ unsigned int LinearSolver::iterate(const Sheet::Matrix &K, Sheet::Vector &x, con
   try
   {
     if (symmetry_ == Symmetry::symmetric)
-      SolverCG<Multigrid::Vector>(control).solve(K, to, from, *multigrid_);
+      SolverCG<Multigrid::Vector>(control).solve(*single_matrix_, to, from, *multigrid_);
     else
     {
       // Right preconditioning, so that the iteration stops on the residual of K. An up-to-date multigrid needs fewer
       // iterations than the 50 vectors before a GMRES restart.
       const SolverGMRES<Multigrid::Vector>::AdditionalData data(50, true);
-      SolverGMRES<Multigrid::Vector>(control, data).solve(K, to, from, *multigrid_);
+      SolverGMRES<Multigrid::Vector>(control, data).solve(*single_matrix_, to, from, *multigrid_);
     }
   }
   catch (const SolverControl::NoConvergence &)
   {
     if (is_fresh_)
       throw;
-    set_up(K);
-    return control.last_step() + iterate(K, x, b, relative_tolerance);
+    set_up();
+    return control.last_step() + iterate(x, b, relative_tolerance);
   }
   Multigrid::copy(to, x);
   // Convergence is slow at first, which costs as much as these additional digits for any tolerance.

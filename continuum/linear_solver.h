@@ -24,36 +24,42 @@ struct LinearSettings
   MultigridSettings multigrid;
 };
 
-/// Symmetry of the matrices passed to a LinearSolver.
+/// Symmetry of the matrices of a LinearSolver.
 enum class Symmetry
 {
   symmetric,  ///< and positive definite
-  unsymmetric ///< slightly; Multigrid::Assembler assembles a symmetric positive definite matrix close to it
+  unsymmetric ///< slightly
 };
 
-/// Solves K x = b for the condensed tangent of a sheet, with DirectSolver or iteratively. The iterative solver is
-/// conjugate gradients for symmetric K and GMRES for unsymmetric K, preconditioned by Multigrid of the symmetric
-/// matrix. Multigrid is reused for later tangents (of Newton, load and time steps) until the iterations exceed
-/// LinearSettings::rebuild_ratio or fail. Reuse changes the cost and not the tolerance of the solution.
+/// Assembles the condensed tangent K of a sheet and solves K x = b, with DirectSolver or iteratively. The iterative
+/// solver is conjugate gradients for symmetric K and GMRES for unsymmetric K, with a SinglePrecisionMatrix and
+/// preconditioned by Multigrid. Coarser levels are reused for later tangents (of Newton, load and time steps) until the
+/// iterations exceed LinearSettings::rebuild_ratio or fail. Reuse changes the cost and not the tolerance of the
+/// solution.
 class LinearSolver
 {
 public:
-  /// Creates a solver for the tangents of `sheet`, which must outlive it, with the components `held` at boundaries.
-  /// Throws InvalidInput for settings out of range.
-  LinearSolver(const Sheet &sheet, DirichletBoundaries held, const LinearSettings &settings,
-               Symmetry symmetry = Symmetry::symmetric);
+  /// Creates a solver for the tangents of `sheet`, with the components `held` at boundaries; `constraints` are its
+  /// homogeneous_constraints() with these. Both must outlive it. Throws InvalidInput for settings out of range.
+  LinearSolver(const Sheet &sheet, const dealii::AffineConstraints<double> &constraints, DirichletBoundaries held,
+               const LinearSettings &settings, Symmetry symmetry = Symmetry::symmetric);
 
-  /// Updates the preconditioner for a changed K; to be called before the next solve(), which otherwise uses the factors
-  /// or the multigrid that there are. Records the state `u` [m] (with ghost entries) and sets up multigrid unless the
-  /// existing one can be reused. `assemble` assembles the tangents of coarser meshes and, for unsymmetric K, a
-  /// symmetric one of the sheet itself; solve() may call it as well. Collective.
-  void update(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble);
+  /// Assembles K at the state `u` [m] (with ghost entries) by `assemble`, and sets up multigrid unless the existing one
+  /// can be reused. `assemble_coarser` assembles the symmetric tangents of coarser meshes; solve() may call it as well.
+  /// Collective.
+  void update(const Sheet::Vector &u, const Assembler &assemble, const Assembler &assemble_coarser);
 
   /// Solves K x = b until the residual is at most `relative_tolerance` [-] times that of x = 0, or
   /// LinearSettings::relative_tolerance where that is larger; the direct solver ignores the tolerance. Collective.
   /// Returns the number of Krylov iterations, 0 for the direct solver. Throws LinearSolverFailed on every rank if the
   /// factorisation fails, the tolerance is not reached, or the solution is not finite.
-  unsigned int solve(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b, double relative_tolerance = 0.);
+  unsigned int solve(Sheet::Vector &x, const Sheet::Vector &b, double relative_tolerance = 0.);
+
+  /// Returns the entry K_ii [N/m^2] of an owned row; 0 before the first update().
+  double diag_element(dealii::types::global_dof_index i) const;
+
+  /// Frees the memory of the matrix, its factors and multigrid until the next update().
+  void release();
 
   /// Makes the next update() rebuild multigrid, because the matrices change substantially.
   void invalidate() { is_stale_ = true; }
@@ -70,28 +76,32 @@ public:
   /// Returns true if the next update() will reuse multigrid.
   bool keeps_multigrid() const { return !is_direct_ && !is_stale_; }
 
-  /// Rebuilds the multigrid that an archived solver used, from the state `u` [m] and the matrix `K` at which it was set
-  /// up, with the archived iteration counts. Collective. Throws as update() does.
-  void restore(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble);
+  /// Rebuilds the multigrid that an archived solver used, from the state `u` [m] at which it was set up, with the
+  /// archived iteration counts. Collective. Throws as update() does.
+  void restore(const Sheet::Vector &u, const Assembler &assemble, const Assembler &assemble_coarser);
 
   /// Returns how many times multigrid has been set up.
   unsigned int n_set_ups() const { return n_set_ups_; }
   bool is_direct() const { return is_direct_; }
 
 private:
-  void set_up(const Sheet::Matrix &K);
-  unsigned int iterate(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b, double relative_tolerance);
+  void set_up();
+  unsigned int iterate(Sheet::Vector &x, const Sheet::Vector &b, double relative_tolerance);
 
   const Sheet &sheet_;
+  const dealii::AffineConstraints<double> &constraints_;
   DirichletBoundaries held_;
   LinearSettings settings_;
   bool is_direct_;
   Symmetry symmetry_;
-  DirectSolver direct_;
+  // From the first update on:
+  std::unique_ptr<Sheet::Matrix> matrix_;                // for the direct solver
+  std::unique_ptr<SinglePrecisionMatrix> single_matrix_; // for the iterative one
+  std::unique_ptr<DirectSolver> direct_;
   std::unique_ptr<Multigrid> multigrid_; // created on first use
   unsigned int n_set_ups_ = 0;
   Sheet::Vector state_;
-  Multigrid::Assembler assemble_;
+  Assembler assemble_coarser_;
   bool is_fresh_ = false;           // set up, or factorised, since the last update
   bool is_stale_ = true;            // to be rebuilt in the next update
   double baseline_iterations_ = 0.; // iterations per digit with an up-to-date multigrid

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "continuum/sheet.h"
+#include "continuum/single_precision_matrix.h"
 
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/vector.h>
@@ -34,6 +34,17 @@ private:
   std::vector<std::pair<int, unsigned int>> order_; // columns of the current element, with their positions in it
   std::vector<int> positions_;                      // of order_ in the last searched row
 };
+
+/// Returns that to which elements add their part of a matrix K, condensed by constraints, which are those of its
+/// sparsity.
+inline MatrixAssembly assembly(const dealii::AffineConstraints<double> &constraints, Sheet::Matrix &K)
+{
+  return MatrixAssembly(constraints, K);
+}
+inline SinglePrecisionMatrix &assembly(const dealii::AffineConstraints<double> &, SinglePrecisionMatrix &K)
+{
+  return K;
+}
 
 /// Adds element vectors to a global vector; see MatrixAssembly.
 class VectorAssembly

@@ -2,7 +2,6 @@
 
 #include "continuum/direct_solver.h"
 #include "continuum/errors.h"
-#include "continuum/single_precision_matrix.h"
 #include "continuum/vertex_patches.h"
 
 #include <deal.II/base/mpi.h>
@@ -21,14 +20,15 @@ struct Multigrid::Level
 {
   using Smoother = PreconditionChebyshev<SinglePrecisionMatrix, Vector, VertexPatches>;
 
-  std::shared_ptr<const Triangulation<2>> mesh; // null on the finest level, as are own_sheet and tangent
+  std::shared_ptr<const Triangulation<2>> mesh; // null on the finest level, as is own_sheet
   std::unique_ptr<Sheet> own_sheet;
   const Sheet *sheet = nullptr;
   AffineConstraints<double> constraints;
   std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout;
-  Sheet::Matrix tangent;
-  SinglePrecisionMatrix matrix;             // tangent as used in the cycle; unused on the coarsest level
-  MGTwoLevelTransfer<2, Vector> to_coarser; // members from here on are unused on the coarsest level
+  Sheet::Matrix coarsest_tangent;
+  SinglePrecisionMatrix own_tangent;              // of levels between the finest and the coarsest
+  const SinglePrecisionMatrix *tangent = nullptr; // members from here on are unused on the coarsest level
+  MGTwoLevelTransfer<2, Vector> to_coarser;
   std::shared_ptr<VertexPatches> patches;
   Smoother smoother;
   double state_factor = 1.;
@@ -43,8 +43,7 @@ namespace
 constexpr double largest_eigenvalue = 6.;
 } // namespace
 
-Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const MatrixFactory &make_matrix,
-                     const DirichletBoundaries &held, const MultigridSettings &settings)
+Multigrid::Multigrid(const Sheet &fine, const DirichletBoundaries &held, const MultigridSettings &settings)
   : settings_(settings)
 {
   if (settings.smoothing_degree == 0)
@@ -63,14 +62,16 @@ Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const Ma
     else
     {
       level->mesh = meshes[n];
-      level->own_sheet = make_sheet(dynamic_cast<const parallel::distributed::Triangulation<2> &>(*meshes[n]));
+      level->own_sheet = fine.clone_on(dynamic_cast<const Sheet::Mesh &>(*meshes[n]));
       level->sheet = level->own_sheet.get();
     }
     const Sheet &sheet = *level->sheet;
     level->constraints = homogeneous_constraints(sheet, held);
-    if (level->own_sheet)
-      make_matrix(sheet, level->constraints, level->tangent);
     const bool is_coarsest = n == 0 || sheet.dof_handler().n_dofs() <= settings.coarsest_size;
+    if (is_coarsest)
+      sheet.make_matrix(level->constraints, level->coarsest_tangent);
+    else if (level->own_sheet)
+      sheet.make_matrix(level->constraints, level->own_tangent);
     if (is_coarsest)
       level->layout = std::make_shared<const dealii::Utilities::MPI::Partitioner>(sheet.owned(), sheet.relevant(),
                                                                                   sheet.communicator());
@@ -103,7 +104,7 @@ Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const Ma
 
 Multigrid::~Multigrid() = default;
 
-void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix, const Assembler &assemble)
+void Multigrid::update(const Sheet::Vector &u, const Assembler &assemble)
 {
   Vector state(levels_.back()->layout);
   {
@@ -114,52 +115,69 @@ void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix,
   for (std::size_t l = levels_.size(); l-- > 0;)
   {
     Level &level = *levels_[l];
-    if (l + 1 < levels_.size())
+    Sheet::Vector owned = level.sheet->make_owned();
+    if (level.own_sheet)
     {
       Vector coarse_state(level.layout);
       levels_[l + 1]->to_coarser.interpolate(coarse_state, state);
-      Sheet::Vector owned = level.sheet->make_owned();
       copy(coarse_state, owned);
       level.sheet->conformity_constraints().distribute(owned);
       state.reinit(level.layout);
       copy(owned, state);
+    }
+    else if (l > 0)
+      continue;
+    else
+      copy(state, owned);
 
-      Sheet::Vector ghosted = level.sheet->make_ghosted();
-      constexpr double smallest_factor = 0.1;
-      for (level.state_factor = 1.;; level.state_factor *= 0.5)
+    Sheet::Vector ghosted = level.sheet->make_ghosted();
+    constexpr double smallest_factor = 0.1;
+    for (level.state_factor = 1.;; level.state_factor *= 0.5)
+    {
+      if (level.state_factor < smallest_factor)
+        level.state_factor = 0.;
+      ghosted = owned;
+      ghosted *= level.state_factor;
+      try
       {
-        if (level.state_factor < smallest_factor)
-          level.state_factor = 0.;
-        ghosted = owned;
-        ghosted *= level.state_factor;
-        try
-        {
-          assemble(*level.sheet, ghosted, level.constraints, level.tangent);
-          break;
-        }
-        catch (const NonPhysicalState &)
-        {
-          if (level.state_factor == 0.)
-            throw;
-        }
+        if (l == 0)
+          assemble(*level.sheet, ghosted, level.constraints, level.coarsest_tangent);
+        else
+          assemble(*level.sheet, ghosted, level.constraints, level.own_tangent);
+        break;
+      }
+      catch (const NonPhysicalState &)
+      {
+        if (level.state_factor == 0.)
+          throw;
       }
     }
-    if (l > 0)
-    {
-      const Sheet::Matrix &tangent = level.own_sheet ? level.tangent : fine_matrix;
-      level.patches->factorise(tangent);
-      level.matrix.copy_from(tangent);
-      // Double the degree on each coarser level, at a small part of the total cost: see theory-continuum.md, "Linear
-      // solver". More doublings do not reduce the iterations.
-      const unsigned int doublings = std::min<unsigned int>(levels_.size() - 1 - l, 4);
-      Level::Smoother::AdditionalData data(settings_.smoothing_degree << doublings, settings_.smoothing_range, 0, 0.,
-                                           largest_eigenvalue);
-      data.preconditioner = level.patches;
-      level.smoother.initialize(level.matrix, data);
-    }
+    if (l == 0)
+      continue;
+    level.own_tangent.make_symmetric();
+    set_tangent(l, level.own_tangent);
   }
+  coarsest_->factorise(levels_.front()->coarsest_tangent);
+}
 
-  coarsest_->factorise(levels_.size() == 1 ? fine_matrix : levels_.front()->tangent);
+void Multigrid::set_finest(const SinglePrecisionMatrix &K)
+{
+  if (levels_.size() > 1)
+    set_tangent(levels_.size() - 1, K);
+}
+
+void Multigrid::set_tangent(const unsigned int l, const SinglePrecisionMatrix &K)
+{
+  Level &level = *levels_[l];
+  level.tangent = &K;
+  level.patches->factorise(K);
+  // Double the degree on each coarser level, at a small part of the total cost: see theory-continuum.md, "Linear
+  // solver". More doublings do not reduce the iterations.
+  const unsigned int doublings = std::min<unsigned int>(levels_.size() - 1 - l, 4);
+  Level::Smoother::AdditionalData data(settings_.smoothing_degree << doublings, settings_.smoothing_range, 0, 0.,
+                                       largest_eigenvalue);
+  data.preconditioner = level.patches;
+  level.smoother.initialize(K, data);
 }
 
 void Multigrid::cycle(const unsigned int l, Vector &z, const Vector &r) const
@@ -171,7 +189,7 @@ void Multigrid::cycle(const unsigned int l, Vector &z, const Vector &r) const
     return;
   }
   level.smoother.vmult(z, r);
-  level.matrix.vmult(level.residual, z);
+  level.tangent->vmult(level.residual, z);
   level.residual.sadd(-1., 1., r);
   level.coarse_residual = 0.;
   level.to_coarser.restrict_and_add(level.coarse_residual, level.residual);

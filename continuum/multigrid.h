@@ -2,6 +2,7 @@
 
 #include "continuum/homogeneous_constraints.h"
 #include "continuum/sheet.h"
+#include "continuum/single_precision_matrix.h"
 
 #include <deal.II/lac/la_parallel_vector.h>
 
@@ -12,6 +13,37 @@
 namespace latcon::continuum
 {
 class DirectSolver;
+
+/// Assembles a tangent [N/m^2] of a sheet at the nodal vector `u` [m] (with ghost entries), condensed by `constraints`,
+/// into K, which may be in either precision. Throws NonPhysicalState on every rank if the state is non-physical.
+class Assembler
+{
+public:
+  Assembler() = default;
+  /// From a function with a generic parameter for K.
+  template <class Function>
+  Assembler(const Function &function) : double_(function), single_(function)
+  {
+  }
+  void operator()(const Sheet &sheet, const Sheet::Vector &u, const dealii::AffineConstraints<double> &constraints,
+                  Sheet::Matrix &K) const
+  {
+    double_(sheet, u, constraints, K);
+  }
+  void operator()(const Sheet &sheet, const Sheet::Vector &u, const dealii::AffineConstraints<double> &constraints,
+                  SinglePrecisionMatrix &K) const
+  {
+    single_(sheet, u, constraints, K);
+  }
+
+private:
+  template <class AnyMatrix>
+  using Function =
+    std::function<void(const Sheet &, const Sheet::Vector &, const dealii::AffineConstraints<double> &, AnyMatrix &)>;
+
+  Function<Sheet::Matrix> double_;
+  Function<SinglePrecisionMatrix> single_;
+};
 
 /// Settings of Multigrid.
 struct MultigridSettings
@@ -28,7 +60,7 @@ struct MultigridSettings
 /// Preconditioner for the tangent of a sheet: one V-cycle of geometric multigrid with global coarsening. Each level has
 /// a Sheet on a mesh that is coarsened everywhere by one refinement, including its hanging nodes. The tangent is
 /// assembled on each level at the interpolated state. The smoother is a Chebyshev polynomial over VertexPatches, and
-/// the coarsest level is solved directly. The cycle uses tangents in single precision (SinglePrecisionMatrix).
+/// the coarsest level is solved directly, in double precision.
 ///
 /// The cycle is symmetric, and positive definite if the tangents are. Vectors vanish at constrained degrees of freedom,
 /// which are those at hanging nodes and those with prescribed displacement. Results are reproducible bit for bit on the
@@ -39,29 +71,24 @@ class Multigrid
 {
 public:
   using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
-  /// Creates the sheet on a coarser mesh, with the same law and element. The mesh outlives the sheet.
-  using SheetFactory = std::function<std::unique_ptr<Sheet>(const dealii::parallel::distributed::Triangulation<2> &)>;
-  /// Initialises `K` with the sparsity that the Assembler fills.
-  using MatrixFactory =
-    std::function<void(const Sheet &, const dealii::AffineConstraints<double> &constraints, Sheet::Matrix &K)>;
-  /// Assembles the tangent [N/m^2] at the nodal vector `u` [m] (with ghost entries), condensed by `constraints`, into
-  /// `K`. Throws NonPhysicalState on every rank if the state is non-physical.
-  using Assembler = std::function<void(const Sheet &, const Sheet::Vector &u,
-                                       const dealii::AffineConstraints<double> &constraints, Sheet::Matrix &K)>;
   /// Builds the parts that depend only on the mesh: levels, transfers, sparsity, patches. `fine` must outlive the
   /// multigrid, and its mesh must not change. `held` are the components with prescribed displacement. Throws
   /// InvalidInput for settings out of range.
-  Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const MatrixFactory &make_matrix,
-            const DirichletBoundaries &held, const MultigridSettings &settings = MultigridSettings());
+  Multigrid(const Sheet &fine, const DirichletBoundaries &held,
+            const MultigridSettings &settings = MultigridSettings());
   ~Multigrid();
   Multigrid(const Multigrid &) = delete;
   Multigrid &operator=(const Multigrid &) = delete;
 
-  /// Sets the state `u` [m] (with ghost entries) and copies its tangent on the finest mesh, condensed by constraints().
+  /// Sets the state `u` [m] (with ghost entries) of the coarser levels.
   /// If the interpolated state is non-physical on a coarser level, it is halved repeatedly and finally set to zero,
   /// which makes the preconditioner less effective without affecting the solution. Throws LinearSolverFailed if the
   /// coarsest tangent is singular.
-  void update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix, const Assembler &assemble);
+  void update(const Sheet::Vector &u, const Assembler &assemble);
+
+  /// Sets the tangent of the finest level, condensed by constraints(), which must outlive its use. Has no effect where
+  /// the finest level is the coarsest.
+  void set_finest(const SinglePrecisionMatrix &K);
 
   /// Applies the preconditioner: computes z [m] from r [N/m], both with the layout set by initialize().
   void vmult(Vector &z, const Vector &r) const;
@@ -82,12 +109,13 @@ public:
     double state_factor;             ///< fraction of the interpolated state at which the tangent was assembled [-]
     unsigned int n_replaced_patches; ///< patches whose block was not positive definite
   };
-  /// Returns the statistics of the last update(), from the coarsest to the finest level.
+  /// Returns the statistics of the last update() and set_finest(), from the coarsest to the finest level.
   std::vector<LevelFacts> levels() const;
 
 private:
   struct Level;
 
+  void set_tangent(unsigned int level, const SinglePrecisionMatrix &K);
   void cycle(unsigned int level, Vector &z, const Vector &r) const;
 
   MultigridSettings settings_;

@@ -1,6 +1,7 @@
 #include "continuum/rate_forces.h"
 
 #include "continuum/errors.h"
+#include "continuum/single_precision_matrix.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -135,13 +136,19 @@ void RateForces::add_forces(const double duration, const Vector &u, const Vector
     continuum::add_forces(sheet_, u, at(duration, Order::first, v, load), forces, magnitude);
 }
 
+template <class AnyMatrix>
 void RateForces::add_tangent(const double duration, const Vector &u, const Vector &v, const GradientLoad &load,
                              const double rate_by_displacement, const AffineConstraints<double> &constraints,
-                             Sheet::Matrix &matrix) const
+                             AnyMatrix &matrix) const
 {
   if (is_present())
     continuum::add_tangent(sheet_, u, at(duration, Order::second, v, load, rate_by_displacement), constraints, matrix);
 }
+
+template void RateForces::add_tangent(double, const Vector &, const Vector &, const GradientLoad &, double,
+                                      const AffineConstraints<double> &, Sheet::Matrix &) const;
+template void RateForces::add_tangent(double, const Vector &, const Vector &, const GradientLoad &, double,
+                                      const AffineConstraints<double> &, SinglePrecisionMatrix &) const;
 
 void RateForces::add_stresses(const Vector &u, const Vector &v, const GradientLoad &load,
                               std::vector<Tensor<2, 2>> &stresses) const

@@ -62,10 +62,11 @@ public:
                   Vector *magnitude) const;
 
   /// Adds their derivative by u [N/m^2] to `matrix`, condensed by `constraints`, with dv/du = `rate_by_displacement`
-  /// [1/s].
+  /// [1/s]. @tparam AnyMatrix Sheet::Matrix or SinglePrecisionMatrix
+  template <class AnyMatrix>
   void add_tangent(double duration, const Vector &u, const Vector &v, const GradientLoad &load,
                    double rate_by_displacement, const dealii::AffineConstraints<double> &constraints,
-                   Sheet::Matrix &matrix) const;
+                   AnyMatrix &matrix) const;
 
   /// Adds the first Piola stresses [Pa] of v and of the present history, that of the last update at u, at the points of
   /// the elastic energy, the cells on this rank in their order.

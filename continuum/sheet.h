@@ -18,6 +18,8 @@
 
 namespace latcon::continuum
 {
+class SinglePrecisionMatrix;
+
 /// State of the sheet at one reference point.
 struct PointState
 {
@@ -75,8 +77,9 @@ public:
 
   /// Computes K_ij = d2E/du_i du_j [N/m^2] (theory-continuum.md, eq. (C.30), without gradient law eq. (C.17)),
   /// condensed by `constraints`. If `lift` g [m] is given, also computes the product K g [N/m] of the uncondensed
-  /// matrix.
-  void tangent(const Vector &u, const dealii::AffineConstraints<double> &constraints, Matrix &K,
+  /// matrix. @tparam AnyMatrix Matrix or SinglePrecisionMatrix
+  template <class AnyMatrix>
+  void tangent(const Vector &u, const dealii::AffineConstraints<double> &constraints, AnyMatrix &K,
                double load_factor = 1., const Vector *lift = nullptr, Vector *stiffness_times_lift = nullptr) const;
 
   /// Returns the nodal forces [N/m] of the dead loads at load factor 1: tractions, double tractions, body force.
@@ -86,13 +89,16 @@ public:
   /// node with conflicting conditions the first condition in the list applies.
   Vector lift() const;
 
-  /// Computes M_ab = integral of density [kg/m^3] * (phi_a phi_b + inertia_length^2 [m^2] Grad phi_a . Grad phi_b) dX
+  /// Adds to M: M_ab = integral of density [kg/m^3] * (phi_a phi_b + inertia_length^2 [m^2] Grad phi_a . Grad phi_b) dX
   /// [kg/m per thickness], the consistent mass with micro-inertia, condensed by `constraints`.
-  void mass(double density, double inertia_length, const dealii::AffineConstraints<double> &constraints,
-            Matrix &M) const;
+  /// @tparam AnyMatrix Matrix or SinglePrecisionMatrix
+  template <class AnyMatrix>
+  void add_mass(double density, double inertia_length, const dealii::AffineConstraints<double> &constraints,
+                AnyMatrix &M) const;
 
-  /// Initialises `matrix` with the sparsity that tangent() needs and zero entries.
-  void make_matrix(const dealii::AffineConstraints<double> &constraints, Matrix &matrix) const;
+  /// Initialises `matrix` with the sparsity that tangent() needs, or only add_mass(), and zero entries.
+  void make_matrix(const dealii::AffineConstraints<double> &constraints, Matrix &matrix, bool is_mass = false) const;
+  void make_matrix(const dealii::AffineConstraints<double> &constraints, SinglePrecisionMatrix &matrix) const;
 
   /// Returns the states at reference points [m]. Every rank passes the same points and gets all states. On a cell
   /// boundary, F and G are means over the adjacent cells, independent of the partition. Throws InvalidInput if a

@@ -53,13 +53,14 @@ double Sheet::residual(const Vector &u, Vector &r, Vector &magnitude, const doub
   return dealii::Utilities::MPI::sum(own, communicator());
 }
 
-void Sheet::tangent(const Vector &u, const AffineConstraints<double> &constraints, Matrix &K, const double load_factor,
-                    const Vector *lift, Vector *stiffness_times_lift) const
+template <class AnyMatrix>
+void Sheet::tangent(const Vector &u, const AffineConstraints<double> &constraints, AnyMatrix &K,
+                    const double load_factor, const Vector *lift, Vector *stiffness_times_lift) const
 {
   K = 0.;
   if (lift != nullptr)
     *stiffness_times_lift = 0.;
-  MatrixAssembly to_K(constraints, K);
+  auto &&to_K = assembly(constraints, K);
   const DeferredException guarded(
     [&]
     {
@@ -85,16 +86,26 @@ void Sheet::tangent(const Vector &u, const AffineConstraints<double> &constraint
   guarded.rethrow_collectively(communicator());
 }
 
-void Sheet::make_matrix(const AffineConstraints<double> &constraints, Matrix &matrix) const
+template void Sheet::tangent(const Vector &, const AffineConstraints<double> &, Matrix &, double, const Vector *,
+                             Vector *) const;
+template void Sheet::tangent(const Vector &, const AffineConstraints<double> &, SinglePrecisionMatrix &, double,
+                             const Vector *, Vector *) const;
+
+void Sheet::make_matrix(const AffineConstraints<double> &constraints, Matrix &matrix, const bool is_mass) const
 {
   TrilinosWrappers::SparsityPattern pattern(owned_, owned_, constraints.get_local_lines(), communicator());
   const types::subdomain_id own = dealii::Utilities::MPI::this_mpi_process(communicator());
-  if (has_gradient())
+  if (has_gradient() && !is_mass)
     DoFTools::make_flux_sparsity_pattern(dof_handler_, pattern, constraints, false, own);
   else
     DoFTools::make_sparsity_pattern(dof_handler_, pattern, constraints, false, own);
   pattern.compress();
   matrix.reinit(pattern);
+}
+
+void Sheet::make_matrix(const AffineConstraints<double> &constraints, SinglePrecisionMatrix &matrix) const
+{
+  matrix.reinit(*this, constraints);
 }
 
 DeterminantRange Sheet::determinant_range(const Vector &u) const

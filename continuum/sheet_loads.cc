@@ -1,5 +1,6 @@
 // Integrals of Sheet that do not depend on the state: dead loads, mass.
 #include "continuum/collective.h"
+#include "continuum/local_to_global.h"
 #include "continuum/sheet.h"
 
 #include <deal.II/base/quadrature_lib.h>
@@ -86,31 +87,44 @@ Sheet::Vector Sheet::loads() const
   return forces;
 }
 
-void Sheet::mass(const double density, const double inertia_length, const AffineConstraints<double> &constraints,
-                 Matrix &M) const
+template <class AnyMatrix>
+void Sheet::add_mass(const double density, const double inertia_length, const AffineConstraints<double> &constraints,
+                     AnyMatrix &M) const
 {
-  M = 0.;
+  auto &&to_M = assembly(constraints, M);
   FEValues<2> values(mapping_, element_, QGauss<2>(degree_ + 1), update_values | update_gradients | update_JxW_values);
   const unsigned int n = element_.n_dofs_per_cell();
   FullMatrix<double> local(n, n);
-  std::vector<types::global_dof_index> dofs(n);
+  std::vector<types::global_dof_index> cell_dofs(n);
+  std::vector<types::global_dof_index> dofs(n); // by node and component
   for (const auto &cell : dof_handler_.active_cell_iterators())
   {
     if (!cell->is_locally_owned())
       continue;
     values.reinit(cell);
+    cell->get_dof_indices(cell_dofs);
     local = 0.;
-    for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
-      for (unsigned int a = 0; a < n; ++a)
-        for (unsigned int b = 0; b < n; ++b)
-          if (element_.system_to_component_index(a).first == element_.system_to_component_index(b).first)
-            local(a, b) += density *
-                           (values.shape_value(a, q) * values.shape_value(b, q) +
-                            inertia_length * inertia_length * (values.shape_grad(a, q) * values.shape_grad(b, q))) *
-                           values.JxW(q);
-    cell->get_dof_indices(dofs);
-    constraints.distribute_local_to_global(local, dofs, M);
+    for (unsigned int a = 0; a < n / 2; ++a)
+      for (unsigned int i = 0; i < 2; ++i)
+      {
+        const unsigned int row = element_.component_to_system_index(i, a);
+        dofs[2 * a + i] = cell_dofs[row];
+        for (unsigned int b = 0; b < n / 2; ++b)
+        {
+          const unsigned int column = element_.component_to_system_index(i, b);
+          for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
+            local(2 * a + i, 2 * b + i) +=
+              density *
+              (values.shape_value(row, q) * values.shape_value(column, q) +
+               inertia_length * inertia_length * (values.shape_grad(row, q) * values.shape_grad(column, q))) *
+              values.JxW(q);
+        }
+      }
+    to_M.add(local, dofs);
   }
   M.compress(VectorOperation::add);
 }
+
+template void Sheet::add_mass(double, double, const AffineConstraints<double> &, Matrix &) const;
+template void Sheet::add_mass(double, double, const AffineConstraints<double> &, SinglePrecisionMatrix &) const;
 } // namespace latcon::continuum

@@ -1,14 +1,14 @@
 #include "continuum/single_precision_matrix.h"
 
+#include "continuum/lifted_shapes.h"
 #include "continuum/vector_kernels.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/partitioner.h>
-
-#include <Epetra_CrsMatrix.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/sparsity_tools.h>
 
 #include <algorithm>
-#include <numeric>
 
 using namespace dealii;
 
@@ -16,6 +16,8 @@ namespace latcon::continuum
 {
 namespace
 {
+using Index = SinglePrecisionMatrix::Index;
+
 // Computes y = A x by pairs of rows.
 LATCON_CLONES void multiply(const std::size_t *first_block, const std::size_t n_rows, const unsigned int *columns,
                             const float *values, const double *x, double *y)
@@ -34,88 +36,366 @@ LATCON_CLONES void multiply(const std::size_t *first_block, const std::size_t n_
     y[2 * row + 1] = sum[2] + sum[3];
   }
 }
+
+// Returns the owner of each ghost entry.
+std::vector<unsigned int> owners_of_ghosts(const dealii::Utilities::MPI::Partitioner &layout)
+{
+  std::vector<unsigned int> owners;
+  for (const auto &[rank, n] : layout.ghost_targets())
+    owners.insert(owners.end(), n, rank);
+  return owners;
+}
+
+// Returns the pairs of unknowns to which this rank adds, each with those that it depends on: of each cell and, with a
+// gradient law, of each two neighbors.
+DynamicSparsityPattern coupled_pairs(const Sheet &sheet, const AffineConstraints<double> &constraints)
+{
+  IndexSet rows(sheet.dof_handler().n_dofs() / 2);
+  const IndexSet &lines = constraints.get_local_lines();
+  for (auto interval = lines.begin_intervals(); interval != lines.end_intervals(); ++interval)
+    rows.add_range(*interval->begin() / 2, interval->last() / 2 + 1);
+  DynamicSparsityPattern pattern(rows.size(), rows.size(), rows);
+  std::vector<Index> cell_dofs(sheet.element().n_dofs_per_cell());
+  std::vector<Index> neighbor_dofs(cell_dofs.size());
+  std::vector<Index> pairs;
+  const auto insert = [&](const std::vector<Index> &dofs)
+  {
+    for (const Index dof : dofs)
+      if (!constraints.is_constrained(dof))
+        pairs.push_back(dof / 2);
+      else
+        for (const auto &entry : *constraints.get_constraint_entries(dof))
+          pairs.push_back(entry.first / 2);
+  };
+  const auto couple = [&]
+  {
+    sort_without_repetition(pairs);
+    for (const Index pair : pairs)
+      pattern.add_entries(pair, pairs.begin(), pairs.end(), true);
+    pairs.clear();
+  };
+  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
+  {
+    if (!cell->is_locally_owned())
+      continue;
+    cell->get_dof_indices(cell_dofs);
+    insert(cell_dofs);
+    couple();
+    if (sheet.has_gradient())
+      for (const LiftedFace &face : lifted_faces(sheet, cell))
+        if (face.condition == nullptr && (cell < face.neighbor || !face.neighbor->is_locally_owned()))
+        {
+          face.neighbor->get_dof_indices(neighbor_dofs);
+          insert(cell_dofs);
+          insert(neighbor_dofs);
+          couple();
+        }
+  }
+  return pattern;
+}
 } // namespace
 
-void SinglePrecisionMatrix::copy_from(const Sheet::Matrix &K)
+void sort_without_repetition(std::vector<Index> &dofs)
 {
-  const Epetra_CrsMatrix &matrix = K.trilinos_matrix();
-  n_unknowns_ = K.m();
-  const IndexSet owned = K.locally_owned_range_indices();
-  const auto n_owned = static_cast<int>(owned.n_elements());
-  Assert(n_owned % 2 == 0, ExcInternalError());
+  std::sort(dofs.begin(), dofs.end());
+  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
+}
 
-  // Pairs of columns, numbered as in x_, with ghosts after the owned entries.
-  IndexSet ghosts(K.n());
-  for (int column = 0; column < matrix.NumMyCols(); ++column)
-    if (const types::global_dof_index index = matrix.GCID(column); !owned.is_element(index))
-      ghosts.add_range(index / 2 * 2, index / 2 * 2 + 2);
-  const auto layout =
-    std::make_shared<const dealii::Utilities::MPI::Partitioner>(owned, ghosts, K.get_mpi_communicator());
-  x_.reinit(layout);
-  std::vector<unsigned int> position(matrix.NumMyCols());
-  for (int column = 0; column < matrix.NumMyCols(); ++column)
-    position[column] = layout->global_to_local(matrix.GCID(column));
+void SinglePrecisionMatrix::reinit(const Sheet &sheet, const AffineConstraints<double> &constraints)
+{
+  constraints_ = &constraints;
+  n_unknowns_ = sheet.dof_handler().n_dofs();
+  DynamicSparsityPattern pattern = coupled_pairs(sheet, constraints);
+  IndexSet owned(pattern.n_rows());
+  if (!sheet.owned().is_empty())
+    owned.add_range(sheet.owned().nth_index_in_set(0) / 2,
+                    sheet.owned().nth_index_in_set(0) / 2 + sheet.owned().n_elements() / 2);
+  SparsityTools::distribute_sparsity_pattern(pattern, owned, sheet.communicator(), pattern.row_index_set());
 
-  int n_entries[2];
-  double *values[2];
-  int *columns[2];
-  std::vector<unsigned int> pairs;
-  const auto extract = [&](const int row)
-  {
-    pairs.clear();
-    for (int r = 0; r < 2; ++r)
-    {
-      matrix.ExtractMyRowView(row + r, n_entries[r], values[r], columns[r]);
-      for (int k = 0; k < n_entries[r]; ++k)
-        if (const unsigned int pair = position[columns[r][k]] / 2; pairs.empty() || pairs.back() != pair)
-          pairs.push_back(pair);
-    }
-    std::sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  };
+  std::vector<Index> foreign; // rows and columns
+  for (const Index row : pattern.row_index_set())
+    for (auto column = pattern.begin(row); column != pattern.end(row); ++column)
+      if (!owned.is_element(column->column()))
+        foreign.push_back(column->column());
+  sort_without_repetition(foreign);
+  IndexSet ghosts(n_unknowns_);
+  for (const Index pair : foreign)
+    ghosts.add_range(2 * pair, 2 * pair + 2);
+  x_.reinit(std::make_shared<const dealii::Utilities::MPI::Partitioner>(sheet.owned(), ghosts, sheet.communicator()));
 
-  // Counted first: arrays that grow would take up to twice the memory, and their number is not that of the entries,
-  // since rows of constrained unknowns have fewer.
+  const unsigned int n_owned_pairs = owned.n_elements();
+  const unsigned int n_pairs = n_owned_pairs + foreign.size();
   first_block_.assign(1, 0);
-  for (int row = 0; row < n_owned; row += 2)
+  columns_.clear();
+  columns_.reserve(pattern.n_nonzero_elements());
+  for (unsigned int row = 0; row < n_pairs; ++row)
   {
-    extract(row);
-    first_block_.push_back(first_block_.back() + pairs.size());
+    const Index pair = layout().local_to_global(2 * row) / 2;
+    if (pattern.row_index_set().is_element(pair))
+      for (auto column = pattern.begin(pair); column != pattern.end(pair); ++column)
+        columns_.push_back(layout().global_to_local(2 * column->column()) / 2);
+    std::sort(columns_.begin() + first_block_.back(), columns_.end());
+    first_block_.push_back(columns_.size());
   }
-  columns_.resize(first_block_.back());
-  columns_.shrink_to_fit();
-  values_.assign(4 * columns_.size(), 0.f);
+  values_.resize(4 * columns_.size());
   values_.shrink_to_fit();
-  for (int row = 0; row < n_owned; row += 2)
-  {
-    extract(row);
-    const std::size_t first = first_block_[row / 2];
-    const auto last = std::copy(pairs.begin(), pairs.end(), columns_.begin() + first);
-    for (int r = 0; r < 2; ++r)
+
+  // Components of unknowns, also of columns that are on no cell of this rank.
+  rest_.resize(4 * n_pairs);
+  partner_.resize(2 * n_owned_pairs);
+  std::vector<Index> dofs(sheet.element().n_dofs_per_cell());
+  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
+    if (cell->is_locally_owned())
     {
-      std::size_t block = first;
-      for (int k = 0; k < n_entries[r]; ++k)
-      {
-        const unsigned int at = position[columns[r][k]];
-        if (block == first_block_[row / 2 + 1] || columns_[block] != at / 2)
-          block = std::lower_bound(columns_.begin() + first, last, at / 2) - columns_.begin();
-        values_[4 * block + 2 * r + at % 2] = static_cast<float>(values[r][k]);
-      }
+      cell->get_dof_indices(dofs);
+      for (unsigned int a = 0; a < dofs.size(); ++a)
+        if (layout().in_local_range(dofs[a]))
+        {
+          const auto [component, node] = sheet.element().system_to_component_index(a);
+          const unsigned int row = layout().global_to_local(dofs[a]);
+          partner_[row] =
+            layout().global_to_local(dofs[sheet.element().component_to_system_index(1 - component, node)]);
+          x_.local_element(row) = component;
+        }
     }
+  x_.update_ghost_values();
+  component_.assign(x_.begin(), x_.begin() + 2 * n_pairs);
+  x_.zero_out_ghost_values();
+  *this = 0.;
+}
+
+SinglePrecisionMatrix &SinglePrecisionMatrix::operator=(const double zero)
+{
+  Assert(zero == 0., ExcNotImplemented());
+  std::fill(values_.begin(), values_.end(), static_cast<float>(zero));
+  std::fill(rest_.begin(), rest_.end(), static_cast<float>(zero));
+  scale_ = 1.;
+  return *this;
+}
+
+SinglePrecisionMatrix &SinglePrecisionMatrix::operator*=(const double factor)
+{
+  scale_ *= factor; // and not the entries, which would be rounded again
+  return *this;
+}
+
+// Sets the terms of an element and the pairs that they belong to. Returns the matrix that the terms refer to: the given
+// one, or the one condensed from it.
+const FullMatrix<double> &SinglePrecisionMatrix::resolve(const FullMatrix<double> &local,
+                                                         const std::vector<Index> &dofs)
+{
+  terms_.clear();
+  weights_.clear();
+  bool is_constrained = false;
+  for (unsigned int a = 0; a < dofs.size(); ++a)
+    if (constraints_->is_constrained(dofs[a]))
+      is_constrained = true;
+    else
+      terms_.push_back({layout().global_to_local(dofs[a]), a, a % 2, 0});
+  if (is_constrained)
+  {
+    for (Term &term : terms_)
+      weights_.push_back({term.dof, term.local, 1.});
+    for (unsigned int a = 0; a < dofs.size(); ++a)
+      if (constraints_->is_constrained(dofs[a]))
+        for (const auto &[dof, weight] : *constraints_->get_constraint_entries(dofs[a]))
+        {
+          weights_.push_back({layout().global_to_local(dof), a, weight});
+          terms_.push_back({weights_.back().term, 0, a % 2, 0});
+        }
   }
+  std::sort(terms_.begin(), terms_.end(), [](const Term &a, const Term &b) { return a.dof < b.dof; });
+  terms_.erase(std::unique(terms_.begin(), terms_.end(), [](const Term &a, const Term &b) { return a.dof == b.dof; }),
+               terms_.end());
+  pairs_.clear();
+  for (Term &term : terms_)
+  {
+    if (pairs_.empty() || pairs_.back() != term.dof / 2)
+      pairs_.push_back(term.dof / 2);
+    term.column = pairs_.size() - 1;
+  }
+  found_.clear();
+  if (!is_constrained)
+    return local;
+
+  condensed_.reinit(terms_.size(), terms_.size());
+  for (Weight &weight : weights_)
+    weight.term = std::lower_bound(terms_.begin(), terms_.end(), weight.term,
+                                   [](const Term &term, const unsigned int dof) { return term.dof < dof; }) -
+                  terms_.begin();
+  // Both entries of a pair in the same order, so that a symmetric matrix stays symmetric to the last bit.
+  for (auto a = weights_.begin(); a != weights_.end(); ++a)
+    for (auto b = a; b != weights_.end(); ++b)
+    {
+      condensed_(a->term, b->term) += a->weight * b->weight * local(a->local, b->local);
+      if (a != b)
+        condensed_(b->term, a->term) += a->weight * b->weight * local(b->local, a->local);
+    }
+  for (unsigned int n = 0; n < terms_.size(); ++n)
+    terms_[n].local = n;
+  return condensed_;
+}
+
+// Finds the blocks of the pairs of the element in a row. Rows of a vertex, line or cell have the same columns, so the
+// last blocks are tried first.
+void SinglePrecisionMatrix::find(const unsigned int row)
+{
+  const unsigned int *columns = &columns_[first_block_[row]];
+  const std::size_t n_columns = first_block_[row + 1] - first_block_[row];
+  bool is_as_before = !found_.empty() && found_.back() < n_columns;
+  for (std::size_t k = 0; is_as_before && k < pairs_.size(); ++k)
+    is_as_before = columns[found_[k]] == pairs_[k];
+  if (is_as_before)
+    return;
+  found_.resize(pairs_.size());
+  unsigned int block = 0;
+  for (std::size_t k = 0; k < pairs_.size(); ++k)
+  {
+    while (block < n_columns && columns[block] < pairs_[k])
+      ++block;
+    AssertThrow(block < n_columns && columns[block] == pairs_[k], ExcInternalError());
+    found_[k] = block;
+  }
+}
+
+void SinglePrecisionMatrix::add(const FullMatrix<double> &local, const std::vector<Index> &dofs)
+{
+  const FullMatrix<double> &element = resolve(local, dofs);
+  const double factor = 1. / scale_;
+  for (const Term &row : terms_)
+  {
+    find(row.dof / 2);
+    const double *added = &element(row.local, 0);
+    float *values = &values_[4 * first_block_[row.dof / 2] + 2 * (row.dof % 2)];
+    double errors[2] = {0., 0.}; // of both components
+    for (const Term &column : terms_)
+    {
+      float &entry = values[4 * found_[column.column] + column.dof % 2];
+      const double exact = entry + factor * added[column.local];
+      entry = static_cast<float>(exact);
+      errors[column.component] += exact - entry;
+    }
+    rest_[2 * row.dof] += static_cast<float>(errors[row.component]);
+    rest_[2 * row.dof + 1] += static_cast<float>(errors[1 - row.component]);
+  }
+}
+
+// Sets an owned entry, and adds the error to the rest of its row.
+void SinglePrecisionMatrix::set(const Entry &entry, const bool adds)
+{
+  const unsigned int row = layout().global_to_local(entry.row);
+  const unsigned int column = layout().global_to_local(entry.column);
+  const auto begin = columns_.begin() + first_block_[row / 2];
+  const auto end = columns_.begin() + first_block_[row / 2 + 1];
+  const auto found = std::lower_bound(begin, end, column / 2);
+  AssertThrow(found != end && *found == column / 2, ExcInternalError());
+  float &stored = values_[4 * (found - columns_.begin()) + 2 * (row % 2) + column % 2];
+  const double exact = stored + (adds ? entry.value : 0.);
+  stored = static_cast<float>(adds ? exact : entry.value);
+  rest_[2 * row + (component_[row] == component_[column] ? 0 : 1)] += static_cast<float>(exact - stored);
+}
+
+void SinglePrecisionMatrix::compress(VectorOperation::values)
+{
+  constexpr Index of_own_component = numbers::invalid_dof_index; // in place of a column: rest of the row
+  constexpr Index of_other_component = of_own_component - 1;
+  const std::vector<unsigned int> owner = owners_of_ghosts(layout());
+  const unsigned int n_owned = layout().locally_owned_size();
+  std::map<unsigned int, std::vector<Entry>> messages; // by rank
+  for (unsigned int row = n_owned; row < 2 * (first_block_.size() - 1); ++row)
+  {
+    const Index index = layout().local_to_global(row);
+    std::vector<Entry> &message = messages[owner[row - n_owned]];
+    for_each_entry(row,
+                   [&](const unsigned int column, const double value) {
+                     message.push_back({index, layout().local_to_global(column), value / scale_});
+                   });
+    message.push_back({index, of_own_component, rest_[2 * row]});
+    message.push_back({index, of_other_component, rest_[2 * row + 1]});
+  }
+  std::fill(values_.begin() + 4 * first_block_[n_owned / 2], values_.end(), 0.f);
+  std::fill(rest_.begin() + 2 * n_owned, rest_.end(), 0.f);
+  for (const auto &received : dealii::Utilities::MPI::some_to_some(layout().get_mpi_communicator(), messages))
+    for (const Entry &entry : received.second)
+      if (entry.column == of_own_component || entry.column == of_other_component)
+        rest_[2 * layout().global_to_local(entry.row) + (entry.column == of_own_component ? 0 : 1)] +=
+          static_cast<float>(entry.value);
+      else
+        set(entry, true);
+}
+
+void SinglePrecisionMatrix::make_symmetric()
+{
+  const std::vector<unsigned int> owner = owners_of_ghosts(layout());
+  const unsigned int n_owned = layout().locally_owned_size();
+  const Index first = layout().local_range().first;
+  std::map<unsigned int, std::vector<Entry>> messages; // by rank
+  for (unsigned int row = 0; row < n_owned; ++row)
+    for_each_entry(row,
+                   [&](const unsigned int column, const double value)
+                   {
+                     if (column >= n_owned && layout().local_to_global(column) > first)
+                       messages[owner[column - n_owned]].push_back(
+                         {layout().local_to_global(column), layout().local_to_global(row), value / scale_});
+                   });
+  for (const auto &received : dealii::Utilities::MPI::some_to_some(layout().get_mpi_communicator(), messages))
+    for (const Entry &entry : received.second)
+      set(entry, false);
+  for (unsigned int row = 0; row < n_owned; ++row)
+    if (const unsigned int partner = partner_[row]; row < partner)
+    {
+      const bool is_free = !constraints_->is_constrained(layout().local_to_global(row)) &&
+                           !constraints_->is_constrained(layout().local_to_global(partner));
+      rest_[2 * row + 1] = rest_[2 * partner + 1] =
+        is_free ? 0.5f * (rest_[2 * row + 1] + rest_[2 * partner + 1]) : 0.f;
+    }
 }
 
 void SinglePrecisionMatrix::vmult(Vector &y, const Vector &x) const
 {
   const Vector *from = &x;
-  if (x_.get_partitioner()->n_mpi_processes() > 1)
+  if (layout().n_mpi_processes() > 1)
   {
     std::copy(x.begin(), x.end(), x_.begin());
     x_.update_ghost_values();
     from = &x_;
   }
-  multiply(first_block_.data(), first_block_.size() - 1, columns_.data(), values_.data(), from->begin(), y.begin());
+  const double *entries = from->begin();
+  double *products = y.begin();
+  const std::size_t n_owned = layout().locally_owned_size();
+  multiply(first_block_.data(), n_owned / 2, columns_.data(), values_.data(), entries, products);
+  for (std::size_t i = 0; i < n_owned; ++i)
+    products[i] = scale_ * (products[i] + rest_[2 * i] * entries[i] + rest_[2 * i + 1] * entries[partner_[i]]);
   if (from == &x_)
     x_.zero_out_ghost_values();
+}
+
+double SinglePrecisionMatrix::diag_element(const Index i) const
+{
+  const unsigned int row = layout().global_to_local(i);
+  double entry = rest_[2 * row];
+  for_each_entry(row,
+                 [&](const unsigned int column, const double value) { entry += column == row ? value / scale_ : 0.; });
+  return scale_ * entry;
+}
+
+std::vector<SinglePrecisionMatrix::Entry>
+SinglePrecisionMatrix::entries_of(const dealii::Utilities::MPI::Partitioner &wanted) const
+{
+  const std::vector<unsigned int> owner = owners_of_ghosts(wanted);
+  std::map<unsigned int, std::vector<Index>> requests;
+  for (unsigned int ghost = 0; ghost < owner.size(); ++ghost)
+    requests[owner[ghost]].push_back(wanted.local_to_global(wanted.locally_owned_size() + ghost));
+  std::map<unsigned int, std::vector<Entry>> answers;
+  for (const auto &[rank, rows] : dealii::Utilities::MPI::some_to_some(layout().get_mpi_communicator(), requests))
+    for (const Index row : rows)
+      for_each_entry(layout().global_to_local(row),
+                     [&, to = rank](const unsigned int column, const double value) {
+                       answers[to].push_back({row, layout().local_to_global(column), value});
+                     });
+  std::vector<Entry> entries;
+  for (const auto &received : dealii::Utilities::MPI::some_to_some(layout().get_mpi_communicator(), answers))
+    entries.insert(entries.end(), received.second.begin(), received.second.end());
+  return entries;
 }
 } // namespace latcon::continuum

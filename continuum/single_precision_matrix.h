@@ -3,36 +3,126 @@
 #include "continuum/sheet.h"
 
 #include <deal.II/base/subscriptor.h>
+#include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
+#include <map>
 #include <vector>
 
 namespace latcon::continuum
 {
-/// Copy of the tangent of a sheet in single precision, for smoothers, which read it many times and need at most six
-/// digits. Entries are stored in blocks of two by two: unknowns 2 n and 2 n + 1 belong to the same vertex, line or cell
-/// and so couple to the same unknowns. Products are accumulated in double precision, and a symmetric tangent stays
-/// symmetric. Needs 5 bytes per entry, compared with 12 of the original.
+/// Sorts unknowns and removes repetitions.
+void sort_without_repetition(std::vector<dealii::types::global_dof_index> &dofs);
+
+/// Matrix of a sheet in single precision, for iterative solvers, assembled directly. Entries are stored in blocks of
+/// two by two: unknowns 2 n and 2 n + 1 belong to the same vertex, line or cell and so couple to the same unknowns. An
+/// entry needs 5 bytes, of TrilinosWrappers::SparseMatrix 12.
+///
+/// Rounding errors of entries are relative to the stiffness between neighboring nodes and would, summed over a row, act
+/// like springs to the ground, which are not small beside the stiffness against long waves. Each row therefore keeps
+/// the sums of its errors, by component, and multiplies them by the displacement of its own node, so that errors see
+/// only the differences between neighboring nodes. Products are accumulated in double precision.
 class SinglePrecisionMatrix : public dealii::Subscriptor
 {
 public:
   using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
+  using Index = dealii::types::global_dof_index;
 
-  /// Copies the sparsity and the entries of K [N/m^2]. Collective.
-  void copy_from(const Sheet::Matrix &K);
+  /// Entry of a matrix in global indices.
+  struct Entry
+  {
+    Index row;
+    Index column;
+    double value; ///< [N/m^2]
 
-  /// Computes y = K x for vectors over the owned degrees of freedom of the sheet; ghost entries are ignored.
-  /// Collective.
+    template <class Archive>
+    void serialize(Archive &archive, unsigned int)
+    {
+      archive &row &column &value;
+    }
+  };
+
+  /// Makes the matrix zero, with the sparsity of the tangent of `sheet` condensed by `constraints`, both of which must
+  /// outlive it. Collective.
+  void reinit(const Sheet &sheet, const dealii::AffineConstraints<double> &constraints);
+
+  /// Sets all entries to `zero`, which must be 0.
+  SinglePrecisionMatrix &operator=(double zero);
+  SinglePrecisionMatrix &operator*=(double factor);
+
+  /// Adds an element matrix [N/m^2] for the unknowns 2 a + i of node a and component i, condensed by the constraints;
+  /// rows and columns of prescribed unknowns stay zero.
+  void add(const dealii::FullMatrix<double> &local, const std::vector<Index> &dofs);
+
+  /// Sends what was added to rows of other ranks. Collective.
+  void compress(dealii::VectorOperation::values operation);
+
+  /// Makes a matrix that is symmetric up to the order of its sums over ranks, and its errors, symmetric to the last
+  /// bit. Collective.
+  void make_symmetric();
+
+  /// Computes y = K x for vectors over the owned unknowns of the sheet; ghost entries are ignored. Collective.
   void vmult(Vector &y, const Vector &x) const;
 
-  dealii::types::global_dof_index m() const { return n_unknowns_; }
-  dealii::types::global_dof_index n() const { return n_unknowns_; }
+  /// Returns the entry (i, i) of an owned row.
+  double diag_element(Index i) const;
+
+  /// Calls `visit(column, value)` for the entries of a row; `row` and `column` are positions in layout().
+  template <class Visit>
+  void for_each_entry(const unsigned int row, const Visit &visit) const
+  {
+    for (std::size_t block = first_block_[row / 2]; block < first_block_[row / 2 + 1]; ++block)
+      for (unsigned int c = 0; c < 2; ++c)
+        visit(2 * columns_[block] + c, scale_ * values_[4 * block + 2 * (row % 2) + c]);
+  }
+
+  /// Returns the entries of the rows that are ghosts of a layout, in its order. Collective.
+  std::vector<Entry> entries_of(const dealii::Utilities::MPI::Partitioner &layout) const;
+
+  /// Layout of vectors with the unknowns of all columns, as ghosts those of other ranks.
+  const dealii::Utilities::MPI::Partitioner &layout() const { return *x_.get_partitioner(); }
+
+  Index m() const { return n_unknowns_; }
+  Index n() const { return n_unknowns_; }
 
 private:
-  dealii::types::global_dof_index n_unknowns_ = 0;
+  // Unknown to which an element adds.
+  struct Term
+  {
+    unsigned int dof;       // position in the layout
+    unsigned int local;     // row of the element matrix
+    unsigned int component; // 0 or 1
+    unsigned int column;    // number of its pair among those of the element
+  };
+  // Weight of an unknown of an element in a term.
+  struct Weight
+  {
+    unsigned int term; // position in the layout, then number of the term
+    unsigned int local;
+    double weight;
+  };
+
+  const dealii::FullMatrix<double> &resolve(const dealii::FullMatrix<double> &local, const std::vector<Index> &dofs);
+  void find(unsigned int row);
+  void set(const Entry &entry, bool adds);
+
+  const dealii::AffineConstraints<double> *constraints_ = nullptr;
+  Index n_unknowns_ = 0;
+  // Rows have the positions of the layout: those of this rank, then those of other ranks to which this rank adds.
   std::vector<std::size_t> first_block_; // per pair of rows, and the end
-  std::vector<unsigned int> columns_;    // per block: pair of entries of x_
+  std::vector<unsigned int> columns_;    // per block: pair of positions in the layout
   std::vector<float> values_;            // per block, by rows
-  mutable Vector x_;                     // with the ghost entries that the owned rows need
+  std::vector<float> rest_;           // per row: sums of errors of columns of its own and of the other component
+  std::vector<unsigned int> partner_; // per owned row: that of the other component at the same node
+  std::vector<bool> component_;       // per position
+  double scale_ = 1.;                 // of stored entries
+  mutable Vector x_;                  // with ghost entries
+
+  // Of the current element:
+  std::vector<Term> terms_;     // by position
+  std::vector<Weight> weights_; // if an unknown is constrained, as the next
+  dealii::FullMatrix<double> condensed_;
+  std::vector<unsigned int> pairs_; // of terms_, by position
+  std::vector<unsigned int> found_; // blocks of pairs_ in the last row, from its first
 };
 } // namespace latcon::continuum

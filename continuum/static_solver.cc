@@ -86,8 +86,8 @@ void StaticSolver::set_up()
 
   loads_ = sheet_.loads();
   displacement_ = sheet_.make_ghosted();
-  sheet_.make_matrix(homogeneous_, matrix_);
-  linear_solver_ = std::make_unique<LinearSolver>(sheet_, dirichlet_boundaries(sheet_.conditions()), settings_.linear);
+  linear_solver_ =
+    std::make_unique<LinearSolver>(sheet_, homogeneous_, dirichlet_boundaries(sheet_.conditions()), settings_.linear);
 }
 
 StaticSolver::Evaluation StaticSolver::evaluate(const Vector &u, const double load_factor) const
@@ -117,7 +117,7 @@ double StaticSolver::round_off(const Evaluation &state, const Vector &u) const
     if (!homogeneous_.is_constrained(i))
     {
       const double of_stress = state.magnitude(i);
-      const double of_displacement = matrix_.diag_element(i) * u(i);
+      const double of_displacement = linear_solver_->diag_element(i) * u(i);
       sum += of_stress * of_stress + of_displacement * of_displacement;
     }
   // Factor 4: computing a stress adds several rounding errors to those of the displacement.
@@ -133,15 +133,21 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
 
   const auto assemble = [&](const Vector &at, const Vector *rise)
   {
+    double assembly = 0.; // [s]
     {
-      const Clock clock(report.times.assembly);
-      sheet_.tangent(at, homogeneous_, matrix_, target, rise, &lift_forces);
+      const Clock clock(report.times.preconditioner);
+      linear_solver_->update(
+        at,
+        [&](const Sheet &, const Vector &there, const AffineConstraints<double> &constraints, auto &K)
+        {
+          const Clock of_assembly(assembly);
+          sheet_.tangent(there, constraints, K, target, rise, &lift_forces);
+        },
+        [target](const Sheet &level, const Vector &there, const AffineConstraints<double> &constraints, auto &K)
+        { level.tangent(there, constraints, K, target); });
     }
-    const Clock clock(report.times.preconditioner);
-    linear_solver_->update(
-      at, matrix_,
-      [target](const Sheet &level, const Vector &there, const AffineConstraints<double> &constraints, Sheet::Matrix &K)
-      { level.tangent(there, constraints, K, target); });
+    report.times.assembly += assembly;
+    report.times.preconditioner -= assembly;
   };
   const auto solve = [&](const Evaluation &state, const Vector *rise, const double forcing, Vector &step)
   {
@@ -154,7 +160,7 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
         rhs(i) = 0.;
     rhs.compress(VectorOperation::insert);
     const Clock clock(report.times.linear_solve);
-    const unsigned int iterations = linear_solver_->solve(matrix_, step, rhs, forcing);
+    const unsigned int iterations = linear_solver_->solve(step, rhs, forcing);
     const double slope = -(rhs * step); // rhs is minus the residual, zero at constrained unknowns
     homogeneous_.distribute(step);
     return NewtonStep{iterations, slope};
@@ -318,6 +324,7 @@ SolverReport StaticSolver::solve(const Observer &observer)
                            report);
     }
   }
+  linear_solver_->release(); // before results are written, which takes memory too
   return report;
 }
 

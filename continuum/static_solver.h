@@ -108,7 +108,6 @@ private:
   dealii::AffineConstraints<double> homogeneous_; // hanging nodes, and prescribed unknowns at zero
   Vector full_lift_;                              // prescribed displacement at load factor 1, zero elsewhere
   Vector loads_;                                  // nodal dead loads at load factor 1
-  Sheet::Matrix matrix_;
   Vector displacement_;
   double load_factor_ = 0.;
   mutable std::shared_ptr<const Evaluation> current_; // at both; null: to be evaluated

@@ -7,15 +7,10 @@
 #include <deal.II/base/mpi.h>
 
 #include <Eigen/Dense>
-#include <Epetra_CrsMatrix.h>
-#include <Epetra_Import.h>
-#include <Epetra_Map.h>
-#include <Epetra_MpiComm.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <stdexcept>
 #include <unordered_map>
 
 using namespace dealii;
@@ -121,12 +116,6 @@ LATCON_CLONES void add_patches(const std::size_t n_patches, const std::size_t *f
 }
 
 using Dofs = std::vector<types::global_dof_index>;
-
-void make_unique(Dofs &dofs)
-{
-  std::sort(dofs.begin(), dofs.end());
-  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
-}
 
 // Free degrees of freedom of one cell, by vertex, line and interior.
 class CellDofs
@@ -253,7 +242,7 @@ std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<doubl
   patch_of.erase(std::remove_if(patch_of.begin(), patch_of.end(), [](const Dofs &patch) { return patch.empty(); }),
                  patch_of.end());
   for (Dofs &patch : patch_of)
-    make_unique(patch);
+    sort_without_repetition(patch);
   return patch_of;
 }
 } // namespace
@@ -262,18 +251,15 @@ VertexPatches::VertexPatches(const Sheet &sheet, const AffineConstraints<double>
 {
   const std::vector<Dofs> patches = list_patches(sheet, constraints);
 
+  IndexSet ghosts = sheet.relevant();
   Dofs foreign;
   for (const Dofs &patch : patches)
     for (const types::global_dof_index dof : patch)
       if (!sheet.owned().is_element(dof))
         foreign.push_back(dof);
-  make_unique(foreign);
-  IndexSet ghosts = sheet.relevant();
+  sort_without_repetition(foreign);
   ghosts.add_indices(foreign.begin(), foreign.end());
   layout_ = std::make_shared<const Layout>(sheet.owned(), ghosts, sheet.communicator());
-  const std::vector<int> rows(foreign.begin(), foreign.end());
-  ghost_rows_ = std::make_unique<Epetra_Map>(-1, static_cast<int>(rows.size()), rows.data(), 0,
-                                             Epetra_MpiComm(sheet.communicator()));
 
   first_dof_.assign(1, 0);
   first_entry_.assign(1, 0);
@@ -288,76 +274,60 @@ VertexPatches::VertexPatches(const Sheet &sheet, const AffineConstraints<double>
   inverses_.resize(first_entry_.back());
 }
 
-VertexPatches::~VertexPatches() = default;
-
-void VertexPatches::factorise(const Sheet::Matrix &K)
+void VertexPatches::factorise(const SinglePrecisionMatrix &K)
 {
-  const Epetra_CrsMatrix &own = K.trilinos_matrix();
-  Epetra_CrsMatrix ghosts(Copy, *ghost_rows_, 0);
-  // The exchange is collective; its code is that of the rank.
-  const int code = ghosts.Import(own, Epetra_Import(*ghost_rows_, own.RowMap()), Insert);
-  run_collectively(layout_->get_mpi_communicator(),
-                   [code]
-                   {
-                     if (code < 0)
-                       throw std::runtime_error("rows of the tangent could not be exchanged");
-                   });
-
+  const std::vector<SinglePrecisionMatrix::Entry> foreign_entries = K.entries_of(*layout_);
   own_replaced_ = 0;
   const unsigned int n_owned = layout_->locally_owned_size();
-  const auto position_of = [&](const int column)
+  const auto position_of = [&](const types::global_dof_index index)
   {
-    const auto index = static_cast<types::global_dof_index>(column);
     return layout_->in_local_range(index) || layout_->is_ghost_entry(index) ? layout_->global_to_local(index) : nowhere;
   };
-  run_collectively(layout_->get_mpi_communicator(),
-                   [&]
-                   {
-                     std::vector<unsigned int> own_columns(own.NumMyCols());
-                     for (int column = 0; column < own.NumMyCols(); ++column)
-                       own_columns[column] = position_of(own.GCID(column));
+  run_collectively(
+    layout_->get_mpi_communicator(),
+    [&]
+    {
+      std::vector<unsigned int> of_column(K.layout().locally_owned_size() + K.layout().n_ghost_indices());
+      for (unsigned int column = 0; column < of_column.size(); ++column)
+        of_column[column] = position_of(K.layout().local_to_global(column));
+      std::vector<std::size_t> first_foreign(layout_->n_ghost_indices(), foreign_entries.size()); // by ghost
+      for (std::size_t e = foreign_entries.size(); e-- > 0;)
+        first_foreign[layout_->global_to_local(foreign_entries[e].row) - n_owned] = e;
 
-                     std::vector<unsigned int> at(n_owned + layout_->n_ghost_indices(),
-                                                  nowhere); // position in the current patch
-                     Eigen::MatrixXd block;
-                     Eigen::LLT<Eigen::MatrixXd> cholesky;
-                     for (std::size_t p = 0; p + 1 < first_dof_.size(); ++p)
-                     {
-                       const unsigned int *dofs = &dofs_[first_dof_[p]];
-                       const unsigned int n = first_dof_[p + 1] - first_dof_[p];
-                       for (unsigned int i = 0; i < n; ++i)
-                         at[dofs[i]] = i;
-                       block.setZero(n, n);
-                       int n_entries = 0;
-                       double *values = nullptr;
-                       int *columns = nullptr;
-                       for (unsigned int i = 0; i < n; ++i)
-                       {
-                         const auto take = [&](const int k, const unsigned int position)
-                         {
-                           if (position != nowhere && at[position] != nowhere)
-                             block(at[position], i) = values[k];
-                         };
-                         if (dofs[i] < n_owned)
-                         {
-                           own.ExtractMyRowView(static_cast<int>(dofs[i]), n_entries, values, columns);
-                           for (int k = 0; k < n_entries; ++k)
-                             take(k, own_columns[columns[k]]);
-                         }
-                         else
-                         {
-                           ghosts.ExtractGlobalRowView(static_cast<int>(layout_->local_to_global(dofs[i])), n_entries,
-                                                       values, columns);
-                           for (int k = 0; k < n_entries; ++k)
-                             take(k, position_of(columns[k]));
-                         }
-                       }
-                       if (!invert(block, cholesky, &inverses_[first_entry_[p]]))
-                         ++own_replaced_;
-                       for (unsigned int i = 0; i < n; ++i)
-                         at[dofs[i]] = nowhere;
-                     }
-                   });
+      std::vector<unsigned int> at(n_owned + layout_->n_ghost_indices(), nowhere); // position in the current patch
+      Eigen::MatrixXd block;
+      Eigen::LLT<Eigen::MatrixXd> cholesky;
+      for (std::size_t p = 0; p + 1 < first_dof_.size(); ++p)
+      {
+        const unsigned int *dofs = &dofs_[first_dof_[p]];
+        const unsigned int n = first_dof_[p + 1] - first_dof_[p];
+        for (unsigned int i = 0; i < n; ++i)
+          at[dofs[i]] = i;
+        block.setZero(n, n);
+        for (unsigned int i = 0; i < n; ++i)
+        {
+          const auto take = [&](const unsigned int position, const double value)
+          {
+            if (position != nowhere && at[position] != nowhere)
+              block(at[position], i) = value;
+          };
+          if (dofs[i] < n_owned)
+          {
+            K.for_each_entry(dofs[i],
+                             [&](const unsigned int column, const double value) { take(of_column[column], value); });
+            continue;
+          }
+          const types::global_dof_index row = layout_->local_to_global(dofs[i]);
+          for (std::size_t e = first_foreign[dofs[i] - n_owned];
+               e < foreign_entries.size() && foreign_entries[e].row == row; ++e)
+            take(position_of(foreign_entries[e].column), foreign_entries[e].value);
+        }
+        if (!invert(block, cholesky, &inverses_[first_entry_[p]]))
+          ++own_replaced_;
+        for (unsigned int i = 0; i < n; ++i)
+          at[dofs[i]] = nowhere;
+      }
+    });
 }
 
 void VertexPatches::vmult(Vector &z, const Vector &r) const

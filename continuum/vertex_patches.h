@@ -1,14 +1,12 @@
 #pragma once
 
-#include "continuum/sheet.h"
+#include "continuum/single_precision_matrix.h"
 
 #include <deal.II/base/subscriptor.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <memory>
 #include <vector>
-
-class Epetra_Map;
 
 namespace latcon::continuum
 {
@@ -32,12 +30,11 @@ public:
 
   /// Builds the list of patches. Relevant degrees of freedom that `constraints` do not constrain are free. Collective.
   VertexPatches(const Sheet &sheet, const dealii::AffineConstraints<double> &constraints);
-  ~VertexPatches();
 
   /// Inverts the blocks of the condensed tangent K [N/m^2]. A block that is not numerically positive definite (at an
   /// unstable state) is replaced by the diagonal of its absolute row sums, which is positive definite and bounds the
   /// block. Collective.
-  void factorise(const Sheet::Matrix &K);
+  void factorise(const SinglePrecisionMatrix &K);
 
   /// Computes z [m] from r [N/m]. Collective.
   void vmult(Vector &z, const Vector &r) const;
@@ -55,8 +52,7 @@ private:
   std::vector<std::size_t> first_dof_;   // of each patch in dofs_, and the end
   std::vector<std::size_t> first_entry_; // of each patch in inverses_, and the end
   std::size_t largest_patch_ = 0;
-  std::vector<float> inverses_;            // of all patches: lower triangle of blocks of 4 by 4, see multiply
-  std::unique_ptr<Epetra_Map> ghost_rows_; // rows of K of other ranks that patches of this rank need
+  std::vector<float> inverses_; // of all patches: lower triangle of blocks of 4 by 4, see multiply
   unsigned int own_replaced_ = 0;
 };
 } // namespace latcon::continuum

@@ -47,10 +47,11 @@ double discrete_frequency(const Constitution &laws, const double inertia_length,
   for (auto *matrix : {&K, &M, &A})
     sheet.make_matrix(sheet.conformity_constraints(), *matrix);
   sheet.tangent(u, sheet.conformity_constraints(), K);
-  sheet.mass(density, inertia_length, sheet.conformity_constraints(), M);
+  sheet.add_mass(density, inertia_length, sheet.conformity_constraints(), M);
   A.add(1., K);
   A.add(-0.9 * expected, M); // shifted away from the eigenvalue, where A is singular
-  continuum::LinearSolver solver(sheet, {}, {});
+  continuum::DirectSolver solver;
+  solver.factorise(A);
   Vector x = sheet.make_owned();
   dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), *wave(polarisation), x);
   Vector b = sheet.make_owned();
@@ -63,7 +64,7 @@ double discrete_frequency(const Constitution &laws, const double inertia_length,
       if (sheet.conformity_constraints().is_constrained(i))
         b(i) = 0.;
     b.compress(dealii::VectorOperation::insert);
-    solver.solve(A, x, b);
+    solver.solve(x, b);
     x *= 1. / x.linfty_norm();
     sheet.conformity_constraints().distribute(x);
   }

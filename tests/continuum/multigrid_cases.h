@@ -15,19 +15,12 @@ using namespace sheets;
 using dealii::AffineConstraints;
 using latcon::continuum::Multigrid;
 using latcon::continuum::Sheet;
-
-/// Initialises the tangent of a sheet.
-inline void make_matrix(const Sheet &sheet, const AffineConstraints<double> &constraints, Sheet::Matrix &K)
-{
-  sheet.make_matrix(constraints, K);
-}
+using latcon::continuum::SinglePrecisionMatrix;
 
 /// Assembles the tangent of a sheet at rest, whatever its state.
-inline void assemble_at_rest(const Sheet &sheet, const Sheet::Vector &, const AffineConstraints<double> &constraints,
-                             Sheet::Matrix &K)
-{
-  sheet.tangent(sheet.make_ghosted(), constraints, K);
-}
+inline const auto assemble_at_rest =
+  [](const Sheet &sheet, const Sheet::Vector &, const AffineConstraints<double> &constraints, auto &K)
+{ sheet.tangent(sheet.make_ghosted(), constraints, K); };
 
 inline latcon::continuum::DirichletBoundaries all_held()
 {
@@ -74,8 +67,8 @@ inline void body_force(const Sheet &sheet, const AffineConstraints<double> &cons
 }
 
 /// Solves by conjugate gradients preconditioned by `multigrid`, starting from zero; returns the number of iterations.
-inline unsigned int solve(const Multigrid &multigrid, const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b,
-                          const double tolerance = 1e-8)
+inline unsigned int solve(const Multigrid &multigrid, const SinglePrecisionMatrix &K, Sheet::Vector &x,
+                          const Sheet::Vector &b, const double tolerance = 1e-8)
 {
   Multigrid::Vector from;
   Multigrid::Vector to;
@@ -100,18 +93,19 @@ struct HeldSheet
     latcon::continuum::make_rectangle(mesh, shape);
     refine_towards(mesh, Point<2>(0.4 * length, 0.003), times, length / 3.);
     sheet = std::make_unique<Sheet>(mesh, latcon::continuum::Constitution(law, gradient), degree);
-    multigrid = std::make_unique<Multigrid>(
-      *sheet, [this](const Mesh &coarser) { return sheet->clone_on(coarser); }, make_matrix, all_held(), settings);
-    make_matrix(*sheet, multigrid->constraints(), K);
+    multigrid = std::make_unique<Multigrid>(*sheet, all_held(), settings);
+    sheet->make_matrix(multigrid->constraints(), K);
     assemble_at_rest(*sheet, {}, multigrid->constraints(), K);
-    multigrid->update(sheet->make_ghosted(), K, assemble_at_rest);
+    K.make_symmetric();
+    multigrid->set_finest(K);
+    multigrid->update(sheet->make_ghosted(), assemble_at_rest);
   }
 
   latcon::continuum::MooneyRivlin law = rubber_sheet();
   latcon::continuum::IsotropicGradient gradient;
   Mesh mesh;
   std::unique_ptr<Sheet> sheet;
-  Sheet::Matrix K;
+  SinglePrecisionMatrix K;
   std::unique_ptr<Multigrid> multigrid;
 };
 } // namespace multigrid_cases

