@@ -10,4 +10,3 @@
       "NSt9enable_ifIXsrSt7is_sameINT_10value_typeEdE5valueEvE4typeER" GCC "RK" GCC "@PLT\n")
 
 LATCON_SAME("INS0_3MPI6VectorEEE", "S6_", "S7_");
-LATCON_SAME("INS_13LinearAlgebra11distributed6VectorIdNS_11MemorySpace4HostEEEEE", "SA_", "SB_");
