@@ -4,8 +4,8 @@
 #include "continuum/element_kernels.h"
 #include "continuum/errors.h"
 #include "continuum/lifted_shapes.h"
-#include "continuum/local_to_global.h"
 #include "continuum/shape_tables.h"
+#include "continuum/single_precision_matrix.h"
 #include "continuum/vector_kernels.h"
 
 #include <deal.II/base/mpi.h>
@@ -357,17 +357,15 @@ void integrate(const Sheet &sheet, const Sheet::Vector &u, const PointForces &fo
 void add_forces(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, Sheet::Vector &nodal,
                 Sheet::Vector *magnitude)
 {
-  VectorAssembly to_nodal(sheet.conformity_constraints(), nodal);
-  VectorAssembly to_magnitude(sheet.conformity_constraints(), magnitude ? *magnitude : nodal);
   const DeferredException guarded(
     [&]
     {
       integrate(sheet, u, forces, Order::first,
                 [&](const Contribution &part)
                 {
-                  to_nodal.add(part.residual, part.dofs);
+                  sheet.conformity_constraints().distribute_local_to_global(part.residual, part.dofs, nodal);
                   if (magnitude)
-                    to_magnitude.add(part.magnitude, part.dofs);
+                    sheet.conformity_constraints().distribute_local_to_global(part.magnitude, part.dofs, *magnitude);
                 });
     });
   nodal.compress(VectorOperation::add);
@@ -380,12 +378,11 @@ template <class AnyMatrix>
 void add_tangent(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces,
                  const AffineConstraints<double> &constraints, AnyMatrix &matrix)
 {
-  auto &&to_matrix = assembly(constraints, matrix);
   const DeferredException guarded(
     [&]
     {
       integrate(sheet, u, forces, Order::second,
-                [&](const Contribution &part) { to_matrix.add(part.tangent, part.dofs); });
+                [&](const Contribution &part) { add_element(constraints, part.tangent, part.dofs, matrix); });
     });
   matrix.compress(VectorOperation::add);
   guarded.rethrow_collectively(sheet.communicator());

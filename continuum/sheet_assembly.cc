@@ -1,8 +1,8 @@
 // Integrals of Sheet that depend on the state: energy, residual, tangent.
 #include "continuum/collective.h"
 #include "continuum/element_integrals.h"
-#include "continuum/local_to_global.h"
 #include "continuum/sheet.h"
+#include "continuum/single_precision_matrix.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -34,8 +34,6 @@ double Sheet::residual(const Vector &u, Vector &r, Vector &magnitude, const doub
   double own = 0.;
   r = 0.;
   magnitude = 0.;
-  VectorAssembly to_r(conformity_constraints_, r);
-  VectorAssembly to_magnitude(conformity_constraints_, magnitude);
   const DeferredException guarded(
     [&]
     {
@@ -43,8 +41,9 @@ double Sheet::residual(const Vector &u, Vector &r, Vector &magnitude, const doub
                 [&](const Contribution &contribution)
                 {
                   own += contribution.energy;
-                  to_r.add(contribution.residual, contribution.dofs);
-                  to_magnitude.add(contribution.magnitude, contribution.dofs);
+                  conformity_constraints_.distribute_local_to_global(contribution.residual, contribution.dofs, r);
+                  conformity_constraints_.distribute_local_to_global(contribution.magnitude, contribution.dofs,
+                                                                     magnitude);
                 });
     });
   r.compress(VectorOperation::add);
@@ -60,7 +59,6 @@ void Sheet::tangent(const Vector &u, const AffineConstraints<double> &constraint
   K = 0.;
   if (lift != nullptr)
     *stiffness_times_lift = 0.;
-  auto &&to_K = assembly(constraints, K);
   const DeferredException guarded(
     [&]
     {
@@ -69,7 +67,7 @@ void Sheet::tangent(const Vector &u, const AffineConstraints<double> &constraint
       integrate(*this, u, load_factor, Order::second,
                 [&](const Contribution &contribution)
                 {
-                  to_K.add(contribution.tangent, contribution.dofs);
+                  add_element(constraints, contribution.tangent, contribution.dofs, K);
                   if (lift == nullptr)
                     return;
                   local_lift.reinit(contribution.dofs.size());

@@ -1,7 +1,7 @@
 // Integrals of Sheet that do not depend on the state: dead loads, mass.
 #include "continuum/collective.h"
-#include "continuum/local_to_global.h"
 #include "continuum/sheet.h"
+#include "continuum/single_precision_matrix.h"
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
@@ -91,7 +91,6 @@ template <class AnyMatrix>
 void Sheet::add_mass(const double density, const double inertia_length, const AffineConstraints<double> &constraints,
                      AnyMatrix &M) const
 {
-  auto &&to_M = assembly(constraints, M);
   FEValues<2> values(mapping_, element_, QGauss<2>(degree_ + 1), update_values | update_gradients | update_JxW_values);
   const unsigned int n = element_.n_dofs_per_cell();
   FullMatrix<double> local(n, n);
@@ -120,7 +119,7 @@ void Sheet::add_mass(const double density, const double inertia_length, const Af
               values.JxW(q);
         }
       }
-    to_M.add(local, dofs);
+    add_element(constraints, local, dofs, M);
   }
   M.compress(VectorOperation::add);
 }

@@ -125,4 +125,16 @@ private:
   std::vector<unsigned int> pairs_; // of terms_, by position
   std::vector<unsigned int> found_; // blocks of pairs_ in the last row, from its first
 };
+
+/// Adds an element matrix to a matrix K of either precision, condensed by constraints, which are those of its sparsity.
+inline void add_element(const dealii::AffineConstraints<double> &constraints, const dealii::FullMatrix<double> &local,
+                        const std::vector<dealii::types::global_dof_index> &dofs, Sheet::Matrix &K)
+{
+  constraints.distribute_local_to_global(local, dofs, K);
+}
+inline void add_element(const dealii::AffineConstraints<double> &, const dealii::FullMatrix<double> &local,
+                        const std::vector<dealii::types::global_dof_index> &dofs, SinglePrecisionMatrix &K)
+{
+  K.add(local, dofs);
+}
 } // namespace latcon::continuum

@@ -64,45 +64,6 @@ TEST(Assembly, FindsTheLawOfEveryPoint)
   EXPECT_NEAR(sheet.energy(u), expected, 1e-12 * expected);
 }
 
-// Sums in another order: each of the up to 100 terms of an entry is rounded once.
-TEST(Assembly, WritesWhatConstraintsDistribute)
-{
-  const continuum::CauchyBorn law = rubber_network();
-  const continuum::LatticeGradient gradient = rubber_gradient(0.01);
-  for (const unsigned int degree : {2u, 3u})
-  {
-    Mesh mesh(MPI_COMM_WORLD);
-    make_adaptive(mesh);
-    const Sheet sheet(mesh, continuum::Constitution(law, gradient), degree);
-    const Sheet::Vector u = wavy_state(sheet);
-    const auto held = continuum::homogeneous_constraints(sheet, all_held());
-    for (const AffineConstraints<double> *constraints : {&sheet.conformity_constraints(), &held})
-    {
-      Sheet::Matrix K, expected;
-      sheet.make_matrix(*constraints, K);
-      sheet.make_matrix(*constraints, expected);
-      sheet.tangent(u, *constraints, K);
-      continuum::integrate(sheet, u, 1., continuum::Order::second,
-                           [&](const continuum::Contribution &c)
-                           { constraints->distribute_local_to_global(c.tangent, c.dofs, expected); });
-      expected.compress(dealii::VectorOperation::add);
-      const double size = expected.frobenius_norm();
-      K.add(-1., expected);
-      EXPECT_LE(K.frobenius_norm(), 1e-14 * size) << "degree " << degree;
-    }
-
-    Sheet::Vector r = sheet.make_owned(), magnitude = sheet.make_owned(), expected = sheet.make_owned();
-    const double energy = sheet.residual(u, r, magnitude);
-    continuum::integrate(sheet, u, 1., continuum::Order::first,
-                         [&](const continuum::Contribution &c)
-                         { sheet.conformity_constraints().distribute_local_to_global(c.residual, c.dofs, expected); });
-    expected.compress(dealii::VectorOperation::add);
-    r -= expected;
-    EXPECT_LE(r.l2_norm(), 1e-14 * magnitude.l2_norm()) << "degree " << degree;
-    EXPECT_EQ(energy, sheet.energy(u)) << "degree " << degree;
-  }
-}
-
 // Compares shared tables with tables of each cell: straight cells of several sizes, and curved cells.
 TEST(Assembly, SharesTheTablesOfEqualCells)
 {

@@ -2,7 +2,6 @@
 #include "continuum/element_integrals.h"
 #include "continuum/errors.h"
 #include "continuum/linear_solver.h"
-#include "continuum/local_to_global.h"
 #include "multigrid_cases.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +65,6 @@ struct Problem
     return [this, scale](const Sheet &, const Sheet::Vector &u, const AffineConstraints<double> &held, auto &K)
     {
       K = 0.;
-      auto &&to_K = continuum::assembly(held, K);
       continuum::integrate(*sheet, u, 1., continuum::Order::second,
                            [&](const continuum::Contribution &contribution)
                            {
@@ -74,7 +72,7 @@ struct Problem
                              for (unsigned int a = 0; a < local.m(); ++a)
                                for (unsigned int b = 0; b < local.n(); ++b)
                                  local(a, b) *= scale(contribution.dofs[b]);
-                             to_K.add(local, contribution.dofs);
+                             continuum::add_element(held, local, contribution.dofs, K);
                            });
       K.compress(dealii::VectorOperation::add);
     };
