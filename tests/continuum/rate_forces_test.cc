@@ -327,6 +327,25 @@ TEST_P(ForcesOfRates, StayAsTheyWereAfterAStepThatFails)
   }
 }
 
+// Before the first step the rate of a load is that of the parabola through the next two, here of 30/s at the start.
+TEST_P(ForcesOfRates, StartWithTheRateOfTheLoad)
+{
+  BoundaryConditions conditions = with_normal_gradient(constant(0.5, 0.2));
+  conditions.displacements = on_all_edges(constant(0., 0.));
+  const auto reactions = [&](const double curvature)
+  {
+    DynamicSolver solver(mesh, constitution, conditions, {density}, quadratic(1e-4), &viscosity,
+                         [=](const double t) { return 30. * t - curvature * t * t; });
+    solver.start();
+    return solver.reactions();
+  };
+  const auto straight = reactions(0.);
+  auto difference = reactions(1e5);
+  difference -= straight;
+  EXPECT_EQ(straight.l2_norm() > 1., has_gradient);
+  EXPECT_LE(difference.l2_norm(), 1e-12 * straight.l2_norm());
+}
+
 INSTANTIATE_TEST_SUITE_P(LocalAndGradient, ForcesOfRates, testing::Bool());
 
 TEST(RateForces, RefuseGradientPartsWithoutLiftedGradients)

@@ -2,6 +2,7 @@
 // tests/verification/claims/nonlocal_test.cc.
 #include "lattice/scatter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -53,7 +54,7 @@ TEST(Scatter, GivesEachPointTheAreaLawAndNearlyNoForce)
     const TriangularLattice lattice = sheet(24., scatter);
     const ScatteredBonds &bonds = *lattice.scattered();
     latcon::support::LargestError sums;
-    double odd = 0., before = 0.;
+    double odd = 0., before = 0., shortest = HUGE_VAL;
     for (const std::size_t place : sheets::sites(lattice))
     {
       std::array<double, 2> sum{};
@@ -69,6 +70,7 @@ TEST(Scatter, GivesEachPointTheAreaLawAndNearlyNoForce)
           const Eigen::Vector2d R = lattice.bond_vector(bond);
           const double l = lattice.ring_radius(kind), tent = 1. - std::abs(R.norm() - l) / lattice.spacing();
           EXPECT_GT(tent, 0.);
+          shortest = std::min(shortest, R.norm());
           sum[lattice.shell(kind)] += weight;
           pull[lattice.shell(kind)] += sense * weight * l / R.squaredNorm() * R;
           raw[lattice.shell(kind)] += sense * tent * l / R.squaredNorm() * R;
@@ -82,6 +84,7 @@ TEST(Scatter, GivesEachPointTheAreaLawAndNearlyNoForce)
     }
     EXPECT_LT(sums.error(), 1e-9);
     EXPECT_LT(odd, 0.02 * before) << scatter;
+    EXPECT_NEAR(lattice.shortest_bond(), shortest, 1e-12 * shortest);
   }
 }
 

@@ -3,7 +3,8 @@
 
 tests/mutation/run installs the prerequisites and calls this script. Faults are planted in a git worktree of the last commit,
 build/mutation, with a build of its own; the checkout is not changed. A fault that no test detects is printed with its position:
-either a test is missing, or the fault has no observable effect, which equivalents.txt then records with the reason.
+either a test is missing, or the fault has no observable effect, which equivalents.txt then records with the reason. matrix.csv is
+such a matrix, of a sample of all folders and of the Python package, with the tests that fail and an answer for each survivor.
 """
 import argparse
 import collections

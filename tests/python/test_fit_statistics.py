@@ -80,6 +80,8 @@ def test_all_points_are_in_the_box_and_later_ones_around_the_minimum():
     np.testing.assert_allclose(model.center, [0.95, 0.02], atol=1e-6)
     np.testing.assert_allclose(model.covariance, np.eye(2) / (1e4 + 1 / PRIOR**2), rtol=1e-3, atol=1e-9)
     assert model.degree == 2
+    # Of few evaluations 2 n + 1 for n parameters.
+    assert sum(stage == "sobol" for stage, _ in propose(tabulate(problem, []), 2, 0, 8, 12, 3)) == 5
 
 
 def test_quantities_may_jump_where_a_word_changes():

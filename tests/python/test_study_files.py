@@ -8,7 +8,7 @@ import time
 import latcon
 import pytest
 
-from latcon.study.plan import (PlannedRun, Verification, parse_shard, plan_difference, plan_runs, plan_text, runs_of_shard)
+from latcon.study.plan import (PlannedRun, Verification, default_folder, parse_shard, plan_difference, plan_runs, plan_text, runs_of_shard)
 from latcon.study.pool import run_processes
 from latcon.study.program import InputError, Program
 from latcon.study.study_file import read_study
@@ -63,7 +63,7 @@ def test_runs_of_a_sweep_are_limited_and_have_distinct_names(program):
     assert len(set(names)) == 2 and all(len(name) == 150 and name.startswith("psi-lam-21") for name in names)
 
 
-GOOD = {"title": "t", "base": "b.prm", "seeds": [4, 5], "sweep": ["Sheet/height=2 cm:4 cm:3"], "runs": {"own": {}},
+GOOD = {"title": "t", "base": "b.prm", "seeds": [4, 5], "sweep": ["Sheet/height=2 cm:4 cm:3"], "refine": 6, "runs": {"own": {}},
         "quick": {"seeds": [7], "sweep": ["Sheet/height=2 cm,4 cm"]},
         "claims": [{"claim": "c", "rows": [{"run": "height-3cm", "quantity": "pattern"}]}]}
 
@@ -73,6 +73,12 @@ def test_quick_versions_of_sweeps(program):
     assert [run.name for run in study.runs] == ["height-2cm", "height-3cm", "height-4cm", "own"] and study.left_out == []
     quick = read_study(program, "s.json", True, json.dumps(GOOD).encode())
     assert [run.seeds for run in quick.runs] == [[7]] * 3 and quick.left_out == ["height-3cm"]
+
+
+def test_a_sweep_beside_its_case_stays_there(tmp_path):
+    assert default_folder(f"{tmp_path}/sweep.json", False) == "output/sweep"
+    (tmp_path / "base.json").touch()
+    assert default_folder(f"{tmp_path}/sweep.json", False) == str(tmp_path)
 
 
 def problems():

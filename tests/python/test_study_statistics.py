@@ -8,6 +8,7 @@ from latcon.quantities import quantity_text
 from latcon.study.command import refined_runs
 from latcon.study.outcome import RunOutcome, RunState, statistics
 from latcon.study.plan import PlannedRun
+from latcon.study.record import table_of_rows
 from latcon.study.statistical_tests import SampleMean, adjust_by_holm, isotonic_test, level_probabilities, welch_p_value
 from latcon.study.statistical_tests import fit_onset
 from latcon.study.study_file import Rule, Study, StudyRow, StudyRun
@@ -205,10 +206,18 @@ def test_brackets(patterns, verdict, number):
     (Rule.ABOVE, [2, 3], {"bound": 1.5}, Verdict.HOLDS), (Rule.ABOVE, [1, 3], {"bound": 1.5}, Verdict.DOES_NOT_HOLD),
     (Rule.BELOW, [1, 1.4], {"bound": 1.5}, Verdict.HOLDS), (Rule.ABOVE, [1, 3], {"bound_run": "a"}, Verdict.DOES_NOT_HOLD),
     (Rule.IS_NEAR, [1.01], {"bound": 1, "tolerance": 0.02}, Verdict.HOLDS),
-    (Rule.IS_NEAR, [1.03], {"bound": 1, "tolerance": 0.02}, Verdict.DOES_NOT_HOLD), (Rule.REPORTED, [1], {}, Verdict.REPORTED)])
+    (Rule.IS_NEAR, [1.03], {"bound": 1, "tolerance": 0.02}, Verdict.DOES_NOT_HOLD), (Rule.REPORTED, [1], {}, Verdict.REPORTED),
+    (Rule.ONSET_EXPONENT, [math.sqrt(x - 0.5) for x in range(1, 7)], {"bound": 0.5, "tolerance": 0.1}, Verdict.HOLDS),
+    (Rule.ONSET_EXPONENT, [1, 2, 3], {"bound": 0.5, "tolerance": 0.1}, Verdict.NOT_MEASURED)])
 def test_rules_of_numbers(rule, means, options, verdict):
     against = "zeta" if rule.is_along else ""
     assert judged(StudyRow(quantity="speed", rule=rule, against=against, **options), means=means).verdict is verdict
+
+
+def test_the_table_names_the_rows_that_fail():
+    row = {"claim": "energy", "quantity": "drift", "unit": "1", "lattice": 1.0, "continuum": None, "theory": None, "error": 0.5, "tolerance": 0.1}
+    text = table_of_rows([row | {"verdict": "holds"}, row | {"verdict": "fails"}])
+    assert text.splitlines()[-2:] == ["1 of 2 checks fails:", "  energy: drift: error 0.5, tolerance 0.1"]
 
 
 def test_rules_need_three_quarters_of_the_seeds():

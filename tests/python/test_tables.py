@@ -27,7 +27,9 @@ def test_growth_has_the_scatter_that_it_states(rate, wavelength, amplitude):
 def test_path_on_the_middle_or_too_short_has_no_growth():
     X = np.linspace(0.03, 0.1, 100)
     assert path_growth(X, 0 * X, D) is None
-    assert path_growth(X[:5], X[:5] - 0.03, D) is None
+    for columns in (9, 10):  # of two spacings
+        X = 0.03 + D * np.linspace(0, 2 * columns - 0.1, 100)
+        assert (path_growth(X, X - 0.03, D) is None) == (columns < 10)
 
 
 def test_energies_per_area_are_those_of_the_window(tmp_path):

@@ -72,7 +72,9 @@ def test_reads_places_and_components(vti):
     assert not tip.holds[HALF, BEHIND - 1]
     # The opening is in no triangle: 20 columns of cells by the five rows of points in it and one more on each side.
     cells = (BEHIND + AHEAD) * 2 * HALF - BEHIND * 6
-    assert len(triangulation(tip).triangles) == 2 * cells
+    shown = triangulation(tip)
+    assert len(shown.triangles) == 2 * cells
+    assert np.ptp(shown.x) == pytest.approx(STRETCH * (BEHIND + AHEAD))  # [mm], as is the pitch
 
 
 def test_outlines_what_moves_back(vti):

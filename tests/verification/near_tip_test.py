@@ -81,6 +81,7 @@ def test_measures_of_samples_and_of_their_mean_agree_in_kind(found):
     for name in ("process_zone_share", "process_zone_share_of_samples"):
         assert 0 <= found[name]
         assert found[name] <= 1
+        assert 0 < found[f"{name}_uncertainty"] < found[name]
     assert found["negative_zone_depth_of_samples"] < 0
     assert found["negative_zone_area_of_samples"] > 0
     # Cauchy sigma_yy of the loaded sheet, from the bonds: P_yY F_yy / det F.

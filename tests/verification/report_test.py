@@ -17,7 +17,8 @@ from made_up_runs import (
 
 from latcon.quantities import number_text
 from latcon.report import animation, pages, report
-from latcon.report.crack_path import measured_sinusoid
+from latcon.report.crack_path import draw_crack_path, measured_sinusoid
+from latcon.report.pictures import energy_shares
 from latcon.report.runs import read_run
 from latcon.rows import text_table
 
@@ -211,6 +212,19 @@ def test_draws_the_sinusoid_that_was_measured(runs):
     crack = json.loads((runs / "crack.json").read_text())
     (runs / "crack.json").write_text(json.dumps({**crack, "sinusoid_phase": None}))
     assert measured_sinusoid(read_run(runs)) is None
+
+
+def test_pictures_show_the_tables(runs):
+    write_fracture(runs, [HOLDS], has_sheet=False)
+    run = read_run(runs)
+    with mock.patch("latcon.report.crack_path.save") as save:
+        draw_crack_path(run, "path.png")
+    above, below = save.call_args.args[0].axes[:2]
+    for shown, table in ((above.lines[0].get_xydata(), run.tip), (below.collections[0].get_offsets(), run.broken)):
+        np.testing.assert_allclose(shown, 100 * np.transpose([table["X"], table["Y"]]), rtol=1e-12)  # [cm]
+    released, shares = energy_shares({**dict.fromkeys(("kinetic", "contact", "broken"), np.zeros(3)), "viscous": np.array([1, 2, 4]),
+                                      "elastic": np.array([9, 8, 6]), "boundary_work": np.array([1, 2, 3])})
+    assert (released.tolist(), [(name, values.tolist()) for name, values in shares]) == ([0, 2, 5], [("viscous", [0, 1, 3])])
 
 
 def test_tables_of_text_wrap_the_second_column_and_cut_nothing_off():

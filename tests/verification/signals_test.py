@@ -52,7 +52,7 @@ def test_verify_keeps_the_claims_that_are_done(out, start):
     results = out / "results.json"
     ends_at_once(start, out, "verify", "intrinsic-length", "prestretch", "--quick", begun=results.exists, number=signal.SIGTERM)
     claims = {row["claim"] for row in json.loads(results.read_text())["claims"]}
-    assert claims == {"intrinsic-length"}
+    assert claims == {"intrinsic-length"} and (out / "dispersion.csv").exists()
     assert info(out)["verdict"] is None
 
 
