@@ -132,6 +132,7 @@ inline void add_element(const dealii::AffineConstraints<double> &constraints, co
 {
   constraints.distribute_local_to_global(local, dofs, K);
 }
+/// The same for a matrix in single precision, which has its constraints.
 inline void add_element(const dealii::AffineConstraints<double> &, const dealii::FullMatrix<double> &local,
                         const std::vector<dealii::types::global_dof_index> &dofs, SinglePrecisionMatrix &K)
 {

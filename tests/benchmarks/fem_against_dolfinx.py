@@ -89,6 +89,9 @@ def compare(program, cells, degree, folder):
         "unknowns": one["unknowns"], "degree": degree, "cells": cells,
         "latcon": one, "latcon_2_ranks": two, "dolfinx": other,
         "ratio": other["seconds"] / one["seconds"],
+        # From a mesh of half the cells, so without the memory of the libraries.
+        "bytes_of_increase": (one["bytes_per_unknown"] * one["unknowns"] - coarse["bytes_per_unknown"] * coarse["unknowns"])
+                             / (one["unknowns"] - coarse["unknowns"]),
         "energy_difference": abs(one["energy"] - other["energy"]) / abs(other["energy"]),
         "displacement_difference": math.dist(one["displacement"], other["displacement"]),
     }

@@ -95,9 +95,11 @@ def crack_rows(parts):
 def fem_rows(parts):
     rows = []
     for problem in parts["fem"]["problems"]:
-        rows.append((f"dolfinx over latcon, {problem['unknowns']:,} unknowns", problem["ratio"],
-                     3. if problem["unknowns"] < 2e5 else 4., "least"))
-        rows.append((f"bytes per unknown, {problem['unknowns']:,} unknowns", problem["latcon"]["bytes_per_unknown"], 1800., "most"))
+        case = f"degree {problem['degree']}, {problem['unknowns']:,} unknowns"
+        is_quadratic = problem["degree"] == 2
+        rows.append((f"dolfinx over latcon, {case}", problem["ratio"],
+                     (3.2 if is_quadratic else 3.5) if problem["unknowns"] < 2e5 else 4.5 if is_quadratic else 5., "least"))
+        rows.append((f"bytes per further unknown, {case}", problem["bytes_of_increase"], 1500. if is_quadratic else 2200., "most"))
     return rows
 
 
