@@ -65,11 +65,11 @@ void DynamicSolver::check_input() const
 void DynamicSolver::set_up()
 {
   apply_conditions();
-  sheet_.make_matrix(sheet_.conformity_constraints(), full_mass_, true);
+  sheet_.make_matrix(sheet_.conformity_constraints(), full_mass_, /* is_mass */ true);
   sheet_.add_mass(inertia_.density, inertia_.length, sheet_.conformity_constraints(), full_mass_);
   if (inertia_.length > 0.)
   {
-    sheet_.make_matrix(sheet_.conformity_constraints(), plain_mass_, true);
+    sheet_.make_matrix(sheet_.conformity_constraints(), plain_mass_, /* is_mass */ true);
     sheet_.add_mass(inertia_.density, 0., sheet_.conformity_constraints(), plain_mass_);
   }
 

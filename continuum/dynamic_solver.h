@@ -8,7 +8,6 @@
 #include "continuum/solver_report.h"
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 

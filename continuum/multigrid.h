@@ -80,10 +80,10 @@ public:
   Multigrid(const Multigrid &) = delete;
   Multigrid &operator=(const Multigrid &) = delete;
 
-  /// Sets the state `u` [m] (with ghost entries) of the coarser levels.
-  /// If the interpolated state is non-physical on a coarser level, it is halved repeatedly and finally set to zero,
-  /// which makes the preconditioner less effective without affecting the solution. Throws LinearSolverFailed if the
-  /// coarsest tangent is singular.
+  /// Assembles the tangents of the coarser levels at the state `u` [m] (with ghost entries); where the finest level is
+  /// the coarsest, its own. If the interpolated state is non-physical on a level, it is halved repeatedly and finally
+  /// set to zero, which makes the preconditioner less effective without affecting the solution. Throws
+  /// LinearSolverFailed if the coarsest tangent is singular.
   void update(const Sheet::Vector &u, const Assembler &assemble);
 
   /// Sets the tangent of the finest level, condensed by constraints(), which must outlive its use. Has no effect where

@@ -175,7 +175,7 @@ SinglePrecisionMatrix &SinglePrecisionMatrix::operator=(const double zero)
 
 SinglePrecisionMatrix &SinglePrecisionMatrix::operator*=(const double factor)
 {
-  scale_ *= factor; // and not the entries, which would be rounded again
+  scale_ *= factor;
   return *this;
 }
 

@@ -48,6 +48,7 @@ public:
 
   /// Sets all entries to `zero`, which must be 0.
   SinglePrecisionMatrix &operator=(double zero);
+  /// Multiplies by a factor [-], without rounding the entries again.
   SinglePrecisionMatrix &operator*=(double factor);
 
   /// Adds an element matrix [N/m^2] for the unknowns 2 a + i of node a and component i, condensed by the constraints;
@@ -64,10 +65,10 @@ public:
   /// Computes y = K x for vectors over the owned unknowns of the sheet; ghost entries are ignored. Collective.
   void vmult(Vector &y, const Vector &x) const;
 
-  /// Returns the entry (i, i) of an owned row.
+  /// Returns the entry (i, i) [N/m^2] of an owned row.
   double diag_element(Index i) const;
 
-  /// Calls `visit(column, value)` for the entries of a row; `row` and `column` are positions in layout().
+  /// Calls `visit(column, value)` for the entries [N/m^2] of a row; `row` and `column` are positions in layout().
   template <class Visit>
   void for_each_entry(const unsigned int row, const Visit &visit) const
   {

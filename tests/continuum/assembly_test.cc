@@ -119,8 +119,8 @@ TEST(Assembly, SharesTheTablesOfEqualCells)
 }
 
 // A matrix in single precision is that in double precision up to the rounding of its entries to 24 bits after each
-// addition; forces of a translation along it are exact. The rows of a node with one held component differ,
-// and the other component of a node of degree 3 may be in another block.
+// addition; forces of a translation along it are exact. The rows of a node with one held component differ, and the
+// other component of a node of degree 3 may be in another block.
 TEST(Assembly, AddsInSinglePrecision)
 {
   const continuum::CauchyBorn law = rubber_network();

@@ -128,7 +128,7 @@ TEST(LinearSolver, RenewsAMultigridThatFails)
   EXPECT_THROW(impossible.solve(0.1 * length), continuum::LinearSolverFailed);
 }
 
-// GMRES with multigrid of the symmetric matrix; multigrid of K would need a smoother for unsymmetric matrices.
+// GMRES, smoothed by the unsymmetric matrix itself, with coarser levels of the symmetric one.
 TEST(LinearSolver, SolvesUnsymmetricMatrices)
 {
   Problem symmetric{LinearSettings()};
