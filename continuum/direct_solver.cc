@@ -4,18 +4,14 @@
 #include "continuum/errors.h"
 #include "support/machine_memory.h"
 
-#include <deal.II/base/mpi.h>
-
 #include <Amesos.h>
 #include <Amesos_Mumps.h>
 #include <Epetra_CrsMatrix.h>
+#include <Epetra_Import.h>
 #include <Epetra_LinearProblem.h>
 #include <Epetra_Map.h>
 #include <Epetra_MpiComm.h>
 #include <Epetra_Vector.h>
-
-#include <algorithm>
-#include <vector>
 
 using namespace dealii;
 
@@ -23,14 +19,6 @@ namespace latcon::continuum
 {
 namespace
 {
-// Consecutive rows of a matrix, with global column indices.
-struct MatrixRows
-{
-  std::vector<int> lengths;
-  std::vector<int> columns;
-  std::vector<double> values;
-};
-
 void require_success(const int code, const char *what)
 {
   if (code != 0)
@@ -53,88 +41,60 @@ void require_memory(Amesos_BaseSolver &solver, const std::size_t n_rows, const s
                        " are available; use fewer unknowns or, without periodic edges, a smaller direct limit");
 }
 
-MatrixRows own_rows(const Epetra_CrsMatrix &matrix)
-{
-  MatrixRows rows;
-  rows.lengths.reserve(matrix.NumMyRows());
-  rows.columns.reserve(matrix.NumMyNonzeros());
-  rows.values.reserve(matrix.NumMyNonzeros());
-  for (int row = 0; row < matrix.NumMyRows(); ++row)
-  {
-    int n = 0;
-    double *values = nullptr;
-    int *columns = nullptr;
-    matrix.ExtractMyRowView(row, n, values, columns);
-    rows.lengths.push_back(n);
-    rows.values.insert(rows.values.end(), values, values + n);
-    for (int k = 0; k < n; ++k)
-      rows.columns.push_back(matrix.GCID(columns[k]));
-  }
-  return rows;
-}
-
-template <class T>
-std::vector<T> concatenate(std::vector<std::vector<T>> &&parts)
-{
-  std::vector<T> all;
-  if (!parts.empty())
-    all = std::move(parts.front());
-  for (std::size_t rank = 1; rank < parts.size(); ++rank)
-    all.insert(all.end(), parts[rank].begin(), parts[rank].end());
-  return all;
-}
-
-// Gathers the rows of all ranks on the root rank; returns none on other ranks.
-MatrixRows gather_rows(const Epetra_CrsMatrix &matrix, const MPI_Comm communicator)
-{
-  MatrixRows own = own_rows(matrix);
-  if (dealii::Utilities::MPI::n_mpi_processes(communicator) == 1)
-    return own;
-  return {concatenate(dealii::Utilities::MPI::gather(communicator, own.lengths)),
-          concatenate(dealii::Utilities::MPI::gather(communicator, own.columns)),
-          concatenate(dealii::Utilities::MPI::gather(communicator, own.values))};
-}
 } // namespace
 
-// Matrix on the root rank and its factors. Amesos refers to the matrix as long as the factors exist, hence a copy.
+// Copy of the matrix on the root rank, since Amesos refers to it as long as the factors exist, and its factors.
 struct DirectSolver::Factors
 {
-  Factors(MatrixRows &&rows, const Library library, const std::optional<double> &memory)
-    : lengths(std::move(rows.lengths)), columns(std::move(rows.columns)),
-      map(static_cast<int>(lengths.size()), 0, Epetra_MpiComm(MPI_COMM_SELF)),
-      matrix(Copy, map, map, lengths.data(), true), x(map), b(map)
+  explicit Factors(const Epetra_CrsMatrix &K)
+    : own_rows(K.RowMap()), root_rows(-1, K.Comm().MyPID() == 0 ? K.NumGlobalRows() : 0, 0, K.Comm()),
+      gather(root_rows, own_rows), alone(root_rows.NumMyElements(), 0, Epetra_MpiComm(MPI_COMM_SELF)),
+      matrix(Copy, alone, alone, K.GlobalMaxNumEntries()), x(alone), b(alone), problem(&matrix, &x, &b)
   {
-    std::size_t at = 0;
-    for (std::size_t row = 0; row < lengths.size(); at += lengths[row++])
-      matrix.InsertMyValues(static_cast<int>(row), lengths[row], rows.values.data() + at, columns.data() + at);
-    matrix.FillComplete();
-    problem.SetOperator(&matrix);
-    problem.SetLHS(&x);
-    problem.SetRHS(&b);
-    Amesos factory;
-    const bool uses_mumps = library == Library::mumps && factory.Query("Amesos_Mumps");
-    solver.reset(factory.Create(uses_mumps ? "Amesos_Mumps" : "Amesos_Klu", problem));
-    require_success(solver->SymbolicFactorization(), "symbolic factorisation");
-    require_memory(*solver, lengths.size(), memory);
   }
 
-  bool has_sparsity_of(const MatrixRows &rows) const { return rows.lengths == lengths && rows.columns == columns; }
-
-  void replace_values(const MatrixRows &rows)
+  // Collective.
+  void copy(const Epetra_CrsMatrix &K)
   {
-    std::size_t at = 0;
-    for (std::size_t row = 0; row < lengths.size(); at += lengths[row++])
-      matrix.ReplaceMyValues(static_cast<int>(row), lengths[row], rows.values.data() + at, columns.data() + at);
+    Epetra_CrsMatrix rows(Copy, root_rows, K.GlobalMaxNumEntries());
+    rows.Import(K, gather, Insert);
+    for (int row = 0; row < rows.NumMyRows(); ++row)
+    {
+      int n = 0;
+      double *values = nullptr;
+      int *columns = nullptr;
+      rows.ExtractGlobalRowView(row, n, values, columns);
+      if (solver)
+        matrix.ReplaceMyValues(row, n, values, columns);
+      else
+        matrix.InsertMyValues(row, n, values, columns);
+    }
   }
 
-  std::vector<int> lengths; // number of entries per row
-  std::vector<int> columns;
-  Epetra_Map map;
+  // On the root rank.
+  void factorise(const Library library, const std::optional<double> &memory)
+  {
+    if (!solver)
+    {
+      matrix.FillComplete();
+      Amesos factory;
+      const bool uses_mumps = library == Library::mumps && factory.Query("Amesos_Mumps");
+      solver.reset(factory.Create(uses_mumps ? "Amesos_Mumps" : "Amesos_Klu", problem));
+      require_success(solver->SymbolicFactorization(), "symbolic factorisation");
+      require_memory(*solver, matrix.NumMyRows(), memory);
+    }
+    require_success(solver->NumericFactorization(), "factorisation");
+  }
+
+  Epetra_Map own_rows;
+  Epetra_Map root_rows; // all on the root rank
+  Epetra_Import gather;
+  Epetra_Map alone; // as root_rows, without the other ranks
   Epetra_CrsMatrix matrix;
   Epetra_Vector x;
   Epetra_Vector b;
   Epetra_LinearProblem problem;
-  std::unique_ptr<Amesos_BaseSolver> solver;
+  std::unique_ptr<Amesos_BaseSolver> solver; // on the root rank
 };
 
 DirectSolver::DirectSolver(const Library library, const std::optional<double> memory)
@@ -142,51 +102,38 @@ DirectSolver::DirectSolver(const Library library, const std::optional<double> me
 {
 }
 
+DirectSolver::~DirectSolver() = default;
+
 void DirectSolver::factorise(const Sheet::Matrix &K)
 {
+  // After a failure there are no factors.
+  std::unique_ptr<Factors> factors = std::move(factors_);
+  if (!factors)
+    factors = std::make_unique<Factors>(K.trilinos_matrix());
+  factors->copy(K.trilinos_matrix());
   communicator_ = K.get_mpi_communicator();
-  n_own_ = K.trilinos_matrix().NumMyRows();
-  MatrixRows rows = gather_rows(K.trilinos_matrix(), communicator_);
   run_collectively(communicator_,
                    [&]
                    {
-                     if (rows.lengths.empty())
-                       return;
-                     // After a failure there are no factors.
-                     std::unique_ptr<Factors> factors = std::move(factors_);
-                     if (factors && factors->has_sparsity_of(rows))
-                       factors->replace_values(rows);
-                     else
-                       factors = std::make_unique<Factors>(std::move(rows), library_, memory_);
-                     require_success(factors->solver->NumericFactorization(), "factorisation");
-                     factors_ = std::move(factors);
+                     if (factors->root_rows.NumMyElements() > 0)
+                       factors->factorise(library_, memory_);
                    });
+  factors_ = std::move(factors);
 }
-
-DirectSolver::~DirectSolver() = default;
 
 void DirectSolver::solve(double *x, const double *b)
 {
-  const auto parts = dealii::Utilities::MPI::gather(communicator_, std::vector<double>(b, b + n_own_));
+  Factors &factors = *factors_;
+  const Epetra_Vector own_b(View, factors.own_rows, const_cast<double *>(b));
+  Epetra_Vector(View, factors.root_rows, factors.b.Values()).Import(own_b, factors.gather, Insert);
   run_collectively(communicator_,
                    [&]
                    {
-                     if (!factors_)
-                       return;
-                     double *to = factors_->b.Values();
-                     for (const std::vector<double> &part : parts)
-                       to = std::copy(part.begin(), part.end(), to);
-                     require_success(factors_->solver->Solve(), "forward and backward substitution");
+                     if (factors.solver)
+                       require_success(factors.solver->Solve(), "forward and backward substitution");
                    });
-  std::vector<int> counts;
-  std::vector<int> offsets;
-  for (const std::vector<double> &part : parts)
-  {
-    offsets.push_back(counts.empty() ? 0 : offsets.back() + counts.back());
-    counts.push_back(static_cast<int>(part.size()));
-  }
-  MPI_Scatterv(factors_ ? factors_->x.Values() : nullptr, counts.data(), offsets.data(), MPI_DOUBLE, x,
-               static_cast<int>(n_own_), MPI_DOUBLE, 0, communicator_);
+  const Epetra_Vector root_x(View, factors.root_rows, factors.x.Values());
+  Epetra_Vector(View, factors.own_rows, x).Export(root_x, factors.gather, Insert);
 }
 
 void DirectSolver::solve(Sheet::Vector &x, const Sheet::Vector &b)

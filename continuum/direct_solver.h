@@ -13,8 +13,7 @@ namespace latcon::continuum
 /// it alone, because the rounding of a parallel factorisation depends on the order in which messages arrive, and a
 /// restart needs the same bits for the same matrix.
 ///
-/// The symbolic factorisation is reused for matrices with the same sparsity; the reuse does not change the solution by
-/// a bit.
+/// The symbolic factorisation of the first matrix is reused; the reuse does not change the solution by a bit.
 ///
 /// All functions are collective and throw on every rank, LinearSolverFailed unless stated otherwise.
 class DirectSolver
@@ -33,7 +32,7 @@ public:
   DirectSolver(const DirectSolver &) = delete;
   DirectSolver &operator=(const DirectSolver &) = delete;
 
-  /// Factorises a copy of `K`. Throws LinearSolverFailed if `K` is singular, and InvalidInput, before it is factorised,
+  /// Factorises a copy of `K`, which has the sparsity of the matrices before. Throws LinearSolverFailed if `K` is singular, and InvalidInput, before it is factorised,
   /// if MUMPS estimates that it needs more memory than there is.
   void factorise(const Sheet::Matrix &K);
 
@@ -43,14 +42,13 @@ public:
              const dealii::LinearAlgebra::distributed::Vector<double> &b);
 
 private:
-  struct Factors; // on the root rank
+  struct Factors;
 
   void solve(double *x, const double *b);
 
   Library library_;
   std::optional<double> memory_; // [bytes]
   MPI_Comm communicator_ = MPI_COMM_NULL;
-  std::size_t n_own_ = 0; // rows
   std::unique_ptr<Factors> factors_;
 };
 } // namespace latcon::continuum

@@ -1,6 +1,7 @@
 #include "continuum/expression_potential.h"
 
-#include <array>
+#include <boost/math/differentiation/autodiff.hpp>
+
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -9,140 +10,72 @@ namespace latcon::continuum
 {
 namespace
 {
-// Coefficients of l - l0, ..., (l - l0)^4. Rules: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., ch. 13.
-constexpr std::size_t n_terms = 5;
-using Series = std::array<double, n_terms>;
-
-Series product(const Series &a, const Series &b)
-{
-  Series c{};
-  for (std::size_t k = 0; k < n_terms; ++k)
-    for (std::size_t j = 0; j <= k; ++j)
-      c[k] += a[j] * b[k - j];
-  return c;
-}
-
-Series quotient(const Series &a, const Series &b)
-{
-  Series c{};
-  for (std::size_t k = 0; k < n_terms; ++k)
-  {
-    c[k] = a[k];
-    for (std::size_t j = 0; j < k; ++j)
-      c[k] -= c[j] * b[k - j];
-    c[k] /= b[0];
-  }
-  return c;
-}
-
-// a^p from a y' = p a' y.
-Series real_power(const Series &a, const double p)
-{
-  Series y{std::pow(a[0], p)};
-  for (std::size_t k = 1; k < n_terms; ++k)
-  {
-    for (std::size_t j = 1; j <= k; ++j)
-      y[k] += (p * static_cast<double>(j) - static_cast<double>(k - j)) * a[j] * y[k - j];
-    y[k] /= static_cast<double>(k) * a[0];
-  }
-  return y;
-}
+// A number with its first four derivatives by the stretch.
+using Jet = boost::math::differentiation::autodiff_fvar<double, 4>;
 
 // Whole powers exist also where a = 0.
-Series power(const Series &a, const double p)
+Jet power(const Jet &a, const double p)
 {
   constexpr double largest_product = 64.;
   if (p != std::floor(p) || std::abs(p) > largest_product)
-    return real_power(a, p);
-  Series y{1.};
+    return pow(a, p);
+  Jet y = 1.;
   for (double done = 0.; done < std::abs(p); done += 1.)
-    y = product(y, a);
-  return p < 0. ? quotient({1.}, y) : y;
+    y *= a;
+  return p < 0. ? 1. / y : y;
 }
 
-Series exponential(const Series &a)
-{
-  Series y{std::exp(a[0])};
-  for (std::size_t k = 1; k < n_terms; ++k)
-  {
-    for (std::size_t j = 1; j <= k; ++j)
-      y[k] += static_cast<double>(j) * a[j] * y[k - j];
-    y[k] /= static_cast<double>(k);
-  }
-  return y;
-}
-
-Series logarithm(const Series &a)
-{
-  Series y{std::log(a[0])};
-  for (std::size_t k = 1; k < n_terms; ++k)
-  {
-    y[k] = static_cast<double>(k) * a[k];
-    for (std::size_t j = 1; j < k; ++j)
-      y[k] -= static_cast<double>(j) * y[j] * a[k - j];
-    y[k] /= static_cast<double>(k) * a[0];
-  }
-  return y;
-}
-
-Series sum(const Series &a, const double factor, const Series &b)
-{
-  Series c = a;
-  for (std::size_t k = 0; k < n_terms; ++k)
-    c[k] += factor * b[k];
-  return c;
-}
-
-Series series(const support::Expression &expression, const double l)
+Jet jet(const support::Expression &expression, const double l)
 {
   using Operation = support::Expression::Operation;
-  std::vector<Series> all;
+  std::vector<Jet> all;
   all.reserve(expression.nodes().size());
   for (const auto &[operation, value, left, right] : expression.nodes())
     switch (operation)
     {
     case Operation::variable:
-      all.push_back({l, 1.});
+      all.push_back(boost::math::differentiation::make_fvar<double, 4>(l));
       break;
     case Operation::constant:
-      all.push_back({value});
+      all.push_back(value);
       break;
     case Operation::add:
-      all.push_back(sum(all[left], 1., all[right]));
+      all.push_back(all[left] + all[right]);
       break;
     case Operation::subtract:
-      all.push_back(sum(all[left], -1., all[right]));
+      all.push_back(all[left] - all[right]);
       break;
     case Operation::multiply:
-      all.push_back(product(all[left], all[right]));
+      all.push_back(all[left] * all[right]);
       break;
     case Operation::divide:
-      all.push_back(quotient(all[left], all[right]));
+      all.push_back(all[left] / all[right]);
       break;
     case Operation::power:
       all.push_back(power(all[left], value));
       break;
     case Operation::square_root:
-      all.push_back(real_power(all[left], 0.5));
+      all.push_back(sqrt(all[left]));
       break;
     case Operation::exponential:
-      all.push_back(exponential(all[left]));
+      all.push_back(exp(all[left]));
       break;
     case Operation::logarithm:
-      all.push_back(logarithm(all[left]));
+      all.push_back(log(all[left]));
       break;
     }
   return all[expression.result];
 }
 } // namespace
 
-ExpressionPotential::ExpressionPotential(support::Expression psi) : psi_(std::move(psi)), at_rest_(series(psi_, 1.)[0])
+ExpressionPotential::ExpressionPotential(support::Expression psi)
+  : psi_(std::move(psi)), at_rest_(jet(psi_, 1.).derivative(0))
 {
 }
 
 PotentialDerivatives ExpressionPotential::derivatives(const double l) const
 {
-  const Series psi = series(psi_, l);
-  return {psi[0] - at_rest_, psi[1], 2. * psi[2], 6. * psi[3], 24. * psi[4]};
+  const Jet psi = jet(psi_, l);
+  return {psi.derivative(0) - at_rest_, psi.derivative(1), psi.derivative(2), psi.derivative(3), psi.derivative(4)};
 }
 } // namespace latcon::continuum

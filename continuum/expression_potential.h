@@ -5,8 +5,8 @@
 
 namespace latcon::continuum
 {
-/// Potential psi(l) [Pa] given by an expression, up to a constant; psi(1) = 0 is enforced. Its derivatives are those of
-/// its Taylor series, which is computed operation by operation.
+/// Potential psi(l) [Pa] given by an expression, up to a constant; psi(1) = 0 is enforced. Its derivatives are computed
+/// by automatic differentiation, operation by operation.
 class ExpressionPotential : public CustomPotentialLaw
 {
 public:

@@ -2,6 +2,8 @@
 
 #include "continuum/errors.h"
 
+#include <deal.II/base/symmetric_tensor.h>
+
 #include <cmath>
 
 using dealii::outer_product;
@@ -53,9 +55,8 @@ FibreStrain::FibreStrain(const StrainMeasure &measure, const FieldDerivatives &u
   const Tensor<1, 2> f = Tensor<1, 2>({measure.factors[0], measure.factors[1]}) + changes[0];
   const double l = f.norm();
   const Tensor<1, 2> n = f / l;
-  Tensor<2, 2> turning = -1. / l * outer_product(n, n); // dn_i/df_k = (delta_ik - n_i n_k) / l
-  for (unsigned int i = 0; i < 2; ++i)
-    turning[i][i] += 1. / l;
+  const Tensor<2, 2> identity(dealii::unit_symmetric_tensor<2>());
+  const Tensor<2, 2> turning = (identity - outer_product(n, n)) / l; // dn_i/df_k
   if (!measure.is_gradient)
   {
     value_ = l;
@@ -68,10 +69,7 @@ FibreStrain::FibreStrain(const StrainMeasure &measure, const FieldDerivatives &u
   first_[0] = turning * a;
   first_[1] = n;
   by_fa_ = turning;
-  by_ff_ = 3. * value_ * outer_product(n, n) - outer_product(a, n) - outer_product(n, a);
-  for (unsigned int i = 0; i < 2; ++i)
-    by_ff_[i][i] -= value_;
-  by_ff_ /= l * l;
+  by_ff_ = (value_ * (3. * outer_product(n, n) - identity) - outer_product(a, n) - outer_product(n, a)) / (l * l);
 }
 
 // f and a are linear in u, but for the constant N.

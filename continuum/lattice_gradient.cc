@@ -4,8 +4,9 @@
 #include "continuum/fibre_strain.h"
 #include "continuum/material.h"
 
+#include <deal.II/base/symmetric_tensor.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 using dealii::outer_product;
@@ -15,6 +16,8 @@ namespace latcon::continuum
 {
 namespace
 {
+const Tensor<2, 2> identity(dealii::unit_symmetric_tensor<2>());
+
 // Stiffness of a bond with f = F N against a gradient, h(a, b) = across a.b + coupling (f.a)(f.b). Both coefficients
 // have their first two derivatives by s = |f|^2/2, by which the derivatives of h by the vector f contain no quotients,
 // eq. (C.24).
@@ -53,30 +56,12 @@ BondStiffness stiffness(const FibrePotential &potential, const double l)
            chi_4 + r2 * (away_2 - 4. * r2 * (away_1 - 2. * r2 * away))}};
 }
 
-// Independent entries 00, 11 and 01 of a symmetric tensor, over which the sums over bonds run, and the map from an
-// entry to them.
-constexpr unsigned int n_pairs = 3;
-constexpr unsigned int pair_of[2][2] = {{0, 2}, {2, 1}};
-std::array<double, n_pairs> pairs(const Tensor<2, 2> &A)
-{
-  return {A[0][0], A[1][1], A[0][1]};
-}
-
-// Adds the derivative by F of the double stress factor (1/2) dh(a, a)/da (x) S of a bond along N.
-void add_stress_by_F(const BondStiffness &h, const Tensor<1, 2> &f, const Tensor<1, 2> &a, const double factor,
-                     const std::array<double, n_pairs> &S, const Tensor<1, 2> &N, double sum[2][n_pairs][2][2])
+// Derivative by f of (1/2) dh(a, a)/da.
+Tensor<2, 2> by_fa(const BondStiffness &h, const Tensor<1, 2> &f, const Tensor<1, 2> &a)
 {
   const double fa = f * a;
-  Tensor<2, 2> by_f =
-    h.across[1] * outer_product(a, f) + h.coupling[0] * outer_product(f, a) + h.coupling[1] * fa * outer_product(f, f);
-  for (unsigned int i = 0; i < 2; ++i)
-    by_f[i][i] += h.coupling[0] * fa;
-  by_f *= factor;
-  for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int JK = 0; JK < n_pairs; ++JK)
-      for (unsigned int l = 0; l < 2; ++l)
-        for (unsigned int M = 0; M < 2; ++M)
-          sum[i][JK][l][M] += by_f[i][l] * S[JK] * N[M];
+  return h.across[1] * outer_product(a, f) + h.coupling[0] * (outer_product(f, a) + fa * identity) +
+         h.coupling[1] * fa * outer_product(f, f);
 }
 
 Tensor<1, 2> selected(const GradientLaw::Gradient &G, const Tensor<2, 2> &selector)
@@ -128,16 +113,13 @@ GradientResponse LatticeGradient::evaluate(const Tensor<2, 2> &F, const Gradient
 {
   checked_determinant(F);
   GradientResponse W;
-  double by_GF[2][n_pairs][2][2] = {};          // [i][JK][l][M]
-  double by_GG[n_pairs][n_pairs][n_pairs] = {}; // [il][JK][MN]
   for (const Family &family : families_)
   {
     const Tensor<1, 2> &N = family.fibre.direction;
     const Tensor<1, 2> f = F * N;
     const BondStiffness h = stiffness(family.fibre.potential, f.norm());
-    Tensor<2, 2> by_aa = h.coupling[0] * outer_product(f, f); // half the second derivative of h(a, a) by a
-    for (unsigned int i = 0; i < 2; ++i)
-      by_aa[i][i] += h.across[0];
+    // Half the second derivative of h(a, a) by a.
+    const Tensor<2, 2> by_aa = h.across[0] * identity + h.coupling[0] * outer_product(f, f);
     Tensor<1, 2> by_f;
     Tensor<2, 2> by_ff;
     for (unsigned int term = 0; term < 2; ++term)
@@ -154,19 +136,19 @@ GradientResponse LatticeGradient::evaluate(const Tensor<2, 2> &F, const Gradient
       W.double_stress += factor * outer_product(h.across[0] * a + h.coupling[0] * fa * f, selector);
       if (order == Order::first)
         continue;
-      Tensor<2, 2> h_by_ff = 0.5 * (h.across[2] * aa + h.coupling[2] * fa * fa) * outer_product(f, f) +
-                             h.coupling[1] * fa * (outer_product(f, a) + outer_product(a, f)) +
-                             h.coupling[0] * outer_product(a, a);
+      by_ff += factor * (0.5 * (h.across[2] * aa + h.coupling[2] * fa * fa) * outer_product(f, f) +
+                         h.coupling[1] * fa * (outer_product(f, a) + outer_product(a, f)) +
+                         h.coupling[0] * outer_product(a, a) + by_s * identity);
+      const Tensor<2, 2> of_F = factor * by_fa(h, f, a);
+      const Tensor<2, 2> of_G = factor * by_aa;
       for (unsigned int i = 0; i < 2; ++i)
-        h_by_ff[i][i] += by_s;
-      by_ff += factor * h_by_ff;
-      const auto S = pairs(selector);
-      add_stress_by_F(h, f, a, factor, S, N, by_GF);
-      const auto H = pairs(by_aa);
-      for (unsigned int il = 0; il < n_pairs; ++il)
-        for (unsigned int JK = 0; JK < n_pairs; ++JK)
-          for (unsigned int MN = 0; MN < n_pairs; ++MN)
-            by_GG[il][JK][MN] += factor * H[il] * S[JK] * S[MN];
+        for (unsigned int J = 0; J < 2; ++J)
+          for (unsigned int K = 0; K < 2; ++K)
+            for (unsigned int l = 0; l < 2; ++l)
+            {
+              W.double_stress_by_F[i][J][K][l] += of_F[i][l] * selector[J][K] * N;
+              W.double_stress_by_G[i][J][K][l] += of_G[i][l] * selector[J][K] * selector;
+            }
     }
     W.first_piola += outer_product(by_f, N);
     for (unsigned int i = 0; i < 2; ++i)
@@ -175,16 +157,6 @@ GradientResponse LatticeGradient::evaluate(const Tensor<2, 2> &F, const Gradient
           for (unsigned int L = 0; L < 2; ++L)
             W.tangent[i][J][k][L] += by_ff[i][k] * N[J] * N[L];
   }
-  for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int J = 0; J < 2; ++J)
-      for (unsigned int K = 0; K < 2; ++K)
-        for (unsigned int l = 0; l < 2; ++l)
-          for (unsigned int M = 0; M < 2; ++M)
-          {
-            W.double_stress_by_F[i][J][K][l][M] = by_GF[i][pair_of[J][K]][l][M];
-            for (unsigned int N = 0; N < 2; ++N)
-              W.double_stress_by_G[i][J][K][l][M][N] = by_GG[pair_of[i][l]][pair_of[J][K]][pair_of[M][N]];
-          }
   return W;
 }
 } // namespace latcon::continuum
