@@ -14,38 +14,13 @@ namespace latcon::continuum
 /// Vector field with two components over the reference configuration.
 using VectorField = std::shared_ptr<const dealii::Function<2>>;
 
-/// Prescribed displacement on one part of the boundary: u_i(X) = load factor * displacement_i(X) [m].
-struct PrescribedDisplacement
+/// Components of a field that is prescribed on one part of the boundary: load factor * field_i(X), a function of the
+/// reference position X [m].
+struct BoundaryField
 {
   dealii::types::boundary_id boundary;
-  VectorField displacement;                                   ///< [m], function of the reference position [m]
-  dealii::ComponentMask components = dealii::ComponentMask(); ///< prescribed components; default both
-};
-
-/// Weakly prescribed normal gradient of displacement on one part of the boundary: N_J du_i/dX_J = load factor *
-/// gradient_i(X) [-], with the outward reference normal N. Requires a gradient law. On a plane of symmetry, the
-/// component along the plane is prescribed as zero.
-struct PrescribedNormalGradient
-{
-  dealii::types::boundary_id boundary;
-  VectorField gradient;                                       ///< [-]
-  dealii::ComponentMask components = dealii::ComponentMask(); ///< prescribed components; default both
-};
-
-/// Dead load on one part of the boundary: load factor * traction_i(X) [Pa], force per reference length and thickness.
-/// With a gradient law it is the load conjugate to the displacement of the edge, eq. (C.31).
-struct Traction
-{
-  dealii::types::boundary_id boundary;
-  VectorField traction; ///< [Pa]
-};
-
-/// Dead double traction on one part of the boundary: load factor * traction_i(X) [Pa m], conjugate to the normal
-/// gradient of displacement. Requires a gradient law.
-struct DoubleTraction
-{
-  dealii::types::boundary_id boundary;
-  VectorField traction; ///< [Pa m]
+  VectorField field;
+  dealii::ComponentMask components = dealii::ComponentMask(); ///< default both
 };
 
 /// Dead load on the whole sheet: load factor * (1 - length^2 Laplace) force_i(X) [N/m^3] (theory-continuum.md, eq.
@@ -69,13 +44,18 @@ struct PeriodicPair
 struct BoundaryConditions
 {
   BoundaryConditions() = default;
-  BoundaryConditions(std::vector<PrescribedDisplacement> held) : displacements(std::move(held)) {}
-  BoundaryConditions(std::initializer_list<PrescribedDisplacement> held) : displacements(held) {}
+  BoundaryConditions(std::vector<BoundaryField> held) : displacements(std::move(held)) {}
+  BoundaryConditions(std::initializer_list<BoundaryField> held) : displacements(held) {}
 
-  std::vector<PrescribedDisplacement> displacements;
-  std::vector<PrescribedNormalGradient> normal_gradients;
-  std::vector<Traction> tractions;
-  std::vector<DoubleTraction> double_tractions;
+  std::vector<BoundaryField> displacements; ///< u_i [m]
+  /// N_J du_i/dX_J [-], weakly, with the outward reference normal N; they require a gradient law. On a plane of
+  /// symmetry, the component along the plane is prescribed as zero.
+  std::vector<BoundaryField> normal_gradients;
+  /// Dead loads [Pa], force per reference length and thickness; with a gradient law those conjugate to the displacement
+  /// of the edge, eq. (C.31).
+  std::vector<BoundaryField> tractions;
+  /// Dead double tractions [Pa m], conjugate to the normal gradient of displacement; they require a gradient law.
+  std::vector<BoundaryField> double_tractions;
   std::optional<BodyForce> body_force;
   std::vector<PeriodicPair> periodic;
 };

@@ -122,7 +122,7 @@ private:
         for (unsigned int i = 0; i < 2; ++i)
         {
           held[i] = at.condition->components[i];
-          prescribed[i].push_back(held[i] ? at.condition->gradient->value(X, i) : 0.);
+          prescribed[i].push_back(held[i] ? at.condition->field->value(X, i) : 0.);
         }
 
     for (unsigned int q = 0; q < table.n_points; ++q)

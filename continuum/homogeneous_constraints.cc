@@ -11,7 +11,7 @@ namespace latcon::continuum
 DirichletBoundaries dirichlet_boundaries(const BoundaryConditions &conditions)
 {
   DirichletBoundaries held;
-  for (const PrescribedDisplacement &condition : conditions.displacements)
+  for (const BoundaryField &condition : conditions.displacements)
   {
     ComponentMask mask(2, false);
     for (unsigned int i = 0; i < 2; ++i)

@@ -19,7 +19,7 @@ struct LiftedFace
   Cell neighbor;        ///< invalid on the boundary
   unsigned int neighbor_face = 0;
   unsigned int neighbor_subface = dealii::numbers::invalid_unsigned_int;
-  const PrescribedNormalGradient *condition = nullptr; ///< on the boundary
+  const BoundaryField *condition = nullptr; ///< on the boundary
 };
 
 /// Returns the faces of a cell that are lifted: those to other cells, halves where the neighbors are finer, and those

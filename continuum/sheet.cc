@@ -74,32 +74,22 @@ void Sheet::check_input() const
   };
   const auto require_field = [&](const VectorField &field, const std::string &what)
   { require(field && field->n_components == 2, what + " must be a function with two components"); };
-  for (const auto &condition : conditions_.displacements)
+  const auto require_conditions =
+    [&](const std::vector<BoundaryField> &conditions, const std::string &what, const bool needs_gradient)
   {
-    require_edge(condition.boundary);
-    require_field(condition.displacement, "a prescribed displacement");
-    require(condition.components.represents_n_components(2) && condition.components.n_selected_components(2) > 0,
-            "a prescribed displacement needs a mask of two components, one of them selected");
-  }
-  for (const auto &condition : conditions_.normal_gradients)
-  {
-    require_edge(condition.boundary);
-    require_field(condition.gradient, "a prescribed normal gradient");
-    require(condition.components.represents_n_components(2) && condition.components.n_selected_components(2) > 0,
-            "a prescribed normal gradient needs a mask of two components, one of them selected");
-    require(has_gradient(), "a prescribed normal gradient needs a gradient law that is not zero");
-  }
-  for (const auto &condition : conditions_.tractions)
-  {
-    require_edge(condition.boundary);
-    require_field(condition.traction, "a traction");
-  }
-  for (const auto &condition : conditions_.double_tractions)
-  {
-    require_edge(condition.boundary);
-    require_field(condition.traction, "a double traction");
-    require(has_gradient(), "a double traction needs a gradient law that is not zero");
-  }
+    for (const auto &[boundary, field, components] : conditions)
+    {
+      require_edge(boundary);
+      require_field(field, what);
+      require(components.represents_n_components(2) && components.n_selected_components(2) > 0,
+              what + " needs a mask of two components, one of them selected");
+      require(!needs_gradient || has_gradient(), what + " needs a gradient law that is not zero");
+    }
+  };
+  require_conditions(conditions_.displacements, "a prescribed displacement", false);
+  require_conditions(conditions_.normal_gradients, "a prescribed normal gradient", true);
+  require_conditions(conditions_.tractions, "a traction", false);
+  require_conditions(conditions_.double_tractions, "a double traction", true);
   if (conditions_.body_force)
   {
     require_field(conditions_.body_force->force, "a body force");
@@ -139,9 +129,9 @@ Sheet::Vector Sheet::lift() const
   run_collectively(communicator(),
                    [&]
                    {
-                     for (const PrescribedDisplacement &condition : conditions_.displacements)
+                     for (const BoundaryField &condition : conditions_.displacements)
                        VectorTools::interpolate_boundary_values(mapping_, dof_handler_, condition.boundary,
-                                                                *condition.displacement, given, condition.components);
+                                                                *condition.field, given, condition.components);
                    });
   Vector nodal = make_owned();
   for (const types::global_dof_index i : owned_)

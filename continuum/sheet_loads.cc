@@ -61,12 +61,12 @@ Sheet::Vector Sheet::loads() const
             {
               double on_value = 0.;
               double on_normal_gradient = 0.;
-              for (const Traction &condition : conditions_.tractions)
-                if (condition.boundary == id)
-                  on_value += condition.traction->value(X, i);
-              for (const DoubleTraction &condition : conditions_.double_tractions)
-                if (condition.boundary == id)
-                  on_normal_gradient += condition.traction->value(X, i);
+              for (const auto &[boundary, traction, components] : conditions_.tractions)
+                if (boundary == id && components[i])
+                  on_value += traction->value(X, i);
+              for (const auto &[boundary, traction, components] : conditions_.double_tractions)
+                if (boundary == id && components[i])
+                  on_normal_gradient += traction->value(X, i);
               if (conditions_.body_force && conditions_.body_force->length > 0.)
                 on_value -=
                   std::pow(conditions_.body_force->length, 2) * (conditions_.body_force->force->gradient(X, i) * N);

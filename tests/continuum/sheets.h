@@ -168,7 +168,7 @@ inline std::shared_ptr<Field> affine(const Tensor<2, 2> &F)
 }
 
 /// Prescribes the same displacement on all four edges.
-inline std::vector<latcon::continuum::PrescribedDisplacement> on_all_edges(const std::shared_ptr<Field> &field)
+inline std::vector<latcon::continuum::BoundaryField> on_all_edges(const std::shared_ptr<Field> &field)
 {
   return {{latcon::continuum::edge::left, field},
           {latcon::continuum::edge::right, field},
@@ -180,7 +180,7 @@ inline std::vector<latcon::continuum::PrescribedDisplacement> on_all_edges(const
 /// [m] of the top edge that vanishes with three derivatives at the corners, so that the solution is smooth there.
 constexpr double length = 0.15;
 constexpr double height = 0.1;
-inline std::vector<latcon::continuum::PrescribedDisplacement> bump_problem(const double stretch_x,
+inline std::vector<latcon::continuum::BoundaryField> bump_problem(const double stretch_x,
                                                                            const double stretch_y, const double bump)
 {
   return on_all_edges(std::make_shared<Field>(

@@ -423,7 +423,7 @@ TEST(StaticSolver, RefusesImpossibleInput)
 {
   RectangleMesh mesh(rectangle(2, 2));
   const auto held = affine(matrix(1., 0., 0., 1.));
-  const auto refuses = [&](const std::vector<PrescribedDisplacement> &conditions, const StaticSettings &settings)
+  const auto refuses = [&](const std::vector<BoundaryField> &conditions, const StaticSettings &settings)
   { EXPECT_THROW(StaticSolver(mesh, network, conditions, settings), InvalidInput); };
   refuses({}, {});
   refuses({{7, held}}, {});

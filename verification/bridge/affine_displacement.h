@@ -60,10 +60,10 @@ private:
 };
 
 /// Returns conditions that prescribe the displacement (F - I) X on all four edges of a rectangle.
-inline std::vector<continuum::PrescribedDisplacement> affine_boundary(const Eigen::Matrix2d &F)
+inline std::vector<continuum::BoundaryField> affine_boundary(const Eigen::Matrix2d &F)
 {
   const auto displacement = std::make_shared<AffineDisplacement>(F);
-  std::vector<continuum::PrescribedDisplacement> conditions;
+  std::vector<continuum::BoundaryField> conditions;
   for (const auto edge : {continuum::edge::left, continuum::edge::right, continuum::edge::bottom, continuum::edge::top})
     conditions.push_back({edge, displacement});
   return conditions;

@@ -35,7 +35,7 @@ continuum::BoundaryConditions conditions(const CutSheet &sheet)
 {
   const auto displacement = std::make_shared<bridge::AffineDisplacement>(sheet.F);
   const bool held[] = {sheet.held.left, sheet.held.right, sheet.held.bottom, sheet.held.top};
-  std::vector<continuum::PrescribedDisplacement> list;
+  std::vector<continuum::BoundaryField> list;
   for (dealii::types::boundary_id id = 0; id < 4; ++id)
     if (held[id])
       list.push_back({id, displacement});
