@@ -47,19 +47,18 @@ private:
   const double *own_; // a ghosted vector is sorted, so the owned entries are contiguous
 };
 
-// Integrates over cells, at one state u, densities of the energy or of other forces.
+// Integrates densities over cells, at one state u.
 class Integrator
 {
 public:
-  Integrator(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order,
-             const PointForces *forces = nullptr)
-    : sheet_(sheet), fields_{NodalValues(u, sheet.owned())}, load_factors_{load_factor}, order_(order), forces_(forces),
-      tables_(sheet), lifted_(sheet.degree())
+  Integrator(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, const Order order)
+    : sheet_(sheet), fields_{NodalValues(u, sheet.owned())}, load_factors_{forces.load.factor}, order_(order),
+      forces_(forces), tables_(sheet), lifted_(sheet.degree())
   {
-    if (forces && forces->velocity)
+    if (forces.velocity)
     {
-      fields_.emplace_back(*forces->velocity, sheet.owned());
-      load_factors_.push_back(forces->load.rate);
+      fields_.emplace_back(*forces.velocity, sheet.owned());
+      load_factors_.push_back(forces.load.rate);
     }
     for (unsigned int n = 0; n < sheet.element().n_dofs_per_cell() / 2; ++n)
       for (unsigned int i = 0; i < 2; ++i)
@@ -69,9 +68,8 @@ public:
   void cell(const Iterator &cell, const Add &add)
   {
     const ShapeTable &table = tables_.cell(MeshIterator(cell));
-    const bool lifts = forces_ ? static_cast<bool>(forces_->gradient) : sheet_.has_gradient();
-    const std::vector<LiftedFace> faces = lifts ? lifted_faces(sheet_, cell) : std::vector<LiftedFace>();
-    const bool has_gradient = lifts && faces.empty();
+    const std::vector<LiftedFace> faces = forces_.gradient ? lifted_faces(sheet_, cell) : std::vector<LiftedFace>();
+    const bool has_gradient = forces_.gradient && faces.empty();
     begin();
     add_nodes(cell, 0);
     start();
@@ -80,10 +78,7 @@ public:
       const Basis basis = {table.row(q, 0), table.row(q, 0)};
       evaluate(basis, sheet_.has_gradient() ? n_derivatives : n_first);
       const CellPoint point = cell_point(cell, table, q, 1);
-      if (forces_)
-        forces_->local(point, density_);
-      else
-        add_energy(sheet_.constitution().local->at(point.X), derivatives_[0], order_, density_);
+      forces_.local(point, density_);
       if (has_gradient)
         add_gradient_density(point);
       add_point(basis, has_gradient ? n_derivatives : n_first, table.JxW[q]);
@@ -142,7 +137,7 @@ private:
     }
 
     const double sigma = sheet_.penalty(cell->measure() / cell->face(at.face)->measure());
-    for (unsigned int f = 0; f < face.n_points && !forces_; ++f)
+    for (unsigned int f = 0; f < face.n_points && forces_.has_penalty; ++f)
     {
       const Basis basis = {lifted_.jump(f), lifted_.jump(f)};
       evaluate(basis, 1);
@@ -168,10 +163,7 @@ private:
   void add_gradient_density(CellPoint point)
   {
     point.number = n_gradient_points_++;
-    if (forces_)
-      forces_->gradient(point, density_);
-    else
-      add_energy(*sheet_.constitution().gradient, derivatives_[0], order_, density_);
+    forces_.gradient(point, density_);
   }
 
   void begin()
@@ -244,8 +236,8 @@ private:
       for (unsigned int block = 0; block < n_blocks(); ++block)
       {
         const auto &[i, k] = components[block];
-        add_second(basis[i], basis[k], stride_, n_rows, density_.second[i][k][0], weight, i == k && is_symmetric(),
-                   work_.data(), second_[block].data());
+        add_second(basis[i], basis[k], stride_, n_rows, density_.second[i][k][0], weight,
+                   i == k && forces_.is_symmetric, work_.data(), second_[block].data());
       }
   }
 
@@ -272,17 +264,17 @@ private:
     add(contribution);
   }
 
-  // The second derivative of an energy is symmetric: only one triangle of the blocks of equal components was summed,
+  // Where the derivative is symmetric, only one triangle of the blocks of equal components was summed,
   // and only one of the two mixed blocks.
   void fill_tangent(FullMatrix<double> &K) const
   {
     const std::size_t n = nodes_.size();
     K.reinit(2 * n, 2 * n);
-    for (unsigned int block = 0; block < n_blocks() && !is_symmetric(); ++block)
+    for (unsigned int block = 0; block < n_blocks() && !forces_.is_symmetric; ++block)
       for (std::size_t a = 0; a < n; ++a)
         for (std::size_t b = 0; b < n; ++b)
           K(2 * a + components[block].first, 2 * b + components[block].second) = second_[block][a * stride_ + b];
-    if (!is_symmetric())
+    if (!forces_.is_symmetric)
       return;
     for (std::size_t a = 0; a < n; ++a)
     {
@@ -295,14 +287,13 @@ private:
   }
 
   static constexpr std::pair<unsigned int, unsigned int> components[4] = {{0, 0}, {1, 1}, {0, 1}, {1, 0}}; // of second_
-  bool is_symmetric() const { return !forces_ || forces_->is_symmetric; }
-  unsigned int n_blocks() const { return is_symmetric() ? 3 : 4; }
+  unsigned int n_blocks() const { return forces_.is_symmetric ? 3 : 4; }
 
   const Sheet &sheet_;
   std::vector<NodalValues> fields_; // u, and the velocity if there is one
   std::vector<double> load_factors_; // of prescribed normal gradients, per field
   Order order_;
-  const PointForces *forces_; // nullptr: those of the energy
+  const PointForces &forces_;
   std::size_t n_points_ = 0;  // in the cells before
   std::size_t n_gradient_points_ = 0; // evaluated
   ShapeTables tables_;
@@ -323,8 +314,25 @@ private:
   Contribution contribution_;
 };
 
-void integrate_with(Integrator &integrator, const Sheet &sheet, const Add &add)
+} // namespace
+
+PointForces energy_densities(const Sheet &sheet, const double load_factor, const Order order)
 {
+  PointForces forces;
+  forces.local = [&sheet, order](const CellPoint &point, PointIntegrand &density)
+  { add_energy(sheet.constitution().local->at(point.X), point.u, order, density); };
+  if (sheet.has_gradient())
+    forces.gradient = [&sheet, order](const CellPoint &point, PointIntegrand &density)
+    { add_energy(*sheet.constitution().gradient, point.u, order, density); };
+  forces.is_symmetric = true;
+  forces.has_penalty = true;
+  forces.load.factor = load_factor;
+  return forces;
+}
+
+void integrate(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, const Order order, const Add &add)
+{
+  Integrator integrator(sheet, u, forces, order);
   for (const Iterator &cell : sheet.dof_handler().active_cell_iterators())
     if (cell->is_locally_owned())
       try
@@ -338,31 +346,18 @@ void integrate_with(Integrator &integrator, const Sheet &sheet, const Add &add)
         throw NonPhysicalState(failure.what() + place.str());
       }
 }
-} // namespace
 
-void integrate(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order,
-               const std::function<void(const Contribution &)> &add)
+double add_forces(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, Sheet::Vector &nodal,
+                  Sheet::Vector *magnitude)
 {
-  Integrator integrator(sheet, u, load_factor, order);
-  integrate_with(integrator, sheet, add);
-}
-
-void integrate(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, const Order order,
-               const std::function<void(const Contribution &)> &add)
-{
-  Integrator integrator(sheet, u, forces.load.factor, order, &forces);
-  integrate_with(integrator, sheet, add);
-}
-
-void add_forces(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, Sheet::Vector &nodal,
-                Sheet::Vector *magnitude)
-{
+  double own = 0.;
   const DeferredException guarded(
     [&]
     {
       integrate(sheet, u, forces, Order::first,
                 [&](const Contribution &part)
                 {
+                  own += part.energy;
                   sheet.conformity_constraints().distribute_local_to_global(part.residual, part.dofs, nodal);
                   if (magnitude)
                     sheet.conformity_constraints().distribute_local_to_global(part.magnitude, part.dofs, *magnitude);
@@ -372,26 +367,43 @@ void add_forces(const Sheet &sheet, const Sheet::Vector &u, const PointForces &f
   if (magnitude)
     magnitude->compress(VectorOperation::add);
   guarded.rethrow_collectively(sheet.communicator());
+  return dealii::Utilities::MPI::sum(own, sheet.communicator());
 }
 
 template <class AnyMatrix>
 void add_tangent(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces,
-                 const AffineConstraints<double> &constraints, AnyMatrix &matrix)
+                 const AffineConstraints<double> &constraints, AnyMatrix &matrix, const Sheet::Vector *lift,
+                 Sheet::Vector *product)
 {
   const DeferredException guarded(
     [&]
     {
+      dealii::Vector<double> local_lift;
+      dealii::Vector<double> local_product;
       integrate(sheet, u, forces, Order::second,
-                [&](const Contribution &part) { add_element(constraints, part.tangent, part.dofs, matrix); });
+                [&](const Contribution &part)
+                {
+                  add_element(constraints, part.tangent, part.dofs, matrix);
+                  if (lift == nullptr)
+                    return;
+                  local_lift.reinit(part.dofs.size());
+                  local_product.reinit(part.dofs.size());
+                  for (unsigned int a = 0; a < local_lift.size(); ++a)
+                    local_lift[a] = (*lift)(part.dofs[a]);
+                  part.tangent.vmult(local_product, local_lift);
+                  sheet.conformity_constraints().distribute_local_to_global(local_product, part.dofs, *product);
+                });
     });
   matrix.compress(VectorOperation::add);
+  if (lift != nullptr)
+    product->compress(VectorOperation::add);
   guarded.rethrow_collectively(sheet.communicator());
 }
 
 template void add_tangent(const Sheet &, const Sheet::Vector &, const PointForces &, const AffineConstraints<double> &,
-                          Sheet::Matrix &);
+                          Sheet::Matrix &, const Sheet::Vector *, Sheet::Vector *);
 template void add_tangent(const Sheet &, const Sheet::Vector &, const PointForces &, const AffineConstraints<double> &,
-                          SinglePrecisionMatrix &);
+                          SinglePrecisionMatrix &, const Sheet::Vector *, Sheet::Vector *);
 
 double integral(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces)
 {

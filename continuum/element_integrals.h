@@ -22,12 +22,6 @@ struct Contribution
   dealii::FullMatrix<double> tangent;
 };
 
-/// Calls add(contribution) for every locally owned cell and, with a gradient law, each of its lifted faces, at the
-/// state `u` [m] (with ghost entries). Order::second omits the first derivatives. Throws NonPhysicalState, only on the
-/// rank where it occurs.
-void integrate(const Sheet &sheet, const Sheet::Vector &u, double load_factor, Order order,
-               const std::function<void(const Contribution &)> &add);
-
 /// Quadrature point of a cell, at which the derivatives of the fields are those in the cell or, once for each lifted
 /// face of the cell, those lifted from there, eq. (C.63).
 struct CellPoint
@@ -48,37 +42,44 @@ struct GradientLoad
   double rate = 0.;   ///< [1/s]
 };
 
-/// Forces that no energy of u gives, those of viscosity and memory.
+/// Densities at the points of a sheet whose derivatives are forces: those of the energy, or of viscosity and memory.
 struct PointForces
 {
-  /// Adds the density at a point: dissipated power [W/m^3] as `value`, stresses as `first`, their derivatives by u as
-  /// `second`.
+  /// Adds the density at a point: energy [J/m^3] or dissipated power [W/m^3] as `value`, stresses as `first`, their
+  /// derivatives by u as `second`.
   using Density = std::function<void(const CellPoint &, PointIntegrand &)>;
 
   Density local;                           ///< of the first derivatives
   Density gradient;                        ///< of the lifted second ones, for a sheet with a gradient law; empty: none
   bool is_symmetric = false;               ///< whether the derivative of the stresses is symmetric
+  bool has_penalty = false;                ///< whether jumps of the normal derivative are penalised, eq. (C.28)
   const Sheet::Vector *velocity = nullptr; ///< [m/s], with ghost entries; nullptr: none
   GradientLoad load;
 };
 
-/// Calls add(contribution) likewise for `forces` at the state `u`: dissipated power as energy, forces as residual,
-/// their derivative by u as tangent.
+/// Returns the densities of the stored energy up to an order, eq. (C.28). `sheet` must outlive them.
+PointForces energy_densities(const Sheet &sheet, double load_factor, Order order);
+
+/// Calls add(contribution) for every locally owned cell and, with a gradient density, each of its lifted faces, at the
+/// state `u` [m] (with ghost entries): energy or dissipated power, forces as residual, their derivative by u as
+/// tangent. Order::second omits the forces. Throws NonPhysicalState, only on the rank where it occurs.
 void integrate(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, Order order,
                const std::function<void(const Contribution &)> &add);
 
-/// Adds nodal forces [N/m] to `nodal` and, if given, the absolute values of their terms to `magnitude`. As all functions
-/// below, collective; throws NonPhysicalState on every rank.
-void add_forces(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, Sheet::Vector &nodal,
-                Sheet::Vector *magnitude);
+/// Adds nodal forces [N/m] to `nodal` and, if given, the absolute values of their terms to `magnitude`. Returns the
+/// integral of the value of the densities. As all functions below, collective; throws NonPhysicalState on every rank.
+double add_forces(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, Sheet::Vector &nodal,
+                  Sheet::Vector *magnitude);
 
-/// Adds the derivative of the nodal forces by u [N/m^2] to `matrix`, condensed by `constraints`.
+/// Adds the derivative of the nodal forces by u [N/m^2] to `matrix`, condensed by `constraints`. If `lift` g [m] is
+/// given, also adds its product with the uncondensed derivative to `product` [N/m].
 /// @tparam AnyMatrix Sheet::Matrix or SinglePrecisionMatrix
 template <class AnyMatrix>
 void add_tangent(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces,
-                 const dealii::AffineConstraints<double> &constraints, AnyMatrix &matrix);
+                 const dealii::AffineConstraints<double> &constraints, AnyMatrix &matrix,
+                 const Sheet::Vector *lift = nullptr, Sheet::Vector *product = nullptr);
 
-/// Returns the integral of the value of the densities over the sheet [W/m], which calls them at all points.
+/// Returns the integral of the value of the densities over the sheet [J/m] or [W/m], which calls them at all points.
 double integral(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces);
 
 /// Adds the first Piola stresses [Pa] at the quadrature points of the cells on this rank, in their order; those of

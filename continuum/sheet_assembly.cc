@@ -1,5 +1,4 @@
 // Integrals of Sheet that depend on the state: energy, residual, tangent.
-#include "continuum/collective.h"
 #include "continuum/element_integrals.h"
 #include "continuum/sheet.h"
 #include "continuum/single_precision_matrix.h"
@@ -19,37 +18,14 @@ namespace latcon::continuum
 {
 double Sheet::energy(const Vector &u, const double load_factor) const
 {
-  double own = 0.;
-  run_collectively(communicator(),
-                   [&]
-                   {
-                     integrate(*this, u, load_factor, Order::value,
-                               [&](const Contribution &contribution) { own += contribution.energy; });
-                   });
-  return dealii::Utilities::MPI::sum(own, communicator());
+  return integral(*this, u, energy_densities(*this, load_factor, Order::value));
 }
 
 double Sheet::residual(const Vector &u, Vector &r, Vector &magnitude, const double load_factor) const
 {
-  double own = 0.;
   r = 0.;
   magnitude = 0.;
-  const DeferredException guarded(
-    [&]
-    {
-      integrate(*this, u, load_factor, Order::first,
-                [&](const Contribution &contribution)
-                {
-                  own += contribution.energy;
-                  conformity_constraints_.distribute_local_to_global(contribution.residual, contribution.dofs, r);
-                  conformity_constraints_.distribute_local_to_global(contribution.magnitude, contribution.dofs,
-                                                                     magnitude);
-                });
-    });
-  r.compress(VectorOperation::add);
-  magnitude.compress(VectorOperation::add);
-  guarded.rethrow_collectively(communicator());
-  return dealii::Utilities::MPI::sum(own, communicator());
+  return add_forces(*this, u, energy_densities(*this, load_factor, Order::first), r, &magnitude);
 }
 
 template <class AnyMatrix>
@@ -59,29 +35,8 @@ void Sheet::tangent(const Vector &u, const AffineConstraints<double> &constraint
   K = 0.;
   if (lift != nullptr)
     *stiffness_times_lift = 0.;
-  const DeferredException guarded(
-    [&]
-    {
-      dealii::Vector<double> local_lift;
-      dealii::Vector<double> product;
-      integrate(*this, u, load_factor, Order::second,
-                [&](const Contribution &contribution)
-                {
-                  add_element(constraints, contribution.tangent, contribution.dofs, K);
-                  if (lift == nullptr)
-                    return;
-                  local_lift.reinit(contribution.dofs.size());
-                  product.reinit(contribution.dofs.size());
-                  for (unsigned int a = 0; a < local_lift.size(); ++a)
-                    local_lift[a] = (*lift)(contribution.dofs[a]);
-                  contribution.tangent.vmult(product, local_lift);
-                  conformity_constraints_.distribute_local_to_global(product, contribution.dofs, *stiffness_times_lift);
-                });
-    });
-  K.compress(VectorOperation::add);
-  if (lift != nullptr)
-    stiffness_times_lift->compress(VectorOperation::add);
-  guarded.rethrow_collectively(communicator());
+  add_tangent(*this, u, energy_densities(*this, load_factor, Order::second), constraints, K, lift,
+              stiffness_times_lift);
 }
 
 template void Sheet::tangent(const Vector &, const AffineConstraints<double> &, Matrix &, double, const Vector *,

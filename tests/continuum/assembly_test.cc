@@ -48,6 +48,29 @@ public:
   const continuum::MooneyRivlin left = rubber_sheet(), right = rubber_sheet(0.3);
 };
 
+// Loads are those of the selected components. The first moments of double tractions on the upper edge are their sums.
+TEST(Assembly, LoadsSelectedComponents)
+{
+  const continuum::MooneyRivlin law = rubber_sheet();
+  const continuum::IsotropicGradient gradient(5e5, 0.01);
+  Mesh mesh(MPI_COMM_WORLD);
+  continuum::make_rectangle(mesh, rectangle(3, 2));
+  const auto ones = std::make_shared<dealii::Functions::ConstantFunction<2>>(1., 2);
+  const auto only = [](const unsigned int i) { return dealii::ComponentMask(std::vector<bool>{i == 0, i == 1}); };
+  continuum::BoundaryConditions conditions;
+  conditions.tractions.push_back({continuum::edge::top, ones, only(1)});
+  conditions.double_tractions.push_back({continuum::edge::top, ones, only(0)});
+  const Sheet sheet(mesh, continuum::Constitution(law, gradient), 2, conditions);
+  const auto work = [&](const auto &u) { return owned(sheet, nodal(sheet, u)) * sheet.loads(); };
+  for (unsigned int i = 0; i < 2; ++i)
+  {
+    Tensor<1, 2> e;
+    e[i] = 1.;
+    EXPECT_NEAR(work([&](const Point<2> &) { return e; }), i * length, 1e-14 * length);
+    EXPECT_NEAR(work([&](const Point<2> &X) { return (X[1] - 0.5 * height) * e; }), (1 - i) * length, 1e-14 * length);
+  }
+}
+
 // Of four columns of trapezoids that become narrower, each has its own points.
 TEST(Assembly, FindsTheLawOfEveryPoint)
 {

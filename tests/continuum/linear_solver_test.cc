@@ -65,7 +65,8 @@ struct Problem
     return [this, scale](const Sheet &, const Sheet::Vector &u, const AffineConstraints<double> &held, auto &K)
     {
       K = 0.;
-      continuum::integrate(*sheet, u, 1., continuum::Order::second,
+      continuum::integrate(*sheet, u, continuum::energy_densities(*sheet, 1., continuum::Order::second),
+                           continuum::Order::second,
                            [&](const continuum::Contribution &contribution)
                            {
                              dealii::FullMatrix<double> local = contribution.tangent;

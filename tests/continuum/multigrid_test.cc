@@ -148,7 +148,8 @@ TEST(Multigrid, HasAPatchForEveryFreeDegreeOfFreedom)
     // A diagonal matrix.
     SinglePrecisionMatrix K;
     sheet.make_matrix(constraints, K);
-    continuum::integrate(sheet, sheet.make_ghosted(), 1., continuum::Order::value,
+    continuum::integrate(sheet, sheet.make_ghosted(), continuum::energy_densities(sheet, 1., continuum::Order::value),
+                         continuum::Order::value,
                          [&](const continuum::Contribution &contribution)
                          {
                            dealii::FullMatrix<double> diagonal(contribution.dofs.size());

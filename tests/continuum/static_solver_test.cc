@@ -236,7 +236,7 @@ TEST(StaticSolver, HoldsTheBoundaryOnARefinedMesh)
     {
       if (X[1] > 0.4999 * height)
       {
-        EXPECT_NEAR(solver.displacement()(dof), conditions[0].displacement->value(X, component), 1e-14);
+        EXPECT_NEAR(solver.displacement()(dof), conditions[0].field->value(X, component), 1e-14);
       }
     });
 }
