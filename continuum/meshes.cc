@@ -20,12 +20,6 @@ namespace
 {
 constexpr types::manifold_id rim = 1;
 
-void require(const bool holds, const std::string &rule)
-{
-  if (!holds)
-    throw InvalidInput(rule);
-}
-
 // Returns the number of parts of about `size` between `from` and `to`.
 double n_parts(const double from, const double to, const double size)
 {
