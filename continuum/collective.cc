@@ -2,96 +2,57 @@
 
 #include "continuum/errors.h"
 
-#include <exception>
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/utility.hpp>
+
+#include <utility>
 
 namespace latcon::continuum
 {
 namespace
 {
-// In order of severity: a retry with a smaller step can recover from a non-physical state, but not from the others.
-enum FailureKind : int
+// Types of failures by severity, numbered from 1. Any other type counts as the last one.
+template <class... Failures>
+struct Severity
 {
-  none,
-  non_physical_state,
-  invalid_input,
-  linear_solver_failed,
-  output_failed,
-  other
-};
-
-[[noreturn]] void rethrow(const int kind, const std::string &message)
-{
-  switch (kind)
+  static int of(const std::exception &failure)
   {
-  case non_physical_state:
-    throw NonPhysicalState(message);
-  case invalid_input:
-    throw InvalidInput(message);
-  case linear_solver_failed:
-    throw LinearSolverFailed(message);
-  case output_failed:
-    throw OutputFailed(message);
-  default:
-    throw std::runtime_error(message);
+    int kind = 0;
+    bool is_found = false;
+    ((is_found = is_found || (++kind, dynamic_cast<const Failures *>(&failure) != nullptr)), ...);
+    return kind;
   }
-}
+
+  static void rethrow(int kind, const std::string &message) { ((--kind == 0 ? throw Failures(message) : void()), ...); }
+};
+// A retry with a smaller step can recover from a non-physical state, but not from the others.
+using Kinds = Severity<NonPhysicalState, InvalidInput, LinearSolverFailed, OutputFailed, std::runtime_error>;
 } // namespace
 
 DeferredException::DeferredException(const std::function<void()> &work)
 {
-  const auto keep = [this](const int kind, const std::exception &failure)
-  {
-    kind_ = kind;
-    // cppcheck-suppress useInitializationList ; the message is known only here
-    message_ = failure.what();
-  };
   try
   {
     work();
   }
-  catch (const NonPhysicalState &failure)
-  {
-    keep(non_physical_state, failure);
-  }
-  catch (const InvalidInput &failure)
-  {
-    keep(invalid_input, failure);
-  }
-  catch (const LinearSolverFailed &failure)
-  {
-    keep(linear_solver_failed, failure);
-  }
-  catch (const OutputFailed &failure)
-  {
-    keep(output_failed, failure);
-  }
   catch (const std::exception &failure)
   {
-    keep(other, failure);
+    kind_ = Kinds::of(failure);
+    // cppcheck-suppress useInitializationList ; the message is known only here
+    message_ = failure.what();
   }
 }
 
 void DeferredException::rethrow_collectively(const MPI_Comm communicator) const
 {
-  int gravest = none;
-  MPI_Allreduce(&kind_, &gravest, 1, MPI_INT, MPI_MAX, communicator);
-  if (gravest == none)
+  const int gravest = dealii::Utilities::MPI::max(kind_, communicator);
+  if (gravest == 0)
     return;
-
-  int rank = 0;
-  int n_ranks = 1;
-  MPI_Comm_rank(communicator, &rank);
-  MPI_Comm_size(communicator, &n_ranks);
-  const int candidate = kind_ == gravest ? rank : n_ranks;
-  int speaker = 0;
-  MPI_Allreduce(&candidate, &speaker, 1, MPI_INT, MPI_MIN, communicator);
-
-  std::string message = message_;
-  unsigned long length = message.size();
-  MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, speaker, communicator);
-  message.resize(length);
-  MPI_Bcast(message.data(), static_cast<int>(length), MPI_CHAR, speaker, communicator);
-  rethrow(gravest, message);
+  for (const auto &[kind, message] : dealii::Utilities::MPI::all_gather(communicator, std::pair(kind_, message_)))
+    if (kind == gravest)
+      Kinds::rethrow(kind, message);
 }
 
 void run_collectively(const MPI_Comm communicator, const std::function<void()> &work)

@@ -42,11 +42,6 @@ DynamicSolver::DynamicSolver(const Sheet::Mesh &mesh, const Constitution &consti
 
 void DynamicSolver::check_input() const
 {
-  const auto require = [](const bool holds, const std::string &rule)
-  {
-    if (!holds)
-      throw InvalidInput(rule);
-  };
   require(inertia_.density > 0. && std::isfinite(inertia_.density), "the density must be positive and finite");
   require(inertia_.length >= 0. && std::isfinite(inertia_.length), "the micro-inertia length must be finite and >= 0");
   require(settings_.time_step > 0. && std::isfinite(settings_.time_step), "the time step must be positive and finite");

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "continuum/cell_order.h"
 #include "continuum/errors.h"
 #include "continuum/linear_solver.h"
-#include "continuum/nodal_order.h"
 #include "continuum/rate_forces.h"
 #include "continuum/sheet.h"
 #include "continuum/solver_report.h"

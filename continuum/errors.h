@@ -27,6 +27,13 @@ public:
   using std::invalid_argument::invalid_argument;
 };
 
+/// Throws InvalidInput with the text `rule` unless it `holds`.
+inline void require(const bool holds, const std::string &rule)
+{
+  if (!holds)
+    throw InvalidInput(rule);
+}
+
 /// Linear system that could not be solved to its tolerance.
 class LinearSolverFailed : public std::runtime_error
 {

@@ -1,13 +1,15 @@
 // Gmsh 4.8 manual, "MSH file format". GridIn of deal.II ignores names, takes lines without a number for number 0, and
 // drops z.
-#include "continuum/gmsh_file.h"
-
+#include "continuum/collective.h"
 #include "continuum/errors.h"
 #include "continuum/meshes.h"
+
+#include <deal.II/grid/grid_tools.h>
 
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <iomanip>
 #include <limits>
 #include <map>
 #include <set>
@@ -32,9 +34,12 @@ enum Kind
   point = 15
 };
 
-struct Defect
+// Nodes [m], quadrilaterals, and lines with the boundary ids of continuum::edge.
+struct GmshMesh
 {
-  std::string what;
+  std::vector<Point<2>> points;
+  std::vector<CellData<2>> cells;
+  SubCellData lines;
 };
 
 template <class... Parts>
@@ -42,11 +47,12 @@ template <class... Parts>
 {
   std::ostringstream text;
   (text << ... << parts);
-  throw Defect{text.str()};
+  throw InvalidInput(text.str()); // to be preceded by the name of the file
 }
 
 struct Element
 {
+  std::size_t number;
   int kind;
   std::set<int> numbers; // of the physical curve or surface
   std::array<std::size_t, 4> nodes;
@@ -97,8 +103,7 @@ public:
   std::string quoted()
   {
     std::string name;
-    std::getline(stream_, name, '"');
-    std::getline(stream_, name, '"');
+    stream_ >> std::quoted(name, '"', '\0');
     return name;
   }
 
@@ -129,9 +134,9 @@ public:
       else if (name == "$Entities" && !is_2_)
         read_entities();
       else if (name == "$Nodes")
-        is_2_ ? read_nodes_2() : read_nodes_4();
+        read_nodes();
       else if (name == "$Elements")
-        is_2_ ? read_elements_2() : read_elements_4();
+        read_elements();
       else
         read_.skip_section();
   }
@@ -142,20 +147,20 @@ public:
     std::map<std::size_t, unsigned int> index; // of nodes of cells
     double lowest = std::numeric_limits<double>::max(), highest = -lowest, extent = 0.;
     bool has_numbers = false;
-    for (const auto &[number, element] : elements_)
+    for (const auto &[element, kind, numbers, nodes] : elements_)
     {
-      if (element.kind != quadrilateral)
+      if (kind != quadrilateral)
         continue;
-      has_numbers = has_numbers || element.numbers != std::set<int>{0};
+      has_numbers = has_numbers || numbers != std::set<int>{0};
       CellData<2> cell(4);
       for (unsigned int k = 0; k < 4; ++k)
       {
-        const auto [entry, is_new] = index.emplace(element.nodes[k], mesh.points.size());
+        const auto [entry, is_new] = index.emplace(nodes[k], mesh.points.size());
         if (is_new)
         {
-          const auto node = nodes_.find(element.nodes[k]);
+          const auto node = nodes_.find(nodes[k]);
           if (node == nodes_.end())
-            refuse("has an element ", number, " with the node ", element.nodes[k], ", which is not in the file");
+            refuse("has an element ", element, " with the node ", nodes[k], ", which is not in the file");
           const Point<3> &X = node->second;
           mesh.points.emplace_back(X[0], X[1]);
           lowest = std::min(lowest, X[2]);
@@ -164,7 +169,7 @@ public:
         }
         cell.vertices[k] = entry->second;
       }
-      orient(cell, number, mesh.points);
+      orient(cell, element, mesh.points);
       mesh.cells.push_back(cell);
     }
     if (mesh.cells.empty())
@@ -217,81 +222,73 @@ private:
     read_.skip_section();
   }
 
-  void read_node(const std::size_t number)
+  // Version 2 has no blocks.
+  std::size_t n_blocks()
   {
-    Point<3> X;
-    for (unsigned int i = 0; i < 3; ++i)
-      X[i] = read_.next<double>("a coordinate");
-    nodes_[number] = X;
-  }
-
-  void read_nodes_2()
-  {
-    const auto n = read_.next<std::size_t>("a number of nodes");
-    for (std::size_t i = 0; i < n; ++i)
-      read_node(read_.next<std::size_t>("the number of a node"));
-  }
-
-  void read_nodes_4()
-  {
-    const auto n_blocks = read_.next<std::size_t>("a number of blocks");
+    if (is_2_)
+      return 1;
+    const auto n = read_.next<std::size_t>("a number of blocks");
     read_.skip_line();
-    for (std::size_t block = 0; block < n_blocks; ++block)
+    return n;
+  }
+
+  void read_nodes()
+  {
+    for (std::size_t blocks = n_blocks(); blocks > 0; --blocks)
     {
-      for (int i = 0; i < 2; ++i)
-        (void)read_.next<int>("an entity");
-      if (read_.next<int>("0 or 1") != 0)
-        refuse("has parametric nodes; save it without them");
+      if (!is_2_)
+      {
+        for (int i = 0; i < 2; ++i)
+          (void)read_.next<int>("an entity");
+        if (read_.next<int>("0 or 1") != 0)
+          refuse("has parametric nodes; save it without them");
+      }
       const auto n = read_.next<std::size_t>("a number of nodes");
       std::vector<std::size_t> numbers;
-      for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t i = 0; i < n && !is_2_; ++i)
         numbers.push_back(read_.next<std::size_t>("the number of a node"));
-      for (const std::size_t number : numbers)
-        read_node(number);
-    }
-  }
-
-  void read_element(const std::size_t number, const int kind, const std::set<int> &numbers)
-  {
-    if (kind != line && kind != quadrilateral && kind != point)
-      refuse("has an element ", number, " of type ", kind,
-             kind == 2 ? ", a triangle; generate quadrilaterals with Gmsh's `Recombine Surface`"
-                       : "; expected lines and quadrilaterals of first order (`Mesh.ElementOrder = 1`)");
-    Element element{kind, numbers, {}};
-    for (int k = 0; k < (kind == line ? 2 : kind == point ? 1 : 4); ++k)
-      element.nodes[k] = read_.next<std::size_t>("the number of a node");
-    elements_.emplace_back(number, element);
-  }
-
-  void read_elements_2()
-  {
-    const auto n = read_.next<std::size_t>("a number of elements");
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      const auto number = read_.next<std::size_t>("the number of an element");
-      const int kind = read_.next<int>("the type of an element");
-      const auto n_tags = read_.next<std::size_t>("a number of tags");
-      std::set<int> numbers;
-      for (std::size_t k = 0; k < n_tags; ++k)
-        if (const int tag = read_.next<int>("a tag"); k == 0)
-          numbers.insert(tag);
-      read_element(number, kind, numbers);
-    }
-  }
-
-  void read_elements_4()
-  {
-    const auto n_blocks = read_.next<std::size_t>("a number of blocks");
-    read_.skip_line();
-    for (std::size_t block = 0; block < n_blocks; ++block)
-    {
-      const int dimension = read_.next<int>("a dimension"), entity = read_.next<int>("an entity");
-      const int kind = read_.next<int>("the type of elements");
-      const auto n = read_.next<std::size_t>("a number of elements");
-      const auto found = numbers_.find({dimension, entity});
       for (std::size_t i = 0; i < n; ++i)
-        read_element(read_.next<std::size_t>("the number of an element"), kind,
-                     found == numbers_.end() ? std::set<int>{} : found->second);
+      {
+        Point<3> &X = nodes_[is_2_ ? read_.next<std::size_t>("the number of a node") : numbers[i]];
+        for (unsigned int k = 0; k < 3; ++k)
+          X[k] = read_.next<double>("a coordinate");
+      }
+    }
+  }
+
+  void read_elements()
+  {
+    for (std::size_t blocks = n_blocks(); blocks > 0; --blocks)
+    {
+      Element element{};
+      if (!is_2_)
+      {
+        const int dimension = read_.next<int>("a dimension"), entity = read_.next<int>("an entity");
+        element.kind = read_.next<int>("the type of elements");
+        element.numbers = numbers_[{dimension, entity}];
+      }
+      const auto n = read_.next<std::size_t>("a number of elements");
+      for (std::size_t i = 0; i < n; ++i)
+      {
+        element.number = read_.next<std::size_t>("the number of an element");
+        if (is_2_)
+        {
+          element.kind = read_.next<int>("the type of an element");
+          element.numbers.clear();
+          const auto n_tags = read_.next<std::size_t>("a number of tags");
+          for (std::size_t k = 0; k < n_tags; ++k)
+            if (const int tag = read_.next<int>("a tag"); k == 0)
+              element.numbers.insert(tag);
+        }
+        const int kind = element.kind;
+        if (kind != line && kind != quadrilateral && kind != point)
+          refuse("has an element ", element.number, " of type ", kind,
+                 kind == 2 ? ", a triangle; generate quadrilaterals with Gmsh's `Recombine Surface`"
+                           : "; expected lines and quadrilaterals of first order (`Mesh.ElementOrder = 1`)");
+        for (int k = 0; k < (kind == line ? 2 : kind == point ? 1 : 4); ++k)
+          element.nodes[k] = read_.next<std::size_t>("the number of a node");
+        elements_.push_back(element);
+      }
     }
   }
 
@@ -346,11 +343,11 @@ private:
           refuse("has cells that overlap, at (", mesh.points[cell.vertices[a]][0], ", ",
                  mesh.points[cell.vertices[a]][1], ") m; is a surface in two physical surfaces?");
     std::map<std::pair<unsigned int, unsigned int>, std::set<int>> numbers;
-    for (const auto &[number, element] : elements_)
+    for (const Element &element : elements_)
       if (element.kind == line)
       {
         if (element.numbers.empty())
-          refuse("has lines on no physical curve, as element ", number, expected_curves);
+          refuse("has lines on no physical curve, as element ", element.number, expected_curves);
         const auto a = index.find(element.nodes[0]), b = index.find(element.nodes[1]);
         if (a != index.end() && b != index.end())
           numbers[std::minmax(a->second, b->second)].insert(element.numbers.begin(), element.numbers.end());
@@ -388,9 +385,8 @@ private:
   std::map<int, std::string> names_;                     // of physical curves
   std::map<std::pair<int, int>, std::set<int>> numbers_; // physical numbers of an entity; dimension and number
   std::map<std::size_t, Point<3>> nodes_;
-  std::vector<std::pair<std::size_t, Element>> elements_;
+  std::vector<Element> elements_;
 };
-} // namespace
 
 GmshMesh read_gmsh_file(const std::filesystem::path &file)
 {
@@ -408,9 +404,26 @@ GmshMesh read_gmsh_file(const std::filesystem::path &file)
   {
     return MshFile(stream).mesh();
   }
-  catch (const Defect &defect)
+  catch (const InvalidInput &defect)
   {
-    throw InvalidInput(name + " " + defect.what);
+    throw InvalidInput(name + " " + defect.what());
   }
+}
+} // namespace
+
+double n_coarse_cells(const std::filesystem::path &gmsh_file)
+{
+  return read_gmsh_file(gmsh_file).cells.size();
+}
+
+void read_gmsh(parallel::distributed::Triangulation<2> &mesh, const std::filesystem::path &file,
+               const unsigned int refinements)
+{
+  GmshMesh read;
+  // An exception on one rank must not leave the others waiting.
+  run_collectively(mesh.get_communicator(), [&] { read = read_gmsh_file(file); });
+  GridTools::consistently_order_cells(read.cells);
+  mesh.create_triangulation(read.points, read.cells, read.lines);
+  mesh.refine_global(refinements);
 }
 } // namespace latcon::continuum

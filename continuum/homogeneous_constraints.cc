@@ -36,8 +36,14 @@ AffineConstraints<double> homogeneous_constraints(const Sheet &sheet, const Diri
 AffineConstraints<double> shared_constraints(const AffineConstraints<double> &known, const IndexSet &owned,
                                              const IndexSet &relevant, const MPI_Comm communicator)
 {
+  // A rank may know the constraints of an unknown of another rank in part.
   AffineConstraints<double> shared(relevant);
-  shared.merge(known);
+  for (const auto &line : known.get_lines())
+    if (owned.is_element(line.index))
+    {
+      shared.add_line(line.index);
+      shared.add_entries(line.index, line.entries);
+    }
   shared.make_consistent_in_parallel(owned, relevant, communicator);
   IndexSet storable = relevant;
   for (const auto &line : shared.get_lines())

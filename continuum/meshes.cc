@@ -1,9 +1,8 @@
 #include "continuum/meshes.h"
 
-#include "continuum/collective.h"
 #include "continuum/errors.h"
-#include "continuum/gmsh_file.h"
 
+#include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold_lib.h>
 
@@ -20,10 +19,10 @@ namespace
 {
 constexpr types::manifold_id rim = 1;
 
-void require(const bool holds, const std::string &rule)
+void require_size(const double length, const double height)
 {
-  if (!holds)
-    throw InvalidInput(rule);
+  require(length > 0. && height > 0. && std::isfinite(length) && std::isfinite(height),
+          "the length and height of a rectangle must be positive and finite");
 }
 
 // Returns the number of parts of about `size` between `from` and `to`.
@@ -92,11 +91,39 @@ private:
 };
 } // namespace
 
+void make_rectangle(parallel::distributed::Triangulation<2> &mesh, const Rectangle &rectangle)
+{
+  const auto &[length, height, cells_x, cells_y, periodic_x, periodic_y] = rectangle;
+  require_size(length, height);
+  require(cells_x > 0 && cells_y > 0, "a rectangle needs at least one cell in each direction");
+  // With a single cell across, the cell would be its own neighbour.
+  require((!periodic_x || cells_x > 1) && (!periodic_y || cells_y > 1),
+          "a periodic rectangle needs at least two cells across");
+
+  // Prefer refined to coarse cells: refined cells are distributed and form the levels of multigrid.
+  unsigned int halvings = 0, coarse_x = cells_x, coarse_y = cells_y;
+  for (; coarse_x % 2 == 0 && coarse_y % 2 == 0; ++halvings)
+  {
+    coarse_x /= 2;
+    coarse_y /= 2;
+  }
+  // With `colorize` the generator numbers the edges as continuum::edge does.
+  GridGenerator::subdivided_hyper_rectangle(mesh, {coarse_x, coarse_y}, Point<2>(0., -0.5 * height),
+                                            Point<2>(length, 0.5 * height), true);
+  std::vector<GridTools::PeriodicFacePair<parallel::distributed::Triangulation<2>::cell_iterator>> pairs;
+  if (periodic_x)
+    GridTools::collect_periodic_faces(mesh, edge::left, edge::right, 0, pairs);
+  if (periodic_y)
+    GridTools::collect_periodic_faces(mesh, edge::bottom, edge::top, 1, pairs);
+  if (!pairs.empty())
+    mesh.add_periodicity(pairs);
+  mesh.refine_global(halvings);
+}
+
 void make_rectangle_with_hole(parallel::distributed::Triangulation<2> &mesh, const RectangleWithHole &shape)
 {
   const auto &[length, height, radius, refinements] = shape;
-  require(length > 0. && height > 0. && std::isfinite(length) && std::isfinite(height),
-          "the length and height of a rectangle must be positive and finite");
+  require_size(length, height);
   const double smaller = std::min(length, height);
   require(radius > 0. && radius < 0.45 * smaller,
           "the radius of a hole must be positive and less than 0.45 times the length and the height");
@@ -147,8 +174,7 @@ void make_rectangle_with_hole(parallel::distributed::Triangulation<2> &mesh, con
 void make_notched_rectangle(parallel::distributed::Triangulation<2> &mesh, const NotchedRectangle &shape)
 {
   const auto &[length, height, notch, refinements] = shape;
-  require(length > 0. && height > 0. && std::isfinite(length) && std::isfinite(height),
-          "the length and height of a rectangle must be positive and finite");
+  require_size(length, height);
   require(notch > 0. && notch < length, "the notch must be longer than 0 and shorter than the sheet");
 
   std::vector<double> xs = {0.};
@@ -185,21 +211,5 @@ double n_coarse_cells(const NotchedRectangle &shape)
 {
   const double pitch = 0.5 * shape.height;
   return 2. * (n_parts(0., shape.notch, pitch) + n_parts(shape.notch, shape.length, pitch));
-}
-
-double n_coarse_cells(const std::filesystem::path &gmsh_file)
-{
-  return read_gmsh_file(gmsh_file).cells.size();
-}
-
-void read_gmsh(parallel::distributed::Triangulation<2> &mesh, const std::filesystem::path &file,
-               const unsigned int refinements)
-{
-  GmshMesh read;
-  // An exception on one rank must not leave the others waiting.
-  run_collectively(mesh.get_communicator(), [&] { read = read_gmsh_file(file); });
-  GridTools::consistently_order_cells(read.cells);
-  mesh.create_triangulation(read.points, read.cells, read.lines);
-  mesh.refine_global(refinements);
 }
 } // namespace latcon::continuum

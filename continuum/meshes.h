@@ -1,16 +1,31 @@
 #pragma once
 
-#include "continuum/rectangle.h"
+#include <deal.II/distributed/tria.h>
 
 #include <filesystem>
 
 namespace latcon::continuum
 {
+/// Boundary ids of meshes.
 namespace edge
 {
-/// Boundary id of the rim of a hole, or of both faces of a notch.
-constexpr dealii::types::boundary_id inner = 4;
+constexpr dealii::types::boundary_id left = 0;   ///< smallest X
+constexpr dealii::types::boundary_id right = 1;  ///< largest X
+constexpr dealii::types::boundary_id bottom = 2; ///< smallest Y
+constexpr dealii::types::boundary_id top = 3;    ///< largest Y
+constexpr dealii::types::boundary_id inner = 4;  ///< rim of a hole, or both faces of a notch
 } // namespace edge
+
+/// Reference rectangle [0, length] x [-height/2, height/2] [m], divided into cells_x times cells_y equal cells.
+struct Rectangle
+{
+  double length;           ///< [m] > 0
+  double height;           ///< [m] > 0
+  unsigned int cells_x;    ///< >= 1
+  unsigned int cells_y;    ///< >= 1
+  bool periodic_x = false; ///< identifies the right edge with the left one; needs at least 2 cells across
+  bool periodic_y = false; ///< identifies the top edge with the bottom one; needs at least 2 cells across
+};
 
 /// Rectangle with a circular hole centred at (length/2, 0).
 struct RectangleWithHole
@@ -32,6 +47,11 @@ struct NotchedRectangle
 
 // Mesh generators. Each fills the empty `mesh`, with the boundary ids of continuum::edge. Collective. Throw
 // InvalidInput for sizes out of range.
+
+/// Generates the mesh of a rectangle. Common factors of two of cells_x and cells_y become refinements of a coarse mesh,
+/// which is replicated on every rank. A periodic mesh still has its four edges; PeriodicPair constrains the
+/// displacement. Throws InvalidInput for too few cells as well.
+void make_rectangle(dealii::parallel::distributed::Triangulation<2> &mesh, const Rectangle &rectangle);
 
 /// Generates the mesh of a rectangle with a hole. A manifold describes the rim as a circle, so that Sheet maps cells at
 /// the rim to the degree of its elements.

@@ -61,11 +61,6 @@ StaticSolver::StaticSolver(const Sheet::Mesh &mesh, const Constitution &constitu
 
 void StaticSolver::check_input() const
 {
-  const auto require = [](const bool holds, const std::string &rule)
-  {
-    if (!holds)
-      throw InvalidInput(rule);
-  };
   require(settings_.relative_tolerance > 0. && settings_.relative_tolerance < 1.,
           "the relative tolerance of the residual must be in (0, 1)");
   require(settings_.first_load_step > 0. && settings_.first_load_step <= 1., "the first load step must be in (0, 1]");

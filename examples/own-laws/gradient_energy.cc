@@ -12,9 +12,9 @@
 #include <deal.II/base/symmetric_tensor.h>
 
 #include "continuum/gradient_law.h"
+#include "continuum/meshes.h"
 #include "continuum/mooney_rivlin.h"
 #include "continuum/parallel_session.h"
-#include "continuum/rectangle.h"
 #include "continuum/static_solver.h"
 
 using namespace latcon;

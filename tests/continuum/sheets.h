@@ -5,8 +5,8 @@
 #include "continuum/cauchy_born.h"
 #include "continuum/isotropic_gradient.h"
 #include "continuum/lattice_gradient.h"
+#include "continuum/meshes.h"
 #include "continuum/mooney_rivlin.h"
-#include "continuum/rectangle.h"
 #include "continuum/static_solver.h"
 
 #include <deal.II/base/function.h>

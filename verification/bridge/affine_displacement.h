@@ -9,7 +9,7 @@
 #include <deal.II/base/auto_derivative_function.h>
 #include <deal.II/lac/vector.h>
 
-#include "continuum/rectangle.h"
+#include "continuum/meshes.h"
 #include "continuum/static_solver.h"
 #include "verification/input/continuum_case.h"
 

@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 #include <deal.II/numerics/vector_tools_interpolate.h>
 
-#include "continuum/rectangle.h"
+#include "continuum/meshes.h"
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogenisation.h"

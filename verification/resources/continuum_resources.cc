@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "continuum/meshes.h"
-#include "continuum/rectangle.h"
 #include "support/errors.h"
 #include "support/ranks.h"
 #include "support/text_wrap.h"

@@ -5,7 +5,7 @@
 
 #include <deal.II/base/function.h>
 
-#include "continuum/rectangle.h"
+#include "continuum/meshes.h"
 #include "continuum/static_solver.h"
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"

@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "continuum/dynamic_solver.h"
-#include "continuum/rectangle.h"
+#include "continuum/meshes.h"
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
 #include "support/dense.h"
