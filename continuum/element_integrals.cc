@@ -383,7 +383,7 @@ void add_tangent(const Sheet &sheet, const Sheet::Vector &u, const PointForces &
       integrate(sheet, u, forces, Order::second,
                 [&](const Contribution &part)
                 {
-                  add_element(constraints, part.tangent, part.dofs, matrix);
+                  constraints.distribute_local_to_global(part.tangent, part.dofs, matrix);
                   if (lift == nullptr)
                     return;
                   local_lift.reinit(part.dofs.size());

@@ -119,7 +119,7 @@ void Sheet::add_mass(const double density, const double inertia_length, const Af
               values.JxW(q);
         }
       }
-    add_element(constraints, local, dofs, M);
+    constraints.distribute_local_to_global(local, dofs, M);
   }
   M.compress(VectorOperation::add);
 }

@@ -5,6 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/partitioner.h>
+#include <deal.II/lac/affine_constraints.templates.h>
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/sparsity_tools.h>
 
@@ -179,105 +180,30 @@ SinglePrecisionMatrix &SinglePrecisionMatrix::operator*=(const double factor)
   return *this;
 }
 
-// Sets the terms of an element and the pairs that they belong to. Returns the matrix that the terms refer to: the given
-// one, or the one condensed from it.
-const FullMatrix<double> &SinglePrecisionMatrix::resolve(const FullMatrix<double> &local,
-                                                         const std::vector<Index> &dofs)
+void SinglePrecisionMatrix::add(const Index row, const Index n_columns, const Index *columns, const double *values,
+                                bool, bool)
 {
-  terms_.clear();
-  weights_.clear();
-  bool is_constrained = false;
-  for (unsigned int a = 0; a < dofs.size(); ++a)
-    if (constraints_->is_constrained(dofs[a]))
-      is_constrained = true;
-    else
-      terms_.push_back({layout().global_to_local(dofs[a]), a, a % 2, 0});
-  if (is_constrained)
-  {
-    for (Term &term : terms_)
-      weights_.push_back({term.dof, term.local, 1.});
-    for (unsigned int a = 0; a < dofs.size(); ++a)
-      if (constraints_->is_constrained(dofs[a]))
-        for (const auto &[dof, weight] : *constraints_->get_constraint_entries(dofs[a]))
-        {
-          weights_.push_back({layout().global_to_local(dof), a, weight});
-          terms_.push_back({weights_.back().term, 0, a % 2, 0});
-        }
-  }
-  std::sort(terms_.begin(), terms_.end(), [](const Term &a, const Term &b) { return a.dof < b.dof; });
-  terms_.erase(std::unique(terms_.begin(), terms_.end(), [](const Term &a, const Term &b) { return a.dof == b.dof; }),
-               terms_.end());
-  pairs_.clear();
-  for (Term &term : terms_)
-  {
-    if (pairs_.empty() || pairs_.back() != term.dof / 2)
-      pairs_.push_back(term.dof / 2);
-    term.column = pairs_.size() - 1;
-  }
-  found_.clear();
-  if (!is_constrained)
-    return local;
-
-  condensed_.reinit(terms_.size(), terms_.size());
-  for (Weight &weight : weights_)
-    weight.term = std::lower_bound(terms_.begin(), terms_.end(), weight.term,
-                                   [](const Term &term, const unsigned int dof) { return term.dof < dof; }) -
-                  terms_.begin();
-  // Both entries of a pair in the same order, so that a symmetric matrix stays symmetric to the last bit.
-  for (auto a = weights_.begin(); a != weights_.end(); ++a)
-    for (auto b = a; b != weights_.end(); ++b)
-    {
-      condensed_(a->term, b->term) += a->weight * b->weight * local(a->local, b->local);
-      if (a != b)
-        condensed_(b->term, a->term) += a->weight * b->weight * local(b->local, a->local);
-    }
-  for (unsigned int n = 0; n < terms_.size(); ++n)
-    terms_[n].local = n;
-  return condensed_;
-}
-
-// Finds the blocks of the pairs of the element in a row. Rows of a vertex, line or cell have the same columns, so the
-// last blocks are tried first.
-void SinglePrecisionMatrix::find(const unsigned int row)
-{
-  const unsigned int *columns = &columns_[first_block_[row]];
-  const std::size_t n_columns = first_block_[row + 1] - first_block_[row];
-  bool is_as_before = !found_.empty() && found_.back() < n_columns;
-  for (std::size_t k = 0; is_as_before && k < pairs_.size(); ++k)
-    is_as_before = columns[found_[k]] == pairs_[k];
-  if (is_as_before)
-    return;
-  found_.resize(pairs_.size());
-  unsigned int block = 0;
-  for (std::size_t k = 0; k < pairs_.size(); ++k)
-  {
-    while (block < n_columns && columns[block] < pairs_[k])
-      ++block;
-    AssertThrow(block < n_columns && columns[block] == pairs_[k], ExcInternalError());
-    found_[k] = block;
-  }
-}
-
-void SinglePrecisionMatrix::add(const FullMatrix<double> &local, const std::vector<Index> &dofs)
-{
-  const FullMatrix<double> &element = resolve(local, dofs);
+  const unsigned int at = layout().global_to_local(row);
+  const unsigned int *const begin = columns_.data() + first_block_[at / 2];
+  const unsigned int *const end = columns_.data() + first_block_[at / 2 + 1];
+  const unsigned int *block = begin;
   const double factor = 1. / scale_;
-  for (const Term &row : terms_)
+  double errors[2] = {0., 0.}; // of both components
+  for (Index k = 0; k < n_columns; ++k)
   {
-    find(row.dof / 2);
-    const double *added = &element(row.local, 0);
-    float *values = &values_[4 * first_block_[row.dof / 2] + 2 * (row.dof % 2)];
-    double errors[2] = {0., 0.}; // of both components
-    for (const Term &column : terms_)
-    {
-      float &entry = values[4 * found_[column.column] + column.dof % 2];
-      const double exact = entry + factor * added[column.local];
-      entry = static_cast<float>(exact);
-      errors[column.component] += exact - entry;
-    }
-    rest_[2 * row.dof] += static_cast<float>(errors[row.component]);
-    rest_[2 * row.dof + 1] += static_cast<float>(errors[1 - row.component]);
+    const unsigned int column = layout().global_to_local(columns[k]);
+    if (block == end || *block > column / 2) // columns of lower ranks come last in the layout
+      block = begin;
+    while (block != end && *block < column / 2)
+      ++block;
+    AssertThrow(block != end && *block == column / 2, ExcInternalError());
+    float &entry = values_[4 * (block - columns_.data()) + 2 * (at % 2) + column % 2];
+    const double exact = entry + factor * values[k];
+    entry = static_cast<float>(exact);
+    errors[component_[at] == component_[column] ? 0 : 1] += exact - entry;
   }
+  for (unsigned int i = 0; i < 2; ++i)
+    rest_[2 * at + i] += static_cast<float>(errors[i]);
 }
 
 // Sets an owned entry, and adds the error to the rest of its row.
@@ -328,15 +254,17 @@ void SinglePrecisionMatrix::make_symmetric()
 {
   const std::vector<unsigned int> owner = owners_of_ghosts(layout());
   const unsigned int n_owned = layout().locally_owned_size();
-  const Index first = layout().local_range().first;
   std::map<unsigned int, std::vector<Entry>> messages; // by rank
   for (unsigned int row = 0; row < n_owned; ++row)
     for_each_entry(row,
                    [&](const unsigned int column, const double value)
                    {
-                     if (column >= n_owned && layout().local_to_global(column) > first)
-                       messages[owner[column - n_owned]].push_back(
-                         {layout().local_to_global(column), layout().local_to_global(row), value / scale_});
+                     const Entry transposed = {layout().local_to_global(column), layout().local_to_global(row),
+                                               value / scale_};
+                     if (column >= n_owned && transposed.row > transposed.column)
+                       messages[owner[column - n_owned]].push_back(transposed);
+                     else if (column > row && column < n_owned)
+                       set(transposed, false);
                    });
   for (const auto &received : dealii::Utilities::MPI::some_to_some(layout().get_mpi_communicator(), messages))
     for (const Entry &entry : received.second)
@@ -399,3 +327,8 @@ SinglePrecisionMatrix::entries_of(const dealii::Utilities::MPI::Partitioner &wan
   return entries;
 }
 } // namespace latcon::continuum
+
+template void dealii::AffineConstraints<double>::distribute_local_to_global(
+  const dealii::FullMatrix<double> &, const dealii::Vector<double> &,
+  const std::vector<dealii::types::global_dof_index> &, latcon::continuum::SinglePrecisionMatrix &,
+  dealii::Vector<double> &, bool, std::integral_constant<bool, false>) const;

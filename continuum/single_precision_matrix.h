@@ -3,7 +3,6 @@
 #include "continuum/sheet.h"
 
 #include <deal.II/base/subscriptor.h>
-#include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <map>
@@ -27,6 +26,7 @@ class SinglePrecisionMatrix : public dealii::Subscriptor
 public:
   using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
   using Index = dealii::types::global_dof_index;
+  using value_type = double;
 
   /// Entry of a matrix in global indices.
   struct Entry
@@ -51,15 +51,16 @@ public:
   /// Multiplies by a factor [-], without rounding the entries again.
   SinglePrecisionMatrix &operator*=(double factor);
 
-  /// Adds an element matrix [N/m^2] for the unknowns 2 a + i of node a and component i, condensed by the constraints;
-  /// rows and columns of prescribed unknowns stay zero.
-  void add(const dealii::FullMatrix<double> &local, const std::vector<Index> &dofs);
+  /// Adds entries [N/m^2] to a row that this rank owns or adds to, for AffineConstraints::distribute_local_to_global().
+  void add(Index row, Index n_columns, const Index *columns, const double *values, bool elide_zero_values = false,
+           bool columns_are_sorted = false);
+  /// Leaves the diagonal of a constrained unknown zero.
+  void add(Index, Index, double) {}
 
   /// Sends what was added to rows of other ranks. Collective.
   void compress(dealii::VectorOperation::values operation);
 
-  /// Makes a matrix that is symmetric up to the order of its sums over ranks, and its errors, symmetric to the last
-  /// bit. Collective.
+  /// Makes a matrix that is symmetric up to the order of its sums, and its errors, symmetric to the last bit. Collective.
   void make_symmetric();
 
   /// Computes y = K x for vectors over the owned unknowns of the sheet; ghost entries are ignored. Collective.
@@ -87,24 +88,6 @@ public:
   Index n() const { return n_unknowns_; }
 
 private:
-  // Unknown to which an element adds.
-  struct Term
-  {
-    unsigned int dof;       // position in the layout
-    unsigned int local;     // row of the element matrix
-    unsigned int component; // 0 or 1
-    unsigned int column;    // number of its pair among those of the element
-  };
-  // Weight of an unknown of an element in a term.
-  struct Weight
-  {
-    unsigned int term; // position in the layout, then number of the term
-    unsigned int local;
-    double weight;
-  };
-
-  const dealii::FullMatrix<double> &resolve(const dealii::FullMatrix<double> &local, const std::vector<Index> &dofs);
-  void find(unsigned int row);
   void set(const Entry &entry, bool adds);
 
   const dealii::AffineConstraints<double> *constraints_ = nullptr;
@@ -118,25 +101,5 @@ private:
   std::vector<bool> component_;       // per position
   double scale_ = 1.;                 // of stored entries
   mutable Vector x_;                  // with ghost entries
-
-  // Of the current element:
-  std::vector<Term> terms_;     // by position
-  std::vector<Weight> weights_; // if an unknown is constrained, as the next
-  dealii::FullMatrix<double> condensed_;
-  std::vector<unsigned int> pairs_; // of terms_, by position
-  std::vector<unsigned int> found_; // blocks of pairs_ in the last row, from its first
 };
-
-/// Adds an element matrix to a matrix K of either precision, condensed by constraints, which are those of its sparsity.
-inline void add_element(const dealii::AffineConstraints<double> &constraints, const dealii::FullMatrix<double> &local,
-                        const std::vector<dealii::types::global_dof_index> &dofs, Sheet::Matrix &K)
-{
-  constraints.distribute_local_to_global(local, dofs, K);
-}
-/// The same for a matrix in single precision, which has its constraints.
-inline void add_element(const dealii::AffineConstraints<double> &, const dealii::FullMatrix<double> &local,
-                        const std::vector<dealii::types::global_dof_index> &dofs, SinglePrecisionMatrix &K)
-{
-  K.add(local, dofs);
-}
 } // namespace latcon::continuum

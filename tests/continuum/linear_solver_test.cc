@@ -73,7 +73,7 @@ struct Problem
                              for (unsigned int a = 0; a < local.m(); ++a)
                                for (unsigned int b = 0; b < local.n(); ++b)
                                  local(a, b) *= scale(contribution.dofs[b]);
-                             continuum::add_element(held, local, contribution.dofs, K);
+                             held.distribute_local_to_global(local, contribution.dofs, K);
                            });
       K.compress(dealii::VectorOperation::add);
     };

@@ -155,7 +155,7 @@ TEST(Multigrid, HasAPatchForEveryFreeDegreeOfFreedom)
                            dealii::FullMatrix<double> diagonal(contribution.dofs.size());
                            for (unsigned int a = 0; a < contribution.dofs.size(); ++a)
                              diagonal(a, a) = constraints.is_constrained(contribution.dofs[a]) ? 0. : 1.;
-                           K.add(diagonal, contribution.dofs);
+                           constraints.distribute_local_to_global(diagonal, contribution.dofs, K);
                          });
 
     // Each patch adds the inverse of the diagonal.

@@ -137,7 +137,8 @@ TEST(CrackRun, RefusesAnUnstableStepAndACrackThatDoesNotRun)
   EXPECT_THROW(run_crack(options), std::runtime_error);
 }
 
-// Either side wrong by 1 %: what the simulator has too much of, the exact solution lacks.
+// Either side wrong by 1 %: what the simulator has too much of, the exact solution lacks. verify_test.py has the claim.
+// theory-comparison.md, eqs. (S.2), (S.5), (S.8) and (S.9).
 TEST(SteadyCrackClaim, FailsForOnePercent)
 {
   const std::tuple<const char *, std::function<void(CrackRunOptions &)>, const char *> faults[] = {
@@ -146,29 +147,9 @@ TEST(SteadyCrackClaim, FailsForOnePercent)
   };
   for (const auto &[name, planted, row] : faults)
   {
-    const Results results = steady_cracks({3., {1.95}, 0., planted}).results;
+    const Results results = steady_cracks({3., {3.}, 0., planted}).results;
     EXPECT_GE(faults::failing(results, row), 1u) << name << "\n" << results.verdict_text(10);
   }
-}
-
-// The compared values are known to much better than one percent, so that an error of one percent anywhere is detected.
-// theory-comparison.md, eqs. (S.2), (S.5), (S.8) and (S.9).
-TEST(SteadyCrackClaim, HoldsInItsQuickVersion)
-{
-  const ClaimOutcome outcome = steady_crack_claim(true);
-  std::size_t speeds = 0;
-  for (const Result &row : outcome.results.rows())
-  {
-    EXPECT_NE(row.verdict(), Verdict::fails) << row.quantity << " " << row.error.value_or(-1.);
-    if (row.quantity.find("crack speed") == 0)
-    {
-      ++speeds;
-      EXPECT_LT(*row.tolerance, 0.005) << row.quantity;
-    }
-  }
-  EXPECT_EQ(speeds, 3u);
-  EXPECT_TRUE(outcome.results.all_hold());
-  EXPECT_EQ(outcome.tables.at("steady_crack").rows().size(), 3u);
 }
 
 } // namespace steady_crack_test
