@@ -256,16 +256,16 @@ void SinglePrecisionMatrix::make_symmetric()
   const unsigned int n_owned = layout().locally_owned_size();
   std::map<unsigned int, std::vector<Entry>> messages; // by rank
   for (unsigned int row = 0; row < n_owned; ++row)
-    for_each_entry(row,
-                   [&](const unsigned int column, const double value)
-                   {
-                     const Entry transposed = {layout().local_to_global(column), layout().local_to_global(row),
-                                               value / scale_};
-                     if (column >= n_owned && transposed.row > transposed.column)
-                       messages[owner[column - n_owned]].push_back(transposed);
-                     else if (column > row && column < n_owned)
-                       set(transposed, false);
-                   });
+    for_each_entry(
+      row,
+      [&](const unsigned int column, const double value)
+      {
+        const Entry transposed = {layout().local_to_global(column), layout().local_to_global(row), value / scale_};
+        if (column >= n_owned && transposed.row > transposed.column)
+          messages[owner[column - n_owned]].push_back(transposed);
+        else if (column > row && column < n_owned)
+          set(transposed, false);
+      });
   for (const auto &received : dealii::Utilities::MPI::some_to_some(layout().get_mpi_communicator(), messages))
     for (const Entry &entry : received.second)
       set(entry, false);

@@ -60,7 +60,8 @@ public:
   /// Sends what was added to rows of other ranks. Collective.
   void compress(dealii::VectorOperation::values operation);
 
-  /// Makes a matrix that is symmetric up to the order of its sums, and its errors, symmetric to the last bit. Collective.
+  /// Makes a matrix that is symmetric up to the order of its sums, and its errors, symmetric to the last bit.
+  /// Collective.
   void make_symmetric();
 
   /// Computes y = K x for vectors over the owned unknowns of the sheet; ghost entries are ignored. Collective.
