@@ -36,17 +36,6 @@ double mean_squared_rise(const double x)
 }
 } // namespace
 
-void check(const MaxwellFibres &fibres)
-{
-  const auto is_positive = [](const double x) { return x > 0. && std::isfinite(x); };
-  check_fibre(fibres.direction, fibres.weight, "Maxwell branches");
-  if (fibres.branches.empty())
-    throw InvalidMaterial("a family of Maxwell branches needs at least one branch");
-  for (const MaxwellBranch &branch : fibres.branches)
-    if (!is_positive(branch.modulus) || !is_positive(branch.relaxation_time))
-      throw InvalidMaterial("the modulus and the relaxation time of a Maxwell branch must be positive and finite");
-}
-
 FibreMemory::FibreMemory(std::vector<MaxwellFibres> families, const double gradient_length)
   : families_(std::move(families)), gradient_length_(gradient_length)
 {
@@ -54,7 +43,12 @@ FibreMemory::FibreMemory(std::vector<MaxwellFibres> families, const double gradi
     throw InvalidMaterial("fibre memory needs at least one family");
   for (const MaxwellFibres &fibres : families_)
   {
-    check(fibres);
+    check_fibre(fibres.direction, fibres.weight, "Maxwell branches");
+    if (fibres.branches.empty())
+      throw InvalidMaterial("a family of Maxwell branches needs at least one branch");
+    for (const auto &[modulus, time] : fibres.branches)
+      if (!(modulus > 0. && time > 0. && std::isfinite(modulus) && std::isfinite(time)))
+        throw InvalidMaterial("the modulus and the relaxation time of a Maxwell branch must be positive and finite");
     add(stretch_measure(fibres.direction, fibres.weight), fibres);
   }
   if (gradient_length == 0.)

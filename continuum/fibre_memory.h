@@ -25,10 +25,6 @@ struct MaxwellFibres
   double length = 0.; ///< l [m] > 0, undeformed; needed for the gradient part alone
 };
 
-/// Checks a family. Throws InvalidMaterial unless the direction is a unit vector to 1e-12, there is a branch, weight,
-/// moduli and relaxation times are positive, and all are finite.
-void check(const MaxwellFibres &fibres);
-
 /// Maxwell branches of a network of fibres, parallel to its elastic law and its viscosity (theory-viscoelastic.md, eq.
 /// (V.1)):
 ///   P = sum over families k and branches i of  c_k q_ki n_k (x) N_k,   q_ki' = E_i l_k' - q_ki / tau_i,   l_k = |F
@@ -42,7 +38,8 @@ class FibreMemory
 {
 public:
   /// Creates the law, with the gradient part of the micro-inertia length `gradient_length` l_d [m] unless that is 0.
-  /// Throws InvalidMaterial if there is no family or one is not valid, and as gradient_measures() does.
+  /// Throws InvalidMaterial if there is no family or one without branch, if a direction is not a unit vector to 1e-12,
+  /// or weights, moduli and relaxation times not positive and finite, and as gradient_measures() does.
   explicit FibreMemory(std::vector<MaxwellFibres> families, double gradient_length = 0.);
 
   const std::vector<MaxwellFibres> &families() const { return families_; }

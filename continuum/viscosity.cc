@@ -8,13 +8,6 @@
 
 namespace latcon::continuum
 {
-void check(const FibreDashpot &dashpot)
-{
-  check_fibre(dashpot.direction, dashpot.weight, "a dashpot");
-  if (!(dashpot.viscosity >= 0. && std::isfinite(dashpot.viscosity)))
-    throw InvalidMaterial("the viscosity of a dashpot must be finite and not negative");
-}
-
 FibreViscosity::FibreViscosity(std::vector<FibreDashpot> dashpots, const double gradient_length)
   : dashpots_(std::move(dashpots))
 {
@@ -23,7 +16,9 @@ FibreViscosity::FibreViscosity(std::vector<FibreDashpot> dashpots, const double 
   std::vector<StrainMeasure> gradients;
   for (const FibreDashpot &dashpot : dashpots_)
   {
-    check(dashpot);
+    check_fibre(dashpot.direction, dashpot.weight, "a dashpot");
+    if (!(dashpot.viscosity >= 0. && std::isfinite(dashpot.viscosity)))
+      throw InvalidMaterial("the viscosity of a dashpot must be finite and not negative");
     const double weight = dashpot.weight * dashpot.viscosity;
     strains_.push_back(stretch_measure(dashpot.direction, weight));
     if (gradient_length != 0.)

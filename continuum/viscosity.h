@@ -40,10 +40,6 @@ struct FibreDashpot
   double length = 0.;             ///< l [m] > 0, undeformed; needed for the gradient part alone
 };
 
-/// Checks a family. Throws InvalidMaterial unless the direction is a unit vector to 1e-12, the weight is positive, the
-/// viscosity is not negative, and all are finite.
-void check(const FibreDashpot &dashpot);
-
 /// Kelvin-Voigt damping of a network of fibres, each of which resists the rate of its own stretch l_k = |F N_k|
 /// (theory-continuum.md, eqs. (C.41), (C.42)):
 ///   R = (1/2) sum over dashpots of c_k eta_k (dl_k/dt)^2
@@ -55,7 +51,8 @@ class FibreViscosity : public Viscosity
 {
 public:
   /// Creates the law, with the gradient part of the micro-inertia length `gradient_length` l_d [m] unless that is 0.
-  /// Throws InvalidMaterial if there is no dashpot or one is not valid, and as gradient_measures() does.
+  /// Throws InvalidMaterial if there is no dashpot, a direction is not a unit vector to 1e-12, a weight not positive or
+  /// a viscosity negative, or any not finite, and as gradient_measures() does.
   explicit FibreViscosity(std::vector<FibreDashpot> dashpots, double gradient_length = 0.);
 
   void add_density(const FieldDerivatives &u, const FieldDerivatives &v, Order order, double rate_by_displacement,

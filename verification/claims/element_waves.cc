@@ -79,10 +79,7 @@ struct WaveSheet
   {
     Vector b = sheet.make_owned();
     A.vmult(b, x);
-    for (const auto i : sheet.owned())
-      if (sheet.conformity_constraints().is_constrained(i))
-        b(i) = 0.;
-    b.compress(dealii::VectorOperation::insert);
+    sheet.conformity_constraints().set_zero(b);
     return b;
   }
 
