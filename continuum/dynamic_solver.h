@@ -7,7 +7,6 @@
 #include "continuum/sheet.h"
 #include "continuum/solver_report.h"
 
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -61,7 +60,7 @@ struct EnergyLedger
   double kinetic = 0.;       ///< (1/2) v.M v, micro-inertia included
   double micro_kinetic = 0.; ///< contribution of micro-inertia to `kinetic`
   double dissipated = 0.;    ///< by viscosity and Maxwell branches
-  double work = 0.;     ///< done on the sheet by prescribed displacements, dead loads and the forces on released nodes
+  double work = 0.;          ///< done on the sheet by dead loads and the forces on released nodes
   double released = 0.; ///< extracted from the sheet at released nodes, included in -`work`; see DynamicSolver::release
   double imbalance = 0.; ///< stored + kinetic + dissipated - work, minus the initial stored + kinetic
 
@@ -79,71 +78,52 @@ struct EnergyLedger
 };
 
 /// Solves the equation of motion of a sheet at finite strain (total Lagrangian, implicit):
-///   M a + C(u, v) + Q(u, q) + dE/du(u) = lambda(t) L
+///   M a + C(u, v) + Q(u, q) + dE/du(u) = L
 /// (theory-continuum.md, eq. (C.40)), with M the consistent mass with micro-inertia, C the viscous forces, Q those of
-/// Maxwell branches with their overstresses q (theory-viscoelastic.md, eq. (V.1)) and L the dead loads. The load factor
-/// lambda(t) multiplies everything that BoundaryConditions prescribe: displacements, u(X, t) = lambda(t) u(X), weak
-/// normal gradients, and loads. A sheet without any condition moves freely.
+/// Maxwell branches with their overstresses q (theory-viscoelastic.md, eq. (V.1)) and L the dead loads. What
+/// BoundaryConditions prescribe, displacements, weak normal gradients and loads, is constant in time. A sheet without
+/// any condition moves freely.
 ///
 /// Internal and viscous forces are evaluated once per residual, at the mid-state u_(n+1-alpha_f), v_(n+1-alpha_f),
-/// those of Maxwell branches with the overstresses at its time; the load factor is the same mean of its values at both
-/// ends of the step. Newton's method solves each step for the displacement, with a tangent that is exact where it is
-/// assembled and kept while the residual falls a hundredfold. It halves a Newton step that leads to det F <= 0
-/// anywhere. The residual converges to relative_tolerance times the acting forces, or to the round-off of its own
-/// evaluation where that is larger (eq. (C.45)).
+/// those of Maxwell branches with the overstresses at its time. Newton's method solves each step for the displacement,
+/// with a tangent that is exact where it is assembled and kept while the residual falls a hundredfold. It halves a
+/// Newton step that leads to det F <= 0 anywhere. The residual converges to relative_tolerance times the acting forces,
+/// or to the round-off of its own evaluation where that is larger (eq. (C.45)).
 ///
-/// The velocity and acceleration of prescribed displacements follow from lambda(t) by differences over one time step:
-/// one-sided at the start, central afterwards. Newmark's formulas hold for the other unknowns; for prescribed ones they
-/// would let the velocity alternate for ever after a kink of lambda(t). A load factor must be defined one time step
-/// beyond the last. Periodic pairs constrain displacement increments and velocities, so
-/// an affine state with periodic fluctuations remains one.
+/// Periodic pairs constrain displacement increments and velocities, so an affine state with periodic fluctuations
+/// remains one.
 ///
 /// All functions are collective. Every exception is thrown on every rank.
 class DynamicSolver
 {
 public:
   using Vector = Sheet::Vector;
-  using LoadFactor = std::function<double(double time)>; ///< [-], of the time [s]
-  using Observer = std::function<void()>;                ///< called after every step
 
   /// Creates a solver; start() sets the initial state. `mesh`, the laws, `viscosity` and `memory` (nullptr: none) must
-  /// outlive the solver. An empty `load_factor` means 1 at all times. Throws InvalidInput for numbers out of range and
-  /// as Sheet does. With a viscosity the matrix of a Newton step is unsymmetric.
+  /// outlive the solver. Throws InvalidInput for numbers out of range and as Sheet does. With a viscosity the matrix of
+  /// a Newton step is unsymmetric.
   DynamicSolver(const Sheet::Mesh &mesh, const Constitution &constitution, BoundaryConditions conditions,
                 const Inertia &inertia, const DynamicSettings &settings, const Viscosity *viscosity = nullptr,
-                LoadFactor load_factor = LoadFactor(), const FibreMemory *memory = nullptr);
+                const FibreMemory *memory = nullptr);
 
-  /// Sets the initial state at `time` [s] by interpolating the fields `displacement` [m] and `velocity` [m/s]; a null
-  /// field is zero. Solves the equation of motion for the acceleration and resets the ledger. Throws InvalidInput if
-  /// the displacement of a constrained node differs from lambda(time) times the prescribed one by more than 1e-8 of the
-  /// sheet's extent; NonPhysicalState or LinearSolverFailed if the acceleration cannot be computed.
-  void start(const VectorField &displacement = VectorField(), const VectorField &velocity = VectorField(),
-             double time = 0.);
-
-  /// Sets the initial state from nodal vectors of sheet(), with or without ghost entries, for example those of a
-  /// StaticSolver on the same mesh with the same degree and conditions. Otherwise as above.
+  /// Sets the state at time 0 from nodal vectors of sheet(), `displacement` [m] and `velocity` [m/s], with or without
+  /// ghost entries, for example those of a StaticSolver on the same mesh with the same degree and conditions. Solves
+  /// the equation of motion for the acceleration and resets the ledger. Throws as check_start() does; NonPhysicalState
+  /// or LinearSolverFailed if the acceleration cannot be computed.
   ///
   /// Maxwell branches start relaxed, or with the overstresses of a sheet that was deformed suddenly to `displacement`
   /// from the displacements `relaxed`, one for each branch by its number; empty: relaxed. Throws InvalidInput for
   /// another number of them.
-  void start(const Vector &displacement, const Vector &velocity, double time = 0.,
-             const std::vector<Vector> &relaxed = {});
+  void start(const Vector &displacement, const Vector &velocity, const std::vector<Vector> &relaxed = {});
 
-  /// Checks nodal vectors as start() does. Throws InvalidInput if a value is not finite or differs from the
-  /// displacement prescribed at `time` [s]. Collective.
-  void check_start(const Vector &displacement, const Vector &velocity, double time = 0.) const;
-
-  /// Returns the prescribed nodal displacement [m] at `time` [s], zero at free nodes. Collective.
-  Vector prescribed_displacement(double time = 0.) const;
+  /// Throws InvalidInput if a value of the nodal vectors is not finite, their size is not that of sheet(), or the
+  /// displacement of a node differs from the prescribed one by more than 1e-8 of the sheet's extent. Collective.
+  void check_start(const Vector &displacement, const Vector &velocity) const;
 
   /// Advances the state by one time step. A step that does not converge is repeated in two halves, recursively up to
   /// max_step_halvings. Throws SolverFailed with the history if that fails too; the state is then unchanged. Throws
   /// InvalidInput before start().
   void step();
-
-  /// Advances by whole steps until the time is at least `end` [s]. Calls `observer` after every step. Throws as step()
-  /// does.
-  void run_until(double end, const Observer &observer = Observer());
 
   /// Releases nodes, for a crack that runs along an edge face by face. To be called after the caller has given faces of
   /// the mesh another boundary id, on which fewer components are prescribed: applies the conditions to the changed
@@ -165,13 +145,9 @@ public:
   double time() const { return time_; } ///< [s]
   /// Returns the number of time steps since start() that had to be divided.
   unsigned long n_divided_steps() const { return n_divided_steps_; }
-  double load_factor() const { return load_factor_; }
   const EnergyLedger &ledger() const { return ledger_; }
   /// Returns the energies of each branch by its number [J/m], which ledger() includes.
   const std::vector<BranchEnergy> &branch_energies() const { return branch_energies_; }
-
-  /// Returns the momentum [kg/s] per unit reference thickness, integral of rho v.
-  dealii::Tensor<1, 2> momentum() const;
 
   /// Returns the nodal reactions at unknowns with prescribed displacement, and the residual of the equation of motion
   /// at free ones [N/m], per unit reference thickness.
@@ -180,10 +156,6 @@ public:
   /// Returns the first Piola stresses [Pa] of viscosity and Maxwell branches at the points of the elastic energy, (p +
   /// 1)^2 Gauss points per cell, the cells on this rank in their order; empty without either.
   std::vector<dealii::Tensor<2, 2>> rate_stresses() const;
-
-  /// Returns the states at reference points [m] without the stresses of viscosity and Maxwell branches; see
-  /// Sheet::evaluate.
-  std::vector<PointState> evaluate(const std::vector<dealii::Point<2>> &points) const;
 
   // Nodal vectors with ghost entries.
   const Vector &displacement() const { return displacement_; } ///< [m]
@@ -197,48 +169,34 @@ public:
   const SolverReport &last_report() const { return report_; }
 
 private:
-  /// Derivatives of the load factor by time.
-  struct LoadFactorRates
-  {
-    double first = 0.;  ///< [1/s]
-    double second = 0.; ///< [1/s^2]
-  };
   struct Residual;
   struct Step;
 
-  void check_input() const;
+  static constexpr GradientLoad full_load{1.}; // of normal gradients, which are constant
+
   void check_loaded() const;
-  void set_up();
   void apply_conditions();
   double release_share(double time) const;
-  double load_factor_at(double time) const;
-  LoadFactorRates load_factor_rates(double time, double duration) const;
-  GradientLoad load() const;
-  void prescribe(Vector &x, double factor) const;
-  void end_rates(const Step &step, const Vector &u, Vector &v, Vector &a) const;
-  Vector interpolate(const VectorField &field) const;
   bool is_prescribed(dealii::types::global_dof_index i) const;
-  void begin(Vector &u, Vector &v, double time, const std::vector<Vector> &relaxed);
   Vector with_ghosts(const Vector &owned) const;
   void multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Vector &product) const;
   Residual evaluate(const Step &step, const Vector &u) const;
   Residual best_residual(const Step &step, const Vector &first, const Vector &second, Vector &u) const;
   template <class AnyMatrix>
   void weigh_and_add_mass(const Sheet &sheet, const dealii::AffineConstraints<double> &constraints, AnyMatrix &K) const;
-  Assembler level_assembler(double load_factor) const;
-  Assembler assembler(const Vector &v, const GradientLoad &load);
-  void assemble(const Vector &u, const Vector &v, const GradientLoad &load);
-  void record_multigrid_state(unsigned int before, const Vector &u, double load_factor);
+  Assembler level_assembler() const;
+  Assembler assembler(const Vector &v);
+  void assemble(const Vector &u, const Vector &v);
+  void record_multigrid_state(unsigned int before, const Vector &u);
   void restore_multigrid();
   std::string location_of_largest(const Vector &residual) const;
-  double norm_over_free(const Vector &x) const;
   double round_off(const Residual &state, const Vector &u) const;
   std::string attempt(Step &step, Vector &u);
   std::string advance(double duration, double end);
   std::string advance_in_parts(double duration, double end, unsigned int halvings);
   EnergyLedger ledger_after(const Step &step, const Vector &u, const Vector &v,
                             const std::vector<BranchEnergy> &branches) const;
-  void update_energies(EnergyLedger &ledger, const Vector &u, const Vector &v, double load_factor,
+  void update_energies(EnergyLedger &ledger, const Vector &u, const Vector &v,
                        const std::vector<BranchEnergy> &branches) const;
   double mean_duration() const { return (1. - settings_.rule.alpha_f) * duration_; } // to the mean state [s]
 
@@ -247,11 +205,10 @@ private:
   DynamicSettings settings_;
   double duration_; // of the current step or part of a step [s]
   RateForces rate_forces_; // with the history at the present time
-  LoadFactor given_load_factor_;
   std::unique_ptr<LinearSolver> linear_solver_;
   dealii::AffineConstraints<double> homogeneous_;       // conformity constraints, and prescribed unknowns at zero
-  Vector full_lift_;                                    // prescribed displacement at load factor 1, zero elsewhere
-  Vector loads_;                                        // nodal dead loads at load factor 1
+  Vector lift_;                                         // prescribed displacement, zero elsewhere
+  Vector loads_;                                        // nodal dead loads
   double smallest_cell_ = 0.;                           // extent [m]
   Sheet::Matrix full_mass_;                             // condensed by the conformity constraints alone: for forces
   Sheet::Matrix plain_mass_;                            // full_mass_ without micro-inertia
@@ -260,7 +217,6 @@ private:
 
   // State at which the linear solver last set up multigrid, with ghost entries: a restart rebuilds multigrid from it.
   Vector multigrid_displacement_;
-  double multigrid_load_factor_ = 0.;
 
   // Reactions at the last released nodes at the time of the release [N/m].
   Vector release_forces_;
@@ -269,12 +225,10 @@ private:
   double release_duration_ = 0.; // [s]
 
   bool has_started_ = false;
-  double start_time_ = 0.;
   double initial_energy_ = 0.;
   unsigned long n_steps_ = 0;
   unsigned long n_divided_steps_ = 0;
   double time_ = 0.;
-  double load_factor_ = 0.;
   Vector displacement_;
   Vector velocity_;
   Vector acceleration_;
@@ -288,12 +242,10 @@ void DynamicSolver::archive(Archive &archive)
 {
   if (has_released_)
     throw InvalidInput("a checkpoint after a release of nodes is not supported");
-  archive("start_time", start_time_);
   archive("initial_energy", initial_energy_);
   archive("steps", n_steps_);
   archive("divided_steps", n_divided_steps_);
   archive("time", time_);
-  archive("load_factor", load_factor_);
   archive("ledger", ledger_);
   if constexpr (Archive::loads)
     check_loaded();
@@ -303,7 +255,7 @@ void DynamicSolver::archive(Archive &archive)
   order.archive(archive, "acceleration", acceleration_);
   if (rate_forces_.n_branches() > 0)
   {
-    rate_forces_.archive(archive, displacement_, load_factor_);
+    rate_forces_.archive(archive, displacement_, full_load.factor);
     archive.records("branch_energies", branch_energies_);
     if (branch_energies_.size() != rate_forces_.n_branches())
       throw InvalidInput("the stored energies of branches are not those of the material");
@@ -312,7 +264,6 @@ void DynamicSolver::archive(Archive &archive)
   archive("linear_solver", *linear_solver_);
   if (linear_solver_->keeps_multigrid())
   {
-    archive("multigrid_load_factor", multigrid_load_factor_);
     order.archive(archive, "multigrid_displacement", multigrid_displacement_);
     if constexpr (Archive::loads)
       restore_multigrid(); // overwrites the diagonals, which are loaded next

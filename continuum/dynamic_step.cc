@@ -1,4 +1,4 @@
-// Newton's method for one time step of DynamicSolver.
+// Newton's method and energy balance for one time step of DynamicSolver.
 #include "continuum/dynamic_step.h"
 
 #include "continuum/errors.h"
@@ -18,10 +18,8 @@ namespace latcon::continuum
 {
 DynamicSolver::Residual DynamicSolver::evaluate(const Step &step, const Vector &u) const
 {
-  Vector v_1;
-  Vector a_1;
-  end_rates(step, u, v_1, a_1);
-  const double factor = step.mean_load_factor();
+  const Vector a_1 = step.last_acceleration(u);
+  const Vector v_1 = step.last_velocity(a_1);
   Residual state{with_ghosts(Step::mean(step.rule.alpha_f, step.u, u)),
                  with_ghosts(Step::mean(step.rule.alpha_f, step.v, v_1)),
                  sheet_.make_owned(),
@@ -32,16 +30,16 @@ DynamicSolver::Residual DynamicSolver::evaluate(const Step &step, const Vector &
   Vector inertial = sheet_.make_owned();
   Vector forces = sheet_.make_owned();
   multiply_by_mass(full_mass_, Step::mean(step.rule.alpha_m, step.a, a_1), inertial);
-  state.energy = sheet_.residual(state.u_mean, forces, state.magnitude, factor);
-  rate_forces_.add_forces(mean_duration(), state.u_mean, state.v_mean, step.mean_load(), forces, &state.magnitude);
+  state.energy = sheet_.residual(state.u_mean, forces, state.magnitude);
+  rate_forces_.add_forces(mean_duration(), state.u_mean, state.v_mean, full_load, forces, &state.magnitude);
   state.residual = inertial;
   state.residual += forces;
-  state.residual.add(-factor, loads_, -step.mean_release_share(), release_forces_);
-  state.free = norm_over_free(state.residual);
-  state.reference = std::sqrt(inertial.norm_sqr() + forces.norm_sqr() + factor * factor * loads_.norm_sqr());
+  state.residual.add(-1., loads_, -step.mean_release_share(), release_forces_);
+  state.free = norm_over_free(sheet_, homogeneous_, [&](const auto i) { return std::pow(state.residual(i), 2); });
+  state.reference = std::sqrt(inertial.norm_sqr() + forces.norm_sqr() + loads_.norm_sqr());
   Vector u_owned = sheet_.make_owned();
   u_owned = state.u_mean;
-  state.energy -= factor * (loads_ * u_owned);
+  state.energy -= loads_ * u_owned;
   if (!std::isfinite(state.free) || !std::isfinite(state.reference))
     throw NonPhysicalState("forces are not finite" + location_of_largest(state.residual));
   return state;
@@ -117,23 +115,23 @@ void DynamicSolver::weigh_and_add_mass(const Sheet &sheet, const AffineConstrain
 
 // Returns the assembler of this derivative on a coarser mesh. The sheet is taken at rest, which drops the unsymmetric
 // part of viscosity: it vanishes with the velocity. Maxwell branches are taken relaxed: coarser meshes have no history.
-Assembler DynamicSolver::level_assembler(const double load_factor) const
+Assembler DynamicSolver::level_assembler() const
 {
   return [=](const Sheet &level, const Vector &u, const AffineConstraints<double> &constraints, auto &K)
   {
-    level.tangent(u, constraints, K, load_factor);
+    level.tangent(u, constraints, K);
     RateForces relaxed = rate_forces_.on(level);
-    relaxed.start(u, load_factor, {});
-    relaxed.add_tangent(mean_duration(), u, level.make_ghosted(), {load_factor},
+    relaxed.start(u, full_load.factor, {});
+    relaxed.add_tangent(mean_duration(), u, level.make_ghosted(), full_load,
                         settings_.rule.gamma / (settings_.rule.beta * duration_), constraints, K);
     weigh_and_add_mass(level, constraints, K);
   };
 }
 
 // Returns the assembler of this derivative and its diagonals on the mesh of the sheet, at a mean velocity.
-Assembler DynamicSolver::assembler(const Vector &v, const GradientLoad &load)
+Assembler DynamicSolver::assembler(const Vector &v)
 {
-  return [&, load](const Sheet &, const Vector &u, const AffineConstraints<double> &constraints, auto &K)
+  return [&](const Sheet &, const Vector &u, const AffineConstraints<double> &constraints, auto &K)
   {
     const auto take_diagonal = [&](Vector &diagonal)
     {
@@ -141,52 +139,84 @@ Assembler DynamicSolver::assembler(const Vector &v, const GradientLoad &load)
         diagonal(i) = K.diag_element(i);
       diagonal.compress(VectorOperation::insert);
     };
-    sheet_.tangent(u, constraints, K, load.factor);
+    sheet_.tangent(u, constraints, K);
     take_diagonal(elastic_diagonal_);
-    rate_forces_.add_tangent(mean_duration(), u, v, load, settings_.rule.gamma / (settings_.rule.beta * duration_),
+    rate_forces_.add_tangent(mean_duration(), u, v, full_load, settings_.rule.gamma / (settings_.rule.beta * duration_),
                              constraints, K);
     weigh_and_add_mass(sheet_, constraints, K);
     take_diagonal(effective_diagonal_);
   };
 }
 
-void DynamicSolver::assemble(const Vector &u, const Vector &v, const GradientLoad &load)
+void DynamicSolver::assemble(const Vector &u, const Vector &v)
 {
-  linear_solver_->update(u, assembler(v, load), level_assembler(load.factor));
+  linear_solver_->update(u, assembler(v), level_assembler());
 }
 
 // Records the state at which the linear solver set up multigrid, if it has done so since the count `before`.
-void DynamicSolver::record_multigrid_state(const unsigned int before, const Vector &u, const double load_factor)
+void DynamicSolver::record_multigrid_state(const unsigned int before, const Vector &u)
 {
-  if (linear_solver_->n_set_ups() == before)
-    return;
-  multigrid_displacement_ = u;
-  multigrid_load_factor_ = load_factor;
+  if (linear_solver_->n_set_ups() != before)
+    multigrid_displacement_ = u;
 }
 
 void DynamicSolver::restore_multigrid()
 {
   const Vector at_rest = sheet_.make_ghosted();
-  linear_solver_->restore(multigrid_displacement_, assembler(at_rest, {multigrid_load_factor_}),
-                          level_assembler(multigrid_load_factor_));
+  linear_solver_->restore(multigrid_displacement_, assembler(at_rest), level_assembler());
 }
 
 // Returns the round-off of the residual, eq. (C.45) [N/m].
 double DynamicSolver::round_off(const Residual &state, const Vector &u) const
 {
-  double sum = 0.;
-  for (const types::global_dof_index i : sheet_.owned())
-    if (!homogeneous_.is_constrained(i))
-    {
-      const double of_stress = state.magnitude(i);
-      const double of_displacement = effective_diagonal_(i) * u(i);
-      // F = I + Grad u has a rounding error of epsilon even for small u, as in a wave of small amplitude.
-      const double of_strain = elastic_diagonal_(i) * smallest_cell_;
-      sum += of_stress * of_stress + of_displacement * of_displacement + of_strain * of_strain;
-    }
-  // Factor 4: computing a stress adds several rounding errors to those of the displacement.
-  return 4. * std::numeric_limits<double>::epsilon() *
-         std::sqrt(dealii::Utilities::MPI::sum(sum, sheet_.communicator()));
+  const auto square = [&](const types::global_dof_index i)
+  {
+    // F = I + Grad u has a rounding error of epsilon even for small u, as in a wave of small amplitude.
+    const double of_strain = elastic_diagonal_(i) * smallest_cell_;
+    return std::pow(state.magnitude(i), 2) + std::pow(effective_diagonal_(i) * u(i), 2) + of_strain * of_strain;
+  };
+  return residual_round_off * norm_over_free(sheet_, homogeneous_, square);
+}
+
+void DynamicSolver::update_energies(EnergyLedger &ledger, const Vector &u, const Vector &v,
+                                    const std::vector<BranchEnergy> &branches) const
+{
+  ledger.stored = sheet_.energy(with_ghosts(u));
+  for (const BranchEnergy &branch : branches)
+    ledger.stored += branch.stored;
+  Vector momenta = sheet_.make_owned();
+  multiply_by_mass(full_mass_, v, momenta);
+  ledger.kinetic = 0.5 * (momenta * v);
+  ledger.micro_kinetic = 0.;
+  if (inertia_.length > 0.)
+  {
+    multiply_by_mass(plain_mass_, v, momenta);
+    ledger.micro_kinetic = ledger.kinetic - 0.5 * (momenta * v);
+  }
+}
+
+// Returns the ledger at the end of a step with displacement u, velocity v and energies of branches.
+EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, const Vector &v,
+                                         const std::vector<BranchEnergy> &branches) const
+{
+  EnergyLedger ledger = ledger_;
+  update_energies(ledger, u, v, branches);
+
+  Vector rise = u;
+  rise -= step.u;
+  Vector rate = rise;
+  rate *= 1. / step.dt;
+  ledger.dissipated +=
+    step.dt * rate_forces_.dissipation(with_ghosts(Step::mean(0.5, step.u, u)), with_ghosts(rate), full_load);
+  for (std::size_t i = 0; i < branches.size(); ++i)
+    ledger.dissipated += branches[i].dissipated - branch_energies_[i].dissipated;
+
+  // Nodes with prescribed displacement do not move.
+  const double released = -0.5 * (step.first_release_share + step.last_release_share) * (release_forces_ * rise);
+  ledger.released += released;
+  ledger.work += loads_ * rise - released;
+  ledger.imbalance = ledger.stored + ledger.kinetic + ledger.dissipated - ledger.work - initial_energy_;
+  return ledger;
 }
 
 // Solves a step for the displacement `u` at its end. Returns the reason of failure, empty on success.
@@ -200,11 +230,7 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
     {
       Vector rise = sheet_.make_owned();
       rise.add(share * step.dt, step.v, share * 0.5 * step.dt * step.dt, step.a);
-      for (const types::global_dof_index i : sheet_.owned())
-        if (homogeneous_.is_constrained(i) && !sheet_.conformity_constraints().is_constrained(i))
-          rise(i) = step.last_load_factor * full_lift_(i) - step.u(i);
-      rise.compress(VectorOperation::insert);
-      sheet_.conformity_constraints().distribute(rise);
+      homogeneous_.distribute(rise);
       rise += step.u;
       return rise;
     };
@@ -216,20 +242,16 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
       [&](const Residual &at, const Vector &, const double forcing, const bool keeps_tangent, Vector &change)
     {
       const unsigned int set_ups = linear_solver_->n_set_ups();
-      const GradientLoad load = step.mean_load();
       if (!keeps_tangent)
       {
-        assemble(at.u_mean, at.v_mean, load);
+        assemble(at.u_mean, at.v_mean);
         tangent_at = at.u_mean;
       }
       Vector rhs = at.residual;
       rhs *= -1.;
-      for (const types::global_dof_index i : sheet_.owned())
-        if (homogeneous_.is_constrained(i))
-          rhs(i) = 0.;
-      rhs.compress(VectorOperation::insert);
+      homogeneous_.set_zero(rhs);
       const unsigned int iterations = linear_solver_->solve(change, rhs, forcing);
-      record_multigrid_state(set_ups, tangent_at, load.factor);
+      record_multigrid_state(set_ups, tangent_at);
       homogeneous_.distribute(change);
       return NewtonStep{iterations, 0.};
     };
@@ -238,7 +260,7 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
       {[&](const Vector &at) { return evaluate(step, at); },
        [this](const Residual &at, const Vector &there) { return round_off(at, there); }, solve, nullptr,
        [this](const Residual &at) { return ", the largest residual is" + location_of_largest(at.residual); }});
-    return newton.solve(u, state, number, step.last_load_factor, 0, report_.iterations);
+    return newton.solve(u, state, number, full_load.factor, 0, report_.iterations);
   }
   catch (const NonPhysicalState &failure)
   {

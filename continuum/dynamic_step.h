@@ -14,20 +14,9 @@ struct DynamicSolver::Step
   Vector u;
   Vector v;
   Vector a;
-  double first_load_factor;
-  double last_load_factor;
   double first_release_share;
   double last_release_share;
-  LoadFactorRates last_rates; // at the end
 
-  double mean_load_factor() const { return rule.alpha_f * first_load_factor + (1. - rule.alpha_f) * last_load_factor; }
-  /// Rate of the load factor in the middle of the step [1/s].
-  double load_rate() const { return (last_load_factor - first_load_factor) / dt; }
-  GradientLoad mean_load() const
-  {
-    const double first = 2. * load_rate() - last_rates.first; // to second order
-    return {mean_load_factor(), rule.alpha_f * first + (1. - rule.alpha_f) * last_rates.first};
-  }
   double mean_release_share() const
   {
     return rule.alpha_f * first_release_share + (1. - rule.alpha_f) * last_release_share;

@@ -6,6 +6,7 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/fe/fe_interface_values.h>
+#include <deal.II/grid/filtered_iterator.h>
 
 #include <cmath>
 
@@ -15,21 +16,6 @@ namespace latcon::continuum
 {
 namespace
 {
-// Values of the fields on one side of a face.
-struct Side
-{
-  std::vector<Tensor<2, 2>> gradients;
-  std::vector<Tensor<3, 2>> hessians;
-
-  void read(const FEFaceValuesBase<2> &values, const Sheet::Vector &u)
-  {
-    gradients.resize(values.n_quadrature_points);
-    hessians.resize(values.n_quadrature_points);
-    values[FEValuesExtractors::Vector(0)].get_function_gradients(u, gradients);
-    values[FEValuesExtractors::Vector(0)].get_function_hessians(u, hessians);
-  }
-};
-
 class FaceIntegrator
 {
 public:
@@ -51,7 +37,13 @@ public:
     const double h = std::min(cell->measure() / cell->face(at.face)->measure(),
                               at.neighbor->measure() / at.neighbor->face(at.neighbor_face)->measure());
     for (unsigned int s = 0; s < 2; ++s)
-      sides_[s].read(values_.get_fe_face_values(s), u_);
+    {
+      gradients_[s].resize(values_.n_quadrature_points);
+      hessians_[s].resize(values_.n_quadrature_points);
+      const auto &side = values_.get_fe_face_values(s)[FEValuesExtractors::Vector(0)];
+      side.get_function_gradients(u_, gradients_[s]);
+      side.get_function_hessians(u_, hessians_[s]);
+    }
     const double p = sheet_.degree();
     double sum = 0.;
     for (unsigned int q = 0; q < values_.n_quadrature_points; ++q)
@@ -63,13 +55,13 @@ public:
       for (unsigned int s = 0; s < 2; ++s)
       {
         const double sign = s == 0 ? 1. : -1.;
-        Tensor<2, 2> F = sides_[s].gradients[q];
+        Tensor<2, 2> F = gradients_[s][q];
         slope_jump += sign * (F * N);
         for (unsigned int i = 0; i < 2; ++i)
           F[i][i] += 1.;
-        P_jump += sign * laws.first_piola_stress(values_.get_quadrature_points()[q], F, sides_[s].hessians[q]);
+        P_jump += sign * laws.first_piola_stress(values_.get_quadrature_points()[q], F, hessians_[s][q]);
         if (sheet_.has_gradient())
-          double_traction_jump += sign * ((laws.double_stress(F, sides_[s].hessians[q]) * N) * N);
+          double_traction_jump += sign * ((laws.double_stress(F, hessians_[s][q]) * N) * N);
       }
       double at_point = h / (2. * p * shear_modulus_) * (P_jump * N).norm_square();
       if (sheet_.has_gradient())
@@ -86,7 +78,8 @@ private:
   FEInterfaceValues<2> values_;
   double shear_modulus_;
   double normal_stiffness_;
-  Side sides_[2];
+  std::vector<Tensor<2, 2>> gradients_[2]; // on both sides of the face
+  std::vector<Tensor<3, 2>> hessians_[2];
 };
 } // namespace
 
@@ -97,12 +90,12 @@ Vector<float> error_indicators(const Sheet &sheet, const Sheet::Vector &u)
                    [&]
                    {
                      FaceIntegrator squared_jumps(sheet, u);
-                     for (const auto &cell : sheet.dof_handler().active_cell_iterators())
+                     for (const auto &cell :
+                          sheet.dof_handler().active_cell_iterators() | IteratorFilters::LocallyOwnedCell())
                      {
                        double sum = 0.;
-                       if (cell->is_locally_owned())
-                         for (const LiftedFace &face : lifted_faces(sheet, cell))
-                           sum += face.condition == nullptr ? squared_jumps(cell, face) : 0.;
+                       for (const LiftedFace &face : lifted_faces(sheet, cell))
+                         sum += face.condition == nullptr ? squared_jumps(cell, face) : 0.;
                        eta[cell->active_cell_index()] = std::sqrt(sum);
                      }
                    });

@@ -3,24 +3,26 @@
 #include "continuum/collective.h"
 #include "continuum/errors.h"
 #include "support/atomic_file.h"
+#include "support/full_precision.h"
 #include "support/pvd.h"
+#include "support/text_wrap.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_dgq.h>
+#include <deal.II/fe/fe_tools.h>
+#include <deal.II/grid/filtered_iterator.h>
 #include <deal.II/numerics/data_out.h>
 #include <deal.II/numerics/data_postprocessor.h>
 
 #include <boost/iostreams/device/back_inserter.hpp>
 #include <boost/iostreams/stream.hpp>
 
-#include <filesystem>
-#include <iomanip>
+#include <initializer_list>
 #include <limits>
-#include <optional>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 using namespace dealii;
 
@@ -28,16 +30,28 @@ namespace latcon::continuum
 {
 namespace
 {
-// Computes the fields that are functions of the derivatives of displacement. Four further components, if there are,
-// are a stress P_iJ that adds to that of the laws.
+// Computes the fields that are functions of the derivatives of displacement.
 class LocalFields : public DataPostprocessor<2>
 {
 public:
-  explicit LocalFields(const Constitution &laws) : laws_(laws) {}
+  // @param stresses to be added to those of the laws: the polynomials through their values at the Gauss points of the
+  // cells on this rank; empty for none
+  LocalFields(const Sheet &sheet, const std::vector<Tensor<2, 2>> &stresses)
+    : laws_(sheet.constitution()), stresses_(stresses), first_stress_(sheet.mesh().n_active_cells())
+  {
+    const FE_DGQArbitraryNodes<2> element(QGauss<1>(sheet.degree() + 1));
+    const QIterated<2> points_of_output(QTrapezoid<1>(), sheet.degree());
+    interpolation_.reinit(points_of_output.size(), element.n_dofs_per_cell());
+    FETools::compute_interpolation_to_quadrature_points_matrix(element, points_of_output, interpolation_);
+    std::size_t next = 0;
+    for (const auto &cell : sheet.mesh().active_cell_iterators() | IteratorFilters::LocallyOwnedCell())
+      first_stress_[cell->active_cell_index()] = std::exchange(next, next + element.n_dofs_per_cell());
+  }
 
   void evaluate_vector_field(const DataPostprocessorInputs::Vector<2> &inputs,
                              std::vector<Vector<double>> &computed) const override
   {
+    const std::size_t first_stress = first_stress_[inputs.get_cell<2>()->active_cell_index()];
     for (unsigned int p = 0; p < computed.size(); ++p)
     {
       Tensor<2, 2> F;
@@ -49,10 +63,8 @@ public:
         G[i] = inputs.solution_hessians[p][i];
       }
       Tensor<2, 2> P = laws_.first_piola_stress(inputs.evaluation_points[p], F, G);
-      if (inputs.solution_values[p].size() > 2)
-        for (unsigned int i = 0; i < 2; ++i)
-          for (unsigned int J = 0; J < 2; ++J)
-            P[i][J] += inputs.solution_values[p](2 + 2 * i + J);
+      for (unsigned int k = 0; k < interpolation_.n() && !stresses_.empty(); ++k)
+        P += interpolation_(p, k) * stresses_[first_stress + k];
       const Tensor<2, 2> sigma = cauchy_stress(P, F);
       for (unsigned int i = 0; i < 2; ++i)
         for (unsigned int J = 0; J < 2; ++J)
@@ -96,72 +108,30 @@ public:
 
   UpdateFlags get_needed_update_flags() const override
   {
-    return update_values | update_gradients | update_hessians | update_quadrature_points;
+    return update_gradients | update_hessians | update_quadrature_points;
   }
 
 private:
   const Constitution &laws_;
+  const std::vector<Tensor<2, 2>> &stresses_;
+  std::vector<std::size_t> first_stress_; // of each active cell
+  FullMatrix<double> interpolation_;      // from the Gauss points to the points of the output
 };
 
-// Displacement u of a sheet, and a stress that is the polynomial through its values at the Gauss points of a cell.
-class StressedSheet
-{
-public:
-  StressedSheet(const Sheet &sheet, const Sheet::Vector &u, const std::vector<Tensor<2, 2>> &stresses)
-    : element_(sheet.element(), 1, FE_DGQArbitraryNodes<2>(QGauss<1>(sheet.degree() + 1)), 4), dofs_(sheet.mesh())
-  {
-    dofs_.distribute_dofs(element_);
-    IndexSet relevant;
-    DoFTools::extract_locally_relevant_dofs(dofs_, relevant);
-    Sheet::Vector values(dofs_.locally_owned_dofs(), sheet.communicator());
-    const unsigned int n_points = element_.base_element(1).n_dofs_per_cell();
-    const unsigned int n_displacements = sheet.element().n_dofs_per_cell();
-    std::vector<types::global_dof_index> of_sheet(n_displacements), own(element_.n_dofs_per_cell());
-    std::size_t point = 0;
-    for (const auto &cell : dofs_.active_cell_iterators())
-      if (cell->is_locally_owned())
-      {
-        typename DoFHandler<2>::active_cell_iterator(&sheet.mesh(), cell->level(), cell->index(), &sheet.dof_handler())
-          ->get_dof_indices(of_sheet);
-        cell->get_dof_indices(own);
-        for (unsigned int a = 0; a < own.size(); ++a)
-        {
-          const auto [base, index] = element_.system_to_base_index(a);
-          const unsigned int component = base.second; // of the stress
-          values(own[a]) = base.first == 0 ? u(of_sheet[index]) : stresses[point + index][component / 2][component % 2];
-        }
-        point += n_points;
-      }
-    values.compress(VectorOperation::insert);
-    values_.reinit(dofs_.locally_owned_dofs(), relevant, sheet.communicator());
-    values_ = values;
-  }
-
-  const DoFHandler<2> &dofs() const { return dofs_; }
-  const Sheet::Vector &values() const { return values_; }
-
-private:
-  FESystem<2> element_;
-  DoFHandler<2> dofs_;
-  Sheet::Vector values_;
-};
-
-template <class Write>
-void as_output_failed(const Write &write)
+// Replaces a file by the parts of a text. The text of a large sheet is not copied.
+void replace(const std::filesystem::path &path, const std::initializer_list<std::string_view> parts)
 {
   try
   {
-    write();
+    support::AtomicFile file(path);
+    for (const std::string_view part : parts)
+      file.write(part);
+    file.commit(support::Sync::no);
   }
   catch (const support::OutputError &error)
   {
     throw OutputFailed(error.what());
   }
-}
-
-void write_whole(const std::filesystem::path &path, const std::string &text)
-{
-  as_output_failed([&] { support::write_atomically(path, text, support::Sync::no); });
 }
 
 // deal.II writes the date in a comment regardless of its flags; equal fields must give equal files.
@@ -172,34 +142,17 @@ std::string without_comment(std::string text)
   return from < to && to != std::string::npos ? text.erase(from, to + 4 - from) : text;
 }
 
-std::string frame_name(const std::string &name, const std::size_t frame)
-{
-  std::ostringstream out;
-  out << name << "_" << std::setfill('0') << std::setw(4) << frame;
-  return out.str();
-}
-
-// Writes a VTU text with the time as field data; deal.II's flag for it writes single precision. The text of a large
-// sheet is not copied.
+// Writes a VTU text with the time as field data; deal.II's flag for it writes single precision.
 void write_with_time(const std::filesystem::path &path, const std::string_view vtu, const double time)
 {
   const std::string_view grid = "<UnstructuredGrid>";
   const std::size_t at = vtu.find(grid);
   if (at == std::string_view::npos)
     throw OutputFailed("the VTU text contains no unstructured grid");
-  std::ostringstream field;
-  field << std::setprecision(17)
-        << "\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">"
-        << time << "</DataArray>\n</FieldData>";
-  as_output_failed(
-    [&]
-    {
-      support::AtomicFile file(path);
-      file.write(vtu.substr(0, at + grid.size()));
-      file.write(field.str());
-      file.write(vtu.substr(at + grid.size()));
-      file.commit(support::Sync::no);
-    });
+  const std::string field =
+    "\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" +
+    support::full_precision(time) + "</DataArray>\n</FieldData>";
+  replace(path, {vtu.substr(0, at + grid.size()), field, vtu.substr(at + grid.size())});
 }
 } // namespace
 
@@ -229,16 +182,15 @@ void FieldWriter::add_frame(const DynamicSolver &solver)
 void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v,
                             const std::vector<Tensor<2, 2>> &rate_stresses)
 {
-  if (!(time > last_time()))
-    throw InvalidInput("the time of a frame must be larger than that of the previous frame");
+  require(time > last_time(), "the time of a frame must be larger than that of the previous frame");
 
-  const std::string frame = frame_name(name_, frames_.size());
+  const std::string frame = frame_name(frames_.size());
   const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(communicator_);
   const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(communicator_);
   const auto piece = [&](const unsigned int r)
   { return n_ranks == 1 ? frame + ".vtu" : frame + "." + std::to_string(r) + ".vtu"; };
 
-  const LocalFields local_fields(sheet.constitution());
+  const LocalFields local_fields(sheet, rate_stresses);
   DataOut<2> output;
   const std::vector<DataComponentInterpretation::DataComponentInterpretation> vector(
     2, DataComponentInterpretation::component_is_part_of_vector);
@@ -252,18 +204,11 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
   flags.print_date_and_time = false; // equal fields give equal files
   flags.write_higher_order_cells = sheet.degree() > 1;
   output.set_flags(flags);
-  const std::vector<std::string> names(2, "displacement");
-  output.add_data_vector(sheet.dof_handler(), u, names, vector); // communicates, so outside the deferred work
+  // Communicates, so outside the deferred work.
+  output.add_data_vector(sheet.dof_handler(), u, std::vector<std::string>(2, "displacement"), vector);
   if (v != nullptr)
     output.add_data_vector(sheet.dof_handler(), *v, std::vector<std::string>(2, "velocity"), vector);
-  std::optional<StressedSheet> stressed;
-  if (rate_stresses.empty())
-    output.add_data_vector(sheet.dof_handler(), u, local_fields);
-  else
-  {
-    stressed.emplace(sheet, u, rate_stresses);
-    output.add_data_vector(stressed->dofs(), stressed->values(), local_fields);
-  }
+  output.add_data_vector(sheet.dof_handler(), u, local_fields);
   run_collectively(communicator_,
                    [&]
                    {
@@ -288,7 +233,7 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
                          pieces.push_back(piece(r));
                        std::ostringstream text;
                        output.write_pvtu_record(text, pieces);
-                       write_whole(directory_ / file_of(frames_.size() - 1), without_comment(text.str()));
+                       replace(directory_ / file_of(frames_.size() - 1), {without_comment(text.str())});
                      });
   write_collection();
 }
@@ -296,13 +241,18 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
 void FieldWriter::check_loaded() const
 {
   for (std::size_t frame = 0; frame < frames_.size(); ++frame)
-    if (frames_[frame].n_pieces == 0 || (frame > 0 && !(frames_[frame].time > frames_[frame - 1].time)))
-      throw InvalidInput("the stored times of frames do not increase, or a frame has no pieces");
+    require(frames_[frame].n_pieces > 0 && (frame == 0 || frames_[frame].time > frames_[frame - 1].time),
+            "the stored times of frames do not increase, or a frame has no pieces");
+}
+
+std::string FieldWriter::frame_name(const std::size_t frame) const
+{
+  return name_ + support::formatted("_%04zu", frame);
 }
 
 std::string FieldWriter::file_of(const std::size_t frame) const
 {
-  return frame_name(name_, frame) + (frames_[frame].n_pieces == 1 ? ".vtu" : ".pvtu");
+  return frame_name(frame) + (frames_[frame].n_pieces == 1 ? ".vtu" : ".pvtu");
 }
 
 void FieldWriter::write_collection() const
@@ -315,7 +265,7 @@ void FieldWriter::write_collection() const
                      std::vector<support::PvdFile> files;
                      for (std::size_t frame = 0; frame < frames_.size(); ++frame)
                        files.push_back({frames_[frame].time, file_of(frame)});
-                     write_whole(collection(), support::pvd_text(files));
+                     replace(collection(), {support::pvd_text(files)});
                    });
 }
 

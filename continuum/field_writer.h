@@ -18,7 +18,7 @@ namespace latcon::continuum
 /// components in row-major order (current index first). Cells are Lagrange cells of the degree of the elements.
 ///
 /// Every file is replaced atomically, pieces before the files that refer to them, so that the series is readable at any
-/// moment. Times are written with 17 significant digits.
+/// moment. Times are written in full precision.
 class FieldWriter
 {
 public:
@@ -73,6 +73,7 @@ private:
   void check_loaded() const;
   void add_frame(double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v,
                  const std::vector<dealii::Tensor<2, 2>> &rate_stresses);
+  std::string frame_name(std::size_t frame) const;
   std::string file_of(std::size_t frame) const;
 
   MPI_Comm communicator_;

@@ -4,9 +4,12 @@
 #include "continuum/sheet.h"
 #include "continuum/solver_report.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +33,21 @@ struct NewtonStep
   unsigned int linear_iterations; ///< 0 if direct
   double slope; ///< directional derivative of the energy along the step [J/m]; used only if energy_noise is given
 };
+
+/// Returns the square root of the sum of `square(i)` over the unknowns i that `constraints` leave free. Collective.
+template <class Square>
+double norm_over_free(const Sheet &sheet, const dealii::AffineConstraints<double> &constraints, const Square &square)
+{
+  double sum = 0.;
+  for (const dealii::types::global_dof_index i : sheet.owned())
+    if (!constraints.is_constrained(i))
+      sum += square(i);
+  return std::sqrt(dealii::Utilities::MPI::sum(sum, sheet.communicator()));
+}
+
+/// Round-off of a residual [N/m] relative to the norm of its rounded terms, eqs. (C.19) and (C.45). Factor 4: computing
+/// a stress adds several rounding errors to those of the displacement.
+constexpr double residual_round_off = 4. * std::numeric_limits<double>::epsilon();
 
 /// Newton's method with a line search that halves the step (theory-continuum.md, "Weak form and Newton"). StaticSolver
 /// and DynamicSolver pass their equations as functions of the nodal displacement u [m]; this class controls tolerance,

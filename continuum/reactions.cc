@@ -6,6 +6,7 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_values.h>
+#include <deal.II/grid/filtered_iterator.h>
 
 using namespace dealii;
 
@@ -54,13 +55,12 @@ void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector
         cell->get_dof_indices(dofs);
         sheet.conformity_constraints().distribute_local_to_global(forces, dofs, boundary.tractions);
       };
-      for (const auto &cell : sheet.dof_handler().active_cell_iterators())
-        if (cell->is_locally_owned())
-          for (const unsigned int face : cell->face_indices())
-            if (cell->at_boundary(face))
-              for (HeldBoundary &boundary : boundaries)
-                if (cell->face(face)->boundary_id() == boundary.id)
-                  add(cell, face, boundary);
+      for (const auto &cell : sheet.dof_handler().active_cell_iterators() | IteratorFilters::LocallyOwnedCell())
+        for (const unsigned int face : cell->face_indices())
+          if (cell->at_boundary(face))
+            for (HeldBoundary &boundary : boundaries)
+              if (cell->face(face)->boundary_id() == boundary.id)
+                add(cell, face, boundary);
     });
   for (HeldBoundary &boundary : boundaries)
     boundary.tractions.compress(VectorOperation::add);
@@ -78,14 +78,10 @@ std::map<types::boundary_id, Tensor<1, 2>> boundary_reactions(const Sheet &sheet
       {id, DoFTools::extract_boundary_dofs(sheet.dof_handler(), components, {id}), sheet.make_owned(), {}});
   integrate_tractions(sheet, u, boundaries);
 
+  const std::vector<IndexSet> owned = DoFTools::locally_owned_dofs_per_component(sheet.dof_handler());
   for (unsigned int component = 0; component < 2; ++component)
-  {
-    ComponentMask mask(2, false);
-    mask.set(component, true);
-    for (const types::global_dof_index i : DoFTools::extract_dofs(sheet.dof_handler(), mask))
+    for (const types::global_dof_index i : owned[component])
     {
-      if (!sheet.owned().is_element(i))
-        continue;
       double rest = residual(i);
       unsigned int n = 0;
       for (const HeldBoundary &boundary : boundaries)
@@ -98,7 +94,6 @@ std::map<types::boundary_id, Tensor<1, 2>> boundary_reactions(const Sheet &sheet
         if (boundary.dofs.is_element(i))
           boundary.force[component] += boundary.tractions(i) + rest / n;
     }
-  }
 
   std::map<types::boundary_id, Tensor<1, 2>> forces;
   for (const HeldBoundary &boundary : boundaries)

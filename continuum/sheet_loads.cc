@@ -5,6 +5,7 @@
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
+#include <deal.II/grid/filtered_iterator.h>
 
 #include <cmath>
 
@@ -24,11 +25,16 @@ Sheet::Vector Sheet::loads() const
       const unsigned int n = element_.n_dofs_per_cell();
       dealii::Vector<double> local(n);
       std::vector<types::global_dof_index> dofs(n);
-      const auto component = [this](const unsigned int a) { return element_.system_to_component_index(a).first; };
-      for (const auto &cell : dof_handler_.active_cell_iterators())
+      // Adds the work of forces on component i of the displacement and on its gradient.
+      const auto add = [&](const FEValuesBase<2> &at, const unsigned int q, const unsigned int i, const double on_value,
+                           const Tensor<1, 2> &on_gradient)
       {
-        if (!cell->is_locally_owned())
-          continue;
+        for (unsigned int a = 0; a < n; ++a)
+          if (element_.system_to_component_index(a).first == i)
+            local[a] += (on_value * at.shape_value(a, q) + on_gradient * at.shape_grad(a, q)) * at.JxW(q);
+      };
+      for (const auto &cell : dof_handler_.active_cell_iterators() | IteratorFilters::LocallyOwnedCell())
+      {
         local = 0.;
         if (conditions_.body_force)
         {
@@ -37,14 +43,11 @@ Sheet::Vector Sheet::loads() const
           for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
             for (unsigned int i = 0; i < 2; ++i)
             {
-              const double f = force->value(values.quadrature_point(q), i);
               // (1 - l^2 Laplace) f times a shape function, integrated by parts once.
               Tensor<1, 2> slope;
               if (length > 0.)
                 slope = length * length * force->gradient(values.quadrature_point(q), i);
-              for (unsigned int a = 0; a < n; ++a)
-                if (component(a) == i)
-                  local[a] += (f * values.shape_value(a, q) + slope * values.shape_grad(a, q)) * values.JxW(q);
+              add(values, q, i, force->value(values.quadrature_point(q), i), slope);
             }
         }
         for (const unsigned int face : cell->face_indices())
@@ -70,11 +73,7 @@ Sheet::Vector Sheet::loads() const
               if (conditions_.body_force && conditions_.body_force->length > 0.)
                 on_value -=
                   std::pow(conditions_.body_force->length, 2) * (conditions_.body_force->force->gradient(X, i) * N);
-              for (unsigned int a = 0; a < n; ++a)
-                if (component(a) == i)
-                  local[a] += (on_value * face_values.shape_value(a, q) +
-                               on_normal_gradient * (face_values.shape_grad(a, q) * N)) *
-                              face_values.JxW(q);
+              add(face_values, q, i, on_value, on_normal_gradient * N);
             }
           }
         }
@@ -96,10 +95,8 @@ void Sheet::add_mass(const double density, const double inertia_length, const Af
   FullMatrix<double> local(n, n);
   std::vector<types::global_dof_index> cell_dofs(n);
   std::vector<types::global_dof_index> dofs(n); // by node and component
-  for (const auto &cell : dof_handler_.active_cell_iterators())
+  for (const auto &cell : dof_handler_.active_cell_iterators() | IteratorFilters::LocallyOwnedCell())
   {
-    if (!cell->is_locally_owned())
-      continue;
     values.reinit(cell);
     cell->get_dof_indices(cell_dofs);
     local = 0.;

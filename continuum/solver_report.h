@@ -46,7 +46,6 @@ struct SolverReport
   SolverTimes times;
   std::vector<NewtonIteration> iterations;
   std::vector<LoadStep> load_steps;
-  double load_factor = 0.; ///< reached [-]
 
   /// Returns a human-readable table with one line per load step and iteration.
   std::string text() const;

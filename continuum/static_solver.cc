@@ -7,13 +7,13 @@
 #include "continuum/reactions.h"
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/timer.h>
 #include <deal.II/distributed/grid_refinement.h>
 #include <deal.II/distributed/solution_transfer.h>
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/multigrid/mg_transfer_global_coarsening.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -22,23 +22,6 @@ using namespace dealii;
 
 namespace latcon::continuum
 {
-namespace
-{
-// Timer that adds the time of its scope to a sum.
-class Clock
-{
-public:
-  explicit Clock(double &seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
-  ~Clock() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-  Clock(const Clock &) = delete;
-  Clock &operator=(const Clock &) = delete;
-
-private:
-  double &seconds_;
-  std::chrono::steady_clock::time_point start_;
-};
-} // namespace
-
 /// Residual of the equilibrium at a displacement; see NewtonSolver.
 struct StaticSolver::Evaluation
 {
@@ -55,12 +38,6 @@ StaticSolver::StaticSolver(const Sheet::Mesh &mesh, const Constitution &constitu
                            const StaticSettings &settings)
   : sheet_(mesh, constitution, settings.degree, std::move(conditions)), settings_(settings)
 {
-  check_input();
-  set_up();
-}
-
-void StaticSolver::check_input() const
-{
   require(settings_.relative_tolerance > 0. && settings_.relative_tolerance < 1.,
           "the relative tolerance of the residual must be in (0, 1)");
   require(settings_.first_load_step > 0. && settings_.first_load_step <= 1., "the first load step must be in (0, 1]");
@@ -69,6 +46,7 @@ void StaticSolver::check_input() const
   require(settings_.largest_forcing >= 0. && settings_.largest_forcing < 1., "largest_forcing must be in [0, 1)");
   require(!sheet_.conditions().displacements.empty(),
           "static equilibrium needs a boundary with prescribed displacement");
+  set_up();
 }
 
 // Sets up everything that depends on the mesh.
@@ -107,17 +85,9 @@ StaticSolver::Evaluation StaticSolver::evaluate(const Vector &u, const double lo
 // Returns the round-off of the residual, eq. (C.19) [N/m].
 double StaticSolver::round_off(const Evaluation &state, const Vector &u) const
 {
-  double sum = 0.;
-  for (const types::global_dof_index i : sheet_.owned())
-    if (!homogeneous_.is_constrained(i))
-    {
-      const double of_stress = state.magnitude(i);
-      const double of_displacement = linear_solver_->diag_element(i) * u(i);
-      sum += of_stress * of_stress + of_displacement * of_displacement;
-    }
-  // Factor 4: computing a stress adds several rounding errors to those of the displacement.
-  return 4. * std::numeric_limits<double>::epsilon() *
-         std::sqrt(dealii::Utilities::MPI::sum(sum, sheet_.communicator()));
+  const auto square = [&](const types::global_dof_index i)
+  { return std::pow(state.magnitude(i), 2) + std::pow(linear_solver_->diag_element(i) * u(i), 2); };
+  return residual_round_off * norm_over_free(sheet_, homogeneous_, square);
 }
 
 std::string StaticSolver::attempt(const double target, SolverReport &report)
@@ -128,21 +98,20 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
 
   const auto assemble = [&](const Vector &at, const Vector *rise)
   {
+    const Timer timer;
     double assembly = 0.; // [s]
-    {
-      const Clock clock(report.times.preconditioner);
-      linear_solver_->update(
-        at,
-        [&](const Sheet &, const Vector &there, const AffineConstraints<double> &constraints, auto &K)
-        {
-          const Clock of_assembly(assembly);
-          sheet_.tangent(there, constraints, K, target, rise, &lift_forces);
-        },
-        [target](const Sheet &level, const Vector &there, const AffineConstraints<double> &constraints, auto &K)
-        { level.tangent(there, constraints, K, target); });
-    }
+    linear_solver_->update(
+      at,
+      [&](const Sheet &, const Vector &there, const AffineConstraints<double> &constraints, auto &K)
+      {
+        const Timer of_assembly;
+        sheet_.tangent(there, constraints, K, target, rise, &lift_forces);
+        assembly = of_assembly.wall_time();
+      },
+      [target](const Sheet &level, const Vector &there, const AffineConstraints<double> &constraints, auto &K)
+      { level.tangent(there, constraints, K, target); });
     report.times.assembly += assembly;
-    report.times.preconditioner -= assembly;
+    report.times.preconditioner += timer.wall_time() - assembly;
   };
   const auto solve = [&](const Evaluation &state, const Vector *rise, const double forcing, Vector &step)
   {
@@ -150,20 +119,20 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     if (rise != nullptr)
       rhs += lift_forces;
     rhs *= -1.;
-    for (const types::global_dof_index i : sheet_.owned())
-      if (homogeneous_.is_constrained(i))
-        rhs(i) = 0.;
-    rhs.compress(VectorOperation::insert);
-    const Clock clock(report.times.linear_solve);
+    homogeneous_.set_zero(rhs);
+    const Timer timer;
     const unsigned int iterations = linear_solver_->solve(step, rhs, forcing);
+    report.times.linear_solve += timer.wall_time();
     const double slope = -(rhs * step); // rhs is minus the residual, zero at constrained unknowns
     homogeneous_.distribute(step);
     return NewtonStep{iterations, slope};
   };
   const auto evaluate_at = [&](const Vector &at)
   {
-    const Clock clock(report.times.assembly);
-    return evaluate(at, target);
+    const Timer timer;
+    Evaluation state = evaluate(at, target);
+    report.times.assembly += timer.wall_time();
+    return state;
   };
   // Round-off of the energy: n terms summed, errors of random sign.
   const auto energy_noise = [&](const Evaluation &state)
@@ -285,7 +254,6 @@ bool StaticSolver::take_load_step(const double target, SolverReport &report)
   const std::string failure = attempt(target, report);
   report.load_steps.push_back(
     {static_cast<unsigned int>(report.load_steps.size() + 1), target, failure.empty(), failure});
-  report.load_factor = load_factor_;
   return failure.empty();
 }
 
@@ -325,10 +293,8 @@ SolverReport StaticSolver::solve(const Observer &observer)
 
 void StaticSolver::refine(Sheet::Mesh &mesh, const double fraction)
 {
-  if (&mesh != &sheet_.mesh())
-    throw InvalidInput("refine() needs the mesh of the solver's own sheet");
-  if (!(fraction > 0. && fraction <= 1.))
-    throw InvalidInput("the fraction of cells to refine must be in (0, 1]");
+  require(&mesh == &sheet_.mesh(), "refine() needs the mesh of the solver's own sheet");
+  require(fraction > 0. && fraction <= 1., "the fraction of cells to refine must be in (0, 1]");
   parallel::distributed::GridRefinement::refine_and_coarsen_fixed_number(mesh, error_indicators(sheet_, displacement_),
                                                                          fraction, 0.);
   mesh.prepare_coarsening_and_refinement();
@@ -372,15 +338,5 @@ double StaticSolver::total_energy() const
 std::map<types::boundary_id, Tensor<1, 2>> StaticSolver::reactions() const
 {
   return boundary_reactions(sheet_, displacement_, current().residual, dirichlet_boundaries(sheet_.conditions()));
-}
-
-DeterminantRange StaticSolver::determinant_range() const
-{
-  return sheet_.determinant_range(displacement_);
-}
-
-std::vector<PointState> StaticSolver::evaluate(const std::vector<Point<2>> &points) const
-{
-  return sheet_.evaluate(displacement_, points);
 }
 } // namespace latcon::continuum

@@ -78,12 +78,6 @@ public:
   /// divided between them according to their tractions (theory-continuum.md, eq. (C.18)).
   std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>> reactions() const;
 
-  /// Returns the range of the in-plane det F [-] over the quadrature points.
-  DeterminantRange determinant_range() const;
-
-  /// Returns the states at reference points [m]; see Sheet::evaluate.
-  std::vector<PointState> evaluate(const std::vector<dealii::Point<2>> &points) const;
-
   /// Nodal displacement [m], with ghost entries.
   const Vector &displacement() const { return displacement_; }
   const Sheet &sheet() const { return sheet_; }
@@ -92,7 +86,6 @@ public:
 private:
   struct Evaluation;
 
-  void check_input() const;
   void set_up();
   Evaluation evaluate(const Vector &u, double load_factor) const;
   const Evaluation &current() const;

@@ -29,8 +29,8 @@ TEST(DynamicSolver, NewtonIsQuadraticWithViscosityAtFiniteStrain)
   const FibreViscosity viscosity = network_viscosity(200., 0.01);
   // Long steps, so that the predictor is poor.
   DynamicSolver solver(mesh, Constitution(problem.law, problem.gradient), problem.conditions(), {density, 0.01},
-                       quadratic(2e-3, NewmarkParameters::generalised_alpha(0.6)), &viscosity, Problem::load_factor);
-  solver.start();
+                       quadratic(2e-3, NewmarkParameters::generalised_alpha(0.6)), &viscosity);
+  start(solver);
   double best = 0.;
   for (int n = 0; n < 4; ++n)
   {
@@ -53,8 +53,8 @@ TEST(DynamicSolver, GmresAgreesWithTheDirectSolver)
     settings.linear.direct_limit = direct_limit;
     settings.linear.multigrid.coarsest_size = 100;
     DynamicSolver solver(mesh, Constitution(problem.law, problem.gradient), problem.conditions(), {density, 0.01},
-                         settings, &viscosity, Problem::load_factor);
-    solver.start();
+                         settings, &viscosity);
+    start(solver);
     std::size_t newton = 0;
     unsigned int most_linear = 0;
     for (int n = 0; n < 6; ++n)

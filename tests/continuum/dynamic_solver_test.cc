@@ -26,11 +26,11 @@ std::unique_ptr<DynamicSolver> moved(const Mesh &mesh, const Problem &problem, c
                                      const unsigned int n_steps, const bool is_viscous = true)
 {
   const DynamicSettings settings = quadratic(final_time / n_steps, rule);
-  auto solver = std::make_unique<DynamicSolver>(mesh, Constitution(problem.law, problem.gradient), problem.conditions(),
-                                                Inertia{density, 0.01}, settings,
-                                                is_viscous ? &problem.viscosity : nullptr, Problem::load_factor);
-  solver->start();
-  solver->run_until(final_time);
+  auto solver =
+    std::make_unique<DynamicSolver>(mesh, Constitution(problem.law, problem.gradient), problem.held(),
+                                    Inertia{density, 0.01}, settings, is_viscous ? &problem.viscosity : nullptr);
+  start(*solver, nullptr, Problem::velocity());
+  run_until(*solver, final_time);
   return solver;
 }
 
@@ -59,109 +59,18 @@ TEST(DynamicSolver, IsOfSecondOrderInTimeWithItsLedger)
     }
     const EnergyLedger &ledger = fine.ledger();
     EXPECT_NEAR(std::log2(std::abs(coarse.ledger().imbalance / ledger.imbalance)), 2., 0.3)
-      << coarse.ledger().imbalance << " " << ledger.imbalance << " of " << ledger.work;
-    EXPECT_LT(std::abs(ledger.imbalance), 0.01 * ledger.work);
+      << coarse.ledger().imbalance << " " << ledger.imbalance;
+    const double energy = ledger.stored + ledger.kinetic + ledger.dissipated;
+    EXPECT_LT(std::abs(ledger.imbalance), 0.01 * energy);
     EXPECT_GT(ledger.micro_kinetic, 0.01 * ledger.kinetic);
     EXPECT_LT(ledger.micro_kinetic, ledger.kinetic);
-    EXPECT_EQ(ledger.dissipated > 0.05 * ledger.work, is_viscous);
+    EXPECT_EQ(ledger.dissipated > 0.05 * energy, is_viscous);
     EXPECT_EQ(ledger.dissipated == 0., !is_viscous);
   };
   expect_second_order(*moved(mesh, problem, average_acceleration, 40), *half, true);
   for (const bool is_viscous : {true, false})
     expect_second_order(*moved(mesh, problem, generalised_alpha, 40, is_viscous),
                         *moved(mesh, problem, generalised_alpha, 80, is_viscous), is_viscous);
-}
-
-TEST(DynamicSolver, MovesHeldBoundariesWithTheLoadFactor)
-{
-  // u = sin(w t) H X is an exact motion of any sheet, all edges held, under the body force -rho w^2 H X sin(w t).
-  const double w = 400.;
-  const Tensor<2, 2> H = matrix(0.4, 0.2, -0.1, 0.3);
-  BoundaryConditions conditions(on_all_edges(affine(identity + H)));
-  conditions.body_force =
-    BodyForce{std::make_shared<Field>([=](const Point<2> &X) { return -density * w * w * (H * Tensor<1, 2>(X)); })};
-  RectangleMesh mesh(rectangle(2, 2));
-  mesh.begin_active()->set_refine_flag(); // creates hanging nodes
-  mesh.execute_coarsening_and_refinement();
-  for (const NewmarkParameters &rule : {average_acceleration, generalised_alpha})
-  {
-    double before = 0.;
-    for (const unsigned int n_steps : {50, 100})
-    {
-      const DynamicSettings settings = quadratic(2. / w / n_steps, rule);
-      DynamicSolver solver(mesh, law, conditions, {density, 0.01}, settings, nullptr,
-                           [w](const double t) { return std::sin(w * t); });
-      const auto initial = std::make_shared<Field>([=](const Point<2> &X) { return w * (H * Tensor<1, 2>(X)); });
-      solver.start(nullptr, initial);
-      solver.run_until(2. / w);
-      EXPECT_NEAR(solver.time(), 2. / w, 1e-12 / w);
-      const double factor = std::sin(2.);
-      double error = 0.;
-      for (const auto &state : solver.evaluate(scattered_points(5, 5)))
-        error =
-          support::largest_of({error, (state.displacement - factor * (H * Tensor<1, 2>(state.X))).norm() / length});
-      // Steps with w dt = 0.04 and 0.02: errors of the order of its square.
-      EXPECT_LT(error, 1e-3);
-      if (n_steps == 100)
-      {
-        EXPECT_NEAR(std::log2(before / error), 2., 0.2);
-      }
-      before = error;
-
-      // Integral of |H X|^2 over [0, length] x [-height/2, height/2].
-      const double xx = length * length / 3.;
-      const double yy = height * height / 12.;
-      const double mean = (H[0][0] * H[0][0] + H[1][0] * H[1][0]) * xx + (H[0][1] * H[0][1] + H[1][1] * H[1][1]) * yy;
-      const double speed = w * std::cos(2.);
-      const double kinetic = 0.5 * density * speed * speed * mean * length * height;
-      const double micro = 0.5 * density * speed * speed * 1e-4 * H.norm_square() * length * height;
-      EXPECT_NEAR(solver.ledger().kinetic, kinetic + micro, 0.01 * kinetic);
-      EXPECT_NEAR(solver.ledger().micro_kinetic, micro, 0.01 * micro);
-      const double stored = law.energy(identity + factor * H) * length * height;
-      EXPECT_NEAR(solver.ledger().stored, stored, 1e-3 * stored);
-    }
-  }
-}
-
-// Edges that are pulled apart within 1 ms and then held: held nodes stand still from the first step after the kink, and
-// the energy balance closes. Newmark's formulas would let their velocity alternate between +10 and -10 m/s for ever.
-TEST(DynamicSolver, StandsStillAfterARamp)
-{
-  const auto pull = affine(matrix(1., 0., 0., 1.2));
-  for (const NewmarkParameters &rule : {average_acceleration, generalised_alpha})
-  {
-    std::vector<double> imbalance;
-    for (const double dt : {1e-4, 2.5e-5})
-    {
-      RectangleMesh mesh(rectangle(8, 6));
-      mesh.begin_active()->set_refine_flag(); // hanging nodes next to a held edge
-      mesh.execute_coarsening_and_refinement();
-      const DynamicSettings settings = quadratic(dt, rule);
-      DynamicSolver solver(mesh, law, BoundaryConditions({{edge::bottom, pull}, {edge::top, pull}}), {density, 0.},
-                           settings, nullptr, [](const double t) { return t < 1e-3 ? t / 1e-3 : 1.; });
-      const auto fastest_held = [&](const Vector &rate)
-      {
-        double fastest = 0.;
-        solver.sheet().for_each_owned_dof(
-          [&](const auto dof, unsigned int, const Point<2> &X)
-          {
-            if (std::abs(X[1]) > 0.4999 * height)
-              fastest = support::largest_of({fastest, std::abs(rate(dof))});
-          });
-        return fastest;
-      };
-      solver.start();
-      solver.run_until(0.8e-3);
-      // Half of a height of 0.1 m times 0.2 in 1 ms.
-      EXPECT_NEAR(fastest_held(solver.velocity()), 10., 1e-9);
-      solver.run_until(2.5e-3);
-      EXPECT_LT(fastest_held(solver.velocity()), 1e-9);
-      EXPECT_LT(fastest_held(solver.acceleration()), 1e-9 / dt);
-      imbalance.push_back(std::abs(solver.ledger().imbalance) / solver.ledger().work);
-    }
-    // Of second order, as without a kink: a factor of 16 over two halvings of the step.
-    EXPECT_LT(imbalance[1], 0.1 * imbalance[0]);
-  }
 }
 
 TEST(DynamicSolver, KeepsTheMomentumOfAFreeSheet)
@@ -173,11 +82,12 @@ TEST(DynamicSolver, KeepsTheMomentumOfAFreeSheet)
   {
     const DynamicSettings settings = quadratic(1e-4, rule);
     DynamicSolver solver(mesh, Constitution(law, gradient), {}, {density, 0.01}, settings, &viscosity);
-    solver.start(nullptr, std::make_shared<Field>(
-                            [](const Point<2> &X) {
-                              return Tensor<1, 2>({3. + 150. * X[0], -2. + 100. * X[1]});
-                            }));
-    const Tensor<1, 2> before = solver.momentum();
+    start(solver, nullptr,
+          std::make_shared<Field>(
+            [](const Point<2> &X) {
+              return Tensor<1, 2>({3. + 150. * X[0], -2. + 100. * X[1]});
+            }));
+    const Tensor<1, 2> before = momentum(solver);
     // The mean velocity is that of the middle of the sheet.
     EXPECT_NEAR((before - density * length * height * Tensor<1, 2>({3. + 75. * length, -2.})).norm(), 0.,
                 1e-12 * before.norm());
@@ -190,7 +100,7 @@ TEST(DynamicSolver, KeepsTheMomentumOfAFreeSheet)
     }
     EXPECT_GT(solver.displacement().linfty_norm(), 0.1 * length);
     EXPECT_LT(impulse, 1e-8 * before.norm());
-    EXPECT_NEAR((solver.momentum() - before).norm(), 0., impulse + 1e-13 * before.norm());
+    EXPECT_NEAR((momentum(solver) - before).norm(), 0., impulse + 1e-13 * before.norm());
     EXPECT_EQ(solver.ledger().work, 0.);
   }
 }
@@ -201,7 +111,7 @@ TEST(DynamicSolver, StartsWithTheAccelerationOfItsLoads)
   conditions.body_force = BodyForce{constant(3. * density, -2. * density)};
   RectangleMesh mesh(rectangle(2, 2));
   DynamicSolver solver(mesh, law, conditions, {density, 0.}, quadratic(1e-4));
-  solver.start();
+  start(solver);
   Vector difference = owned(solver.sheet(), solver.acceleration());
   difference -= owned(solver.sheet(), nodal(solver.sheet(), [](const Point<2> &) { return Tensor<1, 2>({3., -2.}); }));
   EXPECT_LT(difference.linfty_norm(), 1e-10);
@@ -216,9 +126,9 @@ TEST(DynamicSolver, LeavesEquilibriumAtRest)
     RectangleMesh mesh({length, height, 4, 4, true, true});
     DynamicSolver solver(mesh, law, periodic(), {density, 0.}, settings);
     const Tensor<2, 2> F = matrix(2.3, 0.1, 0., 2.8);
-    solver.start(affine(F));
-    solver.run_until(0.01);
-    for (const auto &state : solver.evaluate(scattered_points(5, 5)))
+    start(solver, affine(F));
+    run_until(solver, 0.01);
+    for (const auto &state : solver.sheet().evaluate(solver.displacement(), scattered_points(5, 5)))
       EXPECT_NEAR((state.F - F).norm(), 0., 1e-10);
     EXPECT_NEAR(solver.ledger().stored, law.energy(F) * length * height, 1e-10 * law.energy(F) * length * height);
   }
@@ -231,72 +141,78 @@ TEST(DynamicSolver, LeavesEquilibriumAtRest)
   equilibrium.solve();
   DynamicSolver solver(mesh, law, conditions, {density, 0.}, settings);
   solver.start(equilibrium.displacement(), solver.sheet().make_owned());
-  solver.run_until(0.01);
+  run_until(solver, 0.01);
   Vector difference = owned(solver.sheet(), solver.displacement());
   difference -= owned(equilibrium.sheet(), equilibrium.displacement());
   // Motion that the residual of the static solution, 1e-10 of the reactions, can cause.
   EXPECT_LT(difference.linfty_norm(), 1e-8 * length);
 }
 
+// Sheet that moves freely, of a law that refuses.
+struct Refusing
+{
+  explicit Refusing(const unsigned int halvings) : mesh(rectangle(2, 2)), settings(quadratic(1e-4))
+  {
+    settings.max_step_halvings = halvings;
+    solver = std::make_unique<DynamicSolver>(mesh, refusing, BoundaryConditions(), Inertia{density}, settings);
+  }
+
+  RefusingNetwork refusing;
+  RectangleMesh mesh;
+  DynamicSettings settings;
+  std::unique_ptr<DynamicSolver> solver;
+};
+
 TEST(DynamicSolver, ThrowsWithHistoryAndStaysWhenAStepFails)
 {
-  // The right edge is pushed through the left one within one step.
-  RectangleMesh mesh(rectangle(2, 2));
-  DynamicSettings settings{1e-4};
-  settings.degree = 1;
-  DynamicSolver solver(mesh, law, on_all_edges(affine(matrix(0.5, 0., 0., 1.))), {density, 0.}, settings, nullptr,
-                       [](const double t) { return t < 4.5e-4 ? 0. : 3.; });
+  Refusing refusing(4);
+  DynamicSolver &solver = *refusing.solver;
   EXPECT_THROW(solver.step(), InvalidInput); // no start
-  solver.start();
-  Vector before = solver.sheet().make_ghosted();
+  start(solver, nullptr, Problem::velocity());
+  run_until(solver, 4e-4);
+  const Vector before = solver.displacement();
+  const EnergyLedger ledger = solver.ledger();
+  refusing.refusing.refusals = 1000000;
   try
   {
-    solver.run_until(1e-3, [&] { before = solver.displacement(); });
+    solver.step();
     FAIL() << "went on";
   }
   catch (const SolverFailed &failure)
   {
     // The whole step, its first half, and so on down to a sixteenth.
-    ASSERT_GE(failure.report().load_steps.size(), 5u);
+    ASSERT_EQ(failure.report().load_steps.size(), 5u);
     EXPECT_FALSE(failure.report().load_steps.front().accepted);
     EXPECT_FALSE(failure.report().load_steps.back().accepted);
     EXPECT_EQ(failure.report().load_steps.back().number, 5u);
     EXPECT_NE(std::string(failure.what()).find("det F"), std::string::npos) << failure.what();
   }
   EXPECT_NEAR(solver.time(), 4e-4, 1e-15);
-  EXPECT_EQ(solver.load_factor(), 0.);
   for (const auto i : solver.sheet().owned())
     EXPECT_EQ(solver.displacement()(i), before(i));
+  EXPECT_EQ(solver.ledger().stored, ledger.stored);
   EXPECT_EQ(solver.n_divided_steps(), 0u);
 }
 
-// The right edge is pushed to the left by more than a cell within a step, slowly compared with waves: in the first
-// iterate of a whole step the cells next to it are inverted, but not in those of smaller parts. Whole steps follow, and
-// the energy balance over the parts closes.
+// Both predictors of a whole step are refused. Its halves are solved, whole steps follow, and the energy balance over
+// the parts closes.
 TEST(DynamicSolver, DividesAStepThatCannotBeSolved)
 {
-  const double dt = 1e-2;
-  const auto moved = [&](const unsigned int halvings)
+  const auto moved = [](const unsigned int halvings)
   {
-    RectangleMesh mesh(rectangle(8, 4));
-    DynamicSettings settings = quadratic(dt);
-    settings.max_step_halvings = halvings;
-    DynamicSolver solver(mesh, law,
-                         BoundaryConditions({{edge::left, affine(matrix(1., 0., 0., 1.))},
-                                             {edge::right, affine(matrix(0.7, 0., 0., 1.))}}),
-                         {density, 0.}, settings, nullptr,
-                         [&](const double t) { return std::pow(std::sin(0.25 * pi * std::min(t / dt, 2.)), 2); });
-    solver.start();
-    solver.run_until(5. * dt);
-    EXPECT_NEAR(solver.time(), 5. * dt, 1e-12 * dt);
+    Refusing refusing(halvings);
+    DynamicSolver &solver = *refusing.solver;
+    start(solver, nullptr, Problem::velocity());
+    solver.step();
+    refusing.refusing.refusals = 2;
+    run_until(solver, 5e-4);
+    EXPECT_NEAR(solver.time(), 5e-4, 1e-15);
     return std::tuple(solver.n_divided_steps(), solver.ledger(), solver.last_report().load_steps.size());
   };
   EXPECT_THROW(moved(0), SolverFailed);
   const auto [n_divided, ledger, attempts] = moved(4);
-  EXPECT_GE(n_divided, 1u);
-  EXPECT_LE(n_divided, 2u);
+  EXPECT_EQ(n_divided, 1u);
   EXPECT_EQ(attempts, 1u); // the last step is not divided
-  // Second order in the step: 0.002 here. The work of one part is at least a tenth.
   EXPECT_LT(std::abs(ledger.imbalance), 0.01 * (ledger.stored + ledger.kinetic));
 }
 
@@ -323,9 +239,8 @@ struct MovingSheet
     const double t = units.time();
     solver = std::make_unique<DynamicSolver>(mesh, Constitution(network, gradient), conditions,
                                              Inertia{units.density * density, units.length * 0.01},
-                                             quadratic(t * 2e-4, generalised_alpha), &viscosity,
-                                             [t](const double time) { return Problem::load_factor(time / t); });
-    solver->start();
+                                             quadratic(t * 2e-4, generalised_alpha), &viscosity);
+    start(*solver);
     for (unsigned int n = 0; n < 20; ++n)
       solver->step();
   }
@@ -345,6 +260,7 @@ TEST(DynamicSolver, DoesNotDependOnUnits)
   const auto &one = one_sheet.solver;
   EXPECT_GT(one->displacement().linfty_norm(), 0.01 * length);
   EXPECT_NE(one->ledger().dissipated, 0.);
+  EXPECT_LT(std::abs(one->ledger().imbalance), 0.05 * one->ledger().work);
   for (const Units &units : {Units{4., 1., 1.}, Units{1., 4., 16.}, Units{0.5, 16., 4.}})
   {
     const MovingSheet other_sheet(units);
@@ -367,33 +283,26 @@ TEST(DynamicSolver, RefusesImpossibleInput)
 {
   RectangleMesh mesh(rectangle(2, 2));
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  DynamicSettings loose{1e-3}, first_order{1e-3}, conditionally_stable{1e-3};
+  DynamicSettings loose{1e-3};
   loose.relative_tolerance = 1.;
-  first_order.rule.gamma = 0.6;
-  conditionally_stable.rule.beta = 1. / 6.; // linear acceleration
-  for (const auto &[inertia, settings] :
-       std::vector<std::pair<Inertia, DynamicSettings>>{{{0., 0.}, {1e-3}},
-                                                        {{density, -1.}, {1e-3}},
-                                                        {{density, nan}, {1e-3}},
-                                                        {{density, 0.}, {0.}},
-                                                        {{density, 0.}, {nan}},
-                                                        {{density, 0.}, loose},
-                                                        {{density, 0.}, first_order},
-                                                        {{density, 0.}, conditionally_stable}})
+  for (const auto &[inertia, settings] : std::vector<std::pair<Inertia, DynamicSettings>>{{{0., 0.}, {1e-3}},
+                                                                                          {{density, -1.}, {1e-3}},
+                                                                                          {{density, nan}, {1e-3}},
+                                                                                          {{density, 0.}, {0.}},
+                                                                                          {{density, 0.}, {nan}},
+                                                                                          {{density, 0.}, loose}})
     EXPECT_THROW(DynamicSolver(mesh, law, {}, inertia, settings), InvalidInput);
   EXPECT_THROW(NewmarkParameters::generalised_alpha(-0.1), InvalidInput);
   EXPECT_THROW(NewmarkParameters::generalised_alpha(1.1), InvalidInput);
 
-  // A held edge that is not at the prescribed position, fields with one component, a load factor that is not finite.
+  // A held edge that is not at the prescribed position, vectors of another sheet, values that are not finite.
   DynamicSolver held(mesh, law, {{edge::left, constant(0.01, 0.)}}, {density, 0.}, {1e-3});
-  EXPECT_THROW(held.start(), InvalidInput);
-  EXPECT_THROW(held.start(constant(0.01 + 1e-8, 0.)), InvalidInput); // 6e-8 of the extent
-  EXPECT_NO_THROW(held.start(constant(0.01, 0.)));
+  EXPECT_THROW(start(held), InvalidInput);
+  EXPECT_THROW(start(held, constant(0.01 + 1e-8, 0.)), InvalidInput); // 6e-8 of the extent
+  EXPECT_NO_THROW(start(held, constant(0.01, 0.)));
   DynamicSolver free(mesh, law, {}, {density, 0.}, {1e-3});
-  EXPECT_THROW(free.start(std::make_shared<dealii::Functions::ZeroFunction<2>>(1)), InvalidInput);
   EXPECT_THROW(free.start(Vector(), Vector()), InvalidInput);
-  DynamicSolver undefined(mesh, law, {}, {density, 0.}, {1e-3}, nullptr, [nan](double) { return nan; });
-  EXPECT_THROW(undefined.start(), InvalidInput);
+  EXPECT_THROW(start(free, nullptr, constant(nan, 0.)), InvalidInput);
 }
 
 } // namespace dynamic_solver_test

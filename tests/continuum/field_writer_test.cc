@@ -59,14 +59,14 @@ TEST_F(FieldWriter, StressesOfAMotionIncludeThoseOfViscosityAndBranches)
   RectangleMesh mesh(rectangle(3, 2));
   continuum::DynamicSettings settings{1e-5};
   continuum::DynamicSolver solver(mesh, continuum::Constitution(law), {}, continuum::Inertia{950.}, settings,
-                                  &viscosity, {}, &memory);
+                                  &viscosity, &memory);
   const Tensor<2, 2> F = matrix(2.3, 0.25, -0.1, 1.4);
   const auto u = nodal(solver.sheet(), [F](const Point<2> &X) { return F * Tensor<1, 2>(X) - Tensor<1, 2>(X); });
   const auto v = nodal(solver.sheet(),
                        [](const Point<2> &X) {
                          return Tensor<1, 2>({40. * X[0], 900. * X[0] * X[1]});
                        });
-  solver.start(u, v, 0., {solver.sheet().make_ghosted()});
+  solver.start(u, v, {solver.sheet().make_ghosted()});
   continuum::FieldWriter writer(MPI_COMM_SELF, directory_);
   writer.add_frame(solver);
   const std::string command = std::string(PYTHON) + " " + CHECK_FIELDS + " " + writer.collection().string() + " motion";

@@ -279,7 +279,8 @@ TEST(GradientEquilibrium, InexactStepsEndAtTheSameEquilibrium)
     unsigned int n_linear = 0;
     for (const auto &iteration : report.iterations)
       n_linear += iteration.linear_iterations;
-    return Answer{solver.total_energy(), solver.evaluate(scattered_points(7, 5)), report.iterations.size(), n_linear};
+    return Answer{solver.total_energy(), solver.sheet().evaluate(solver.displacement(), scattered_points(7, 5)),
+                  report.iterations.size(), n_linear};
   };
   const Answer exact = solve(0.);
   for (const double largest_forcing : {StaticSettings().largest_forcing, 0.1})

@@ -27,20 +27,17 @@ using memory_archive::Store;
 using memory_archive::stored;
 namespace edge = continuum::edge;
 
-constexpr double start_time = 2e-4; // [s]
-
-// Moving sheet with all laws and conditions that the linear solver supports, one edge of which is shaken.
+// Moving sheet with all laws and conditions that the linear solver supports.
 class Motion
 {
 public:
   void start()
   {
-    solver_->start(nullptr,
-                   std::make_shared<Field>(
-                     [](const Point<2> &X) {
-                       return Tensor<1, 2>({20. * std::sin(2. * pi * X[1] / height), 30. * X[0] / length});
-                     }),
-                   start_time);
+    moving_sheets::start(*solver_, constant(0.01, 0.02),
+                         std::make_shared<Field>(
+                           [](const Point<2> &X) {
+                             return Tensor<1, 2>({20. * std::sin(2. * pi * X[1] / height), 30. * X[0] / length});
+                           }));
   }
   DynamicSolver &solver() { return *solver_; }
 
@@ -55,8 +52,7 @@ protected:
   {
     solver_ = std::make_unique<DynamicSolver>(
       mesh_, continuum::Constitution(law_, gradient_), conditions_, continuum::Inertia{density, 0.01}, settings,
-      has_rate_laws ? &viscosity_ : nullptr, [](const double t) { return std::sin(900. * (t - start_time)); },
-      has_rate_laws ? &memory_ : nullptr);
+      has_rate_laws ? &viscosity_ : nullptr, has_rate_laws ? &memory_ : nullptr);
   }
 
   const continuum::CauchyBorn law_ = rubber_network();
@@ -80,7 +76,7 @@ public:
   }
 };
 
-// With hanging nodes and a normal gradient that increases with the load, solved by conjugate gradients or, with
+// With hanging nodes and a normal gradient, solved by conjugate gradients or, with
 // dashpots and Maxwell branches, by GMRES.
 template <bool has_dashpots>
 class MultigridMotion : public Motion
@@ -228,7 +224,7 @@ struct End
   {
     solver.step();
     store = stored(solver);
-    momentum = solver.momentum();
+    momentum = moving_sheets::momentum(solver);
   }
   std::vector<double> values(const std::string &name) const
   {

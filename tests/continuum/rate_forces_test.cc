@@ -262,22 +262,25 @@ TEST_P(ForcesOfRates, HaveAConsistentTangent)
   }
 }
 
-// The ledger of a sheet with a moving boundary and, on another edge, a normal gradient that moves: of second order in
-// the time step.
-TEST_P(ForcesOfRates, BalanceTheWorkOfAMovingBoundary)
+// The ledger of a moving sheet is of second order in the time step.
+TEST_P(ForcesOfRates, BalanceTheEnergyOfAMotion)
 {
-  BoundaryConditions conditions = with_normal_gradient(constant(0.5, 0.2));
-  conditions.displacements = {{edge::left, affine(matrix(1., 0., 0., 1.3))}};
+  BoundaryConditions conditions = with_normal_gradient(constant(0., 0.));
+  conditions.displacements = {{edge::left, constant(0., 0.)}};
   const auto imbalance = [&](const double time_step)
   {
-    DynamicSolver solver(
-      mesh, constitution, conditions, {density, has_gradient ? micro_length : 0.}, quadratic(time_step), nullptr,
-      [](const double t) { return 0.5 - 0.5 * std::cos(2000. * t); }, &memory);
-    solver.start();
-    solver.run_until(1.6e-3);
-    EXPECT_GT(solver.branch_energies()[0].dissipated, 0.01 * solver.ledger().work);
-    EXPECT_GT(solver.branch_energies()[1].stored, 0.01 * solver.ledger().work);
-    return solver.ledger().imbalance / solver.ledger().work;
+    DynamicSolver solver(mesh, constitution, conditions, {density, has_gradient ? micro_length : 0.},
+                         quadratic(time_step), nullptr, &memory);
+    start(solver, nullptr,
+          std::make_shared<Field>(
+            [](const Point<2> &X) {
+              return Tensor<1, 2>({100. * X[0] * (2. * length - X[0]), 200. * X[0] * (2. * length - X[0])}) / length;
+            }));
+    const double energy = solver.ledger().kinetic;
+    run_until(solver, 1.6e-3);
+    EXPECT_GT(solver.branch_energies()[0].dissipated, 0.01 * energy);
+    EXPECT_GT(solver.branch_energies()[1].stored, 0.01 * energy);
+    return solver.ledger().imbalance / energy;
   };
   const double coarse = imbalance(4e-5);
   const double fine = imbalance(2e-5);
@@ -288,17 +291,17 @@ TEST_P(ForcesOfRates, BalanceTheWorkOfAMovingBoundary)
 // A held sheet dissipates what its branches stored, and a step that fails leaves their history as it was.
 TEST_P(ForcesOfRates, StayAsTheyWereAfterAStepThatFails)
 {
-  const auto field = std::make_shared<Field>([](const Point<2> &X) { return Tensor<1, 2>(X); });
-  DynamicSolver solver(
-    mesh, constitution, on_all_edges(field), {density}, quadratic(1e-4), nullptr,
-    [](const double t) { return t < 4.5e-4 ? 0. : -2.5; }, &memory);
+  const RefusingNetwork refusing;
+  constitution.local = &refusing;
+  DynamicSolver solver(mesh, constitution, on_all_edges(constant(0., 0.)), {density}, quadratic(1e-4), nullptr,
+                       &memory);
   const auto zero = solver.sheet().make_owned();
   const auto half = nodal(solver.sheet(), [](const Point<2> &X) { return -0.1 * Tensor<1, 2>(X); });
-  EXPECT_THROW(solver.start(zero, zero, 0., {half}), InvalidInput);
-  solver.start(zero, zero, 0., {half, zero});
+  EXPECT_THROW(solver.start(zero, zero, {half}), InvalidInput);
+  solver.start(zero, zero, {half, zero});
   EXPECT_GT(solver.branch_energies()[0].stored, 0.);
   EXPECT_EQ(solver.branch_energies()[1].stored, 0.);
-  solver.start(zero, zero, 0., {half, half});
+  solver.start(zero, zero, {half, half});
   // Each fibre pulls with a tenth of both moduli: virtual work of the reactions in a displacement X.
   double weights = 0.;
   for (const MaxwellFibres &fibres : memory.families())
@@ -312,7 +315,9 @@ TEST_P(ForcesOfRates, StayAsTheyWereAfterAStepThatFails)
   const std::vector<BranchEnergy> before = solver.branch_energies();
   EXPECT_NEAR(solver.ledger().dissipated, stored - before[0].stored - before[1].stored, 1e-12 * stored);
   const auto reactions = solver.reactions();
+  refusing.refusals = 1000000;
   EXPECT_THROW(solver.step(), SolverFailed);
+  refusing.refusals = 0;
   for (std::size_t i = 0; i < 2; ++i)
   {
     EXPECT_EQ(solver.branch_energies()[i].stored, before[i].stored);
@@ -325,25 +330,6 @@ TEST_P(ForcesOfRates, StayAsTheyWereAfterAStepThatFails)
   {
     EXPECT_THROW(solver.release(0.), InvalidInput);
   }
-}
-
-// Before the first step the rate of a load is that of the parabola through the next two, here of 30/s at the start.
-TEST_P(ForcesOfRates, StartWithTheRateOfTheLoad)
-{
-  BoundaryConditions conditions = with_normal_gradient(constant(0.5, 0.2));
-  conditions.displacements = on_all_edges(constant(0., 0.));
-  const auto reactions = [&](const double curvature)
-  {
-    DynamicSolver solver(mesh, constitution, conditions, {density}, quadratic(1e-4), &viscosity,
-                         [=](const double t) { return 30. * t - curvature * t * t; });
-    solver.start();
-    return solver.reactions();
-  };
-  const auto straight = reactions(0.);
-  auto difference = reactions(1e5);
-  difference -= straight;
-  EXPECT_EQ(straight.l2_norm() > 1., has_gradient);
-  EXPECT_LE(difference.l2_norm(), 1e-12 * straight.l2_norm());
 }
 
 INSTANTIATE_TEST_SUITE_P(LocalAndGradient, ForcesOfRates, testing::Bool());

@@ -144,7 +144,7 @@ NUMBERS = {
     "samples": [LARGE], "vortices/sizes": [LARGE], "backward_speeds/sizes": [LARGE], "following_speeds/sizes": [LARGE],
     "film/frames/times": [value(-1.), value(0.)],
     "frames/times": [value(-1.)], "next_frame": [value(-1e308), value(1e308), value(1e-300)],
-    "solver/steps": [LARGE, value(0)], "solver/time": [value(-1e308), value(1e308)], "solver/start_time": [value(1e308)],
+    "solver/steps": [LARGE, value(0)], "solver/time": [value(-1e308), value(1e308)],
     "frames/frames": [LARGE, value(1e308), value(0)],
     "linear_solver/is_stale": [value(2)],
 }

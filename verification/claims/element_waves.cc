@@ -124,7 +124,7 @@ struct MovingSheet : WaveRectangle
   MovingSheet(const WaveContinuum &medium, const Eigen::Vector2d &K, const WaveMesh &resolution,
               const continuum::DynamicSettings &settings)
     : WaveRectangle(K, resolution.cells), solver(mesh, medium.constitution, periodic_edges(), medium.inertia, settings,
-                                                 medium.viscosity.get(), {}, medium.memory.get())
+                                                 medium.viscosity.get(), medium.memory.get())
   {
   }
   // Displacement from that of a state [m].
@@ -299,7 +299,7 @@ ElementWave element_wave(const WaveContinuum &medium, const Eigen::Matrix2d &F, 
     std::vector<Vector> relaxed;
     for (const double time : relaxation_times(*medium.memory))
       relaxed.push_back(field(1. / (1. + wave.rate * time), true));
-    solver.start(field(1., true), field(wave.rate, false), 0., relaxed);
+    solver.start(field(1., true), field(wave.rate, false), relaxed);
     const double of_wave = solver.ledger().stored + solver.ledger().kinetic - energy(sheet, at_rest.base);
     support::LargestError imbalance;
     const Vector shape = interpolated(sheet, CosineWave(K, wave.polarisation.real().normalized()));

@@ -174,7 +174,7 @@ MovingSheet::MovingSheet(const input::Case &input, bridge::ContinuumModel &model
       bridge::homogenised_viscosity(input.lattice(), model.subject().material, model.viscous_gradient_length())),
     memory(bridge::homogenised_memory(input.lattice(), model.subject().material, model.viscous_gradient_length())),
     solver(model.mesh(), model.constitution(), model.conditions(), {input.density, model.inertia_length()}, settings,
-           viscosity.get(), {}, memory.get()),
+           viscosity.get(), memory.get()),
     added(claims::interpolated(solver.sheet(),
                                bridge::FieldFunction(input.continuum.initial_displacement, model.extent()))),
     velocity(
@@ -182,7 +182,7 @@ MovingSheet::MovingSheet(const input::Case &input, bridge::ContinuumModel &model
 {
   continuum::Sheet::Vector u = solver.sheet().make_owned();
   if (input.continuum.initial_base == input::ContinuumCase::Base::equilibrium)
-    u = solver.prescribed_displacement(); // as of an equilibrium
+    u = solver.sheet().lift(); // as of an equilibrium
   else
     add_loading(input, solver.sheet(), u);
   u += added;

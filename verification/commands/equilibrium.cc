@@ -113,7 +113,7 @@ output::Results equilibrium(const input::Case &input, bridge::ContinuumModel &mo
   for (const auto &[id, force] : solver.reactions())
     for (const unsigned int i : {0u, 1u})
       add("force on the " + output::edge_name(id) + " edge per thickness, " + (i == 0 ? "x" : "y"), "N/m", force[i]);
-  const continuum::DeterminantRange range = solver.determinant_range();
+  const continuum::DeterminantRange range = solver.sheet().determinant_range(solver.displacement());
   add("smallest area ratio", "1", range.smallest);
   add("largest area ratio", "1", range.largest);
   if (n_cycles > 0)

@@ -244,7 +244,7 @@ std::optional<CutSolution> compare(const CutLattice &cut, const bridge::Equivale
     {
       continuum::StaticSolver solver(mesh, law, conditions(cut.sheet), settings);
       solver.solve();
-      std::vector<continuum::PointState> states = solver.evaluate(points.points);
+      std::vector<continuum::PointState> states = solver.sheet().evaluate(solver.displacement(), points.points);
       std::vector<Eigen::Vector2d> u = points.displacements(states), coarser = u;
       for (unsigned int cycle = 0; cycle < mesh_settings.cycles; ++cycle)
       {
@@ -253,7 +253,7 @@ std::optional<CutSolution> compare(const CutLattice &cut, const bridge::Equivale
         if (cycle + 2 < mesh_settings.cycles)
           continue;
         coarser = std::move(u);
-        states = solver.evaluate(points.points);
+        states = solver.sheet().evaluate(solver.displacement(), points.points);
         u = points.displacements(states);
       }
       found = solution(cut, domain, solver, states, u);

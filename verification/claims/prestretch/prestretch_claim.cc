@@ -78,7 +78,7 @@ std::vector<Compared> compare(const bridge::Subject &subject, const lattice::Tri
   std::vector<dealii::Point<2>> points;
   for (const std::size_t place : side.interior)
     points.emplace_back(sheet.reference(place).x(), sheet.reference(place).y());
-  const std::vector<continuum::PointState> continuum_states = solver.evaluate(points);
+  const std::vector<continuum::PointState> continuum_states = solver.sheet().evaluate(solver.displacement(), points);
 
   support::LargestError displacement_error, gradient_error, stress_error;
   support::Extremes stress_scale;

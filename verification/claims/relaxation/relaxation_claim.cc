@@ -285,9 +285,9 @@ void add_held_elements(const bridge::Subject &subject, const lattice::Triangular
   const auto viscosity = bridge::homogenised_viscosity(sheet, planted);
   const auto memory = bridge::homogenised_memory(sheet, planted);
   continuum::DynamicSolver solver(mesh, {subject.cauchy_born}, conditions, {subject.material.density}, settings,
-                                  viscosity.get(), {}, memory.get());
+                                  viscosity.get(), memory.get());
   const continuum::Sheet::Vector at_rest = solver.sheet().make_owned();
-  solver.start(interpolated(solver.sheet(), bridge::AffineDisplacement(F)), at_rest, 0.,
+  solver.start(interpolated(solver.sheet(), bridge::AffineDisplacement(F)), at_rest,
                std::vector<continuum::Sheet::Vector>(memory ? memory->n_numbers() : 0, at_rest));
 
   std::array<double, lattice::n_bond_kinds> n_bonds;

@@ -106,7 +106,7 @@ void add_sample(const CrackDrive &drive, const lattice::TriangularLattice &sheet
   std::vector<dealii::Point<2>> points;
   for (const TipSite &site : sites)
     points.emplace_back(site.X, drive.axis() + site.eta);
-  const std::vector<continuum::PointState> states = solver.evaluate(points);
+  const std::vector<continuum::PointState> states = solver.sheet().evaluate(solver.displacement(), points);
   const std::vector<continuum::PointState> rates = solver.sheet().gradients(solver.velocity(), points);
   for (std::size_t n = 0; n < sites.size(); ++n)
   {
@@ -162,7 +162,7 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
   settings.max_step_halvings = 9;
   continuum::DynamicSolver solver(mesh, medium.constitution, conditions(F, medium.constitution.has_gradient()),
                                   medium.inertia, settings, medium.viscosity.get());
-  solver.start(std::make_shared<bridge::AffineDisplacement>(F));
+  solver.start(interpolated(solver.sheet(), bridge::AffineDisplacement(F)), solver.sheet().make_owned());
 
   TipRun run{TipField(drive), {}};
   continuum::EnergyLedger middle;
