@@ -121,8 +121,8 @@ void DynamicSolver::start(const Vector &displacement, const Vector &velocity, co
   std::vector<Vector> relaxed_ghosted;
   for (const Vector &at_rest : relaxed)
     relaxed_ghosted.push_back(with_ghosts(at_rest));
-  rate_forces_.start(u_ghosted, full_load.factor, relaxed_ghosted);
-  rate_forces_.add_forces(0., u_ghosted, v_ghosted, full_load, forces, nullptr);
+  rate_forces_.start(u_ghosted, relaxed_ghosted);
+  rate_forces_.add_forces(0., u_ghosted, v_ghosted, forces, nullptr);
   forces.sadd(-1., 1., loads_);
   homogeneous_.set_zero(forces);
   Vector a = sheet_.make_owned();
@@ -151,7 +151,7 @@ void DynamicSolver::start(const Vector &displacement, const Vector &velocity, co
   n_divided_steps_ = 0;
   ledger_ = EnergyLedger();
   report_ = SolverReport();
-  branch_energies_ = rate_forces_.stored(u_ghosted, full_load.factor);
+  branch_energies_ = rate_forces_.stored(u_ghosted);
   update_energies(ledger_, u, v, branch_energies_);
   initial_energy_ = ledger_.stored + ledger_.kinetic;
   has_started_ = true;
@@ -175,7 +175,7 @@ DynamicSolver::Vector DynamicSolver::reactions() const
   a = acceleration_;
   multiply_by_mass(full_mass_, a, inertial);
   sheet_.residual(displacement_, forces, magnitude);
-  rate_forces_.add_forces(0., displacement_, velocity_, full_load, forces, nullptr);
+  rate_forces_.add_forces(0., displacement_, velocity_, forces, nullptr);
   forces += inertial;
   forces.add(-1., loads_, -release_share(time_), release_forces_);
   return forces;
@@ -315,7 +315,7 @@ std::string DynamicSolver::advance(const double duration, const double end)
     {
       a = step.last_acceleration(u);
       v = step.last_velocity(a);
-      history = rate_forces_.advanced(duration, with_ghosts(u), full_load.factor, branch_energies);
+      history = rate_forces_.advanced(duration, with_ghosts(u), branch_energies);
       ledger = ledger_after(step, u, v, branch_energies);
       if (!std::isfinite(ledger.imbalance) || !std::isfinite(a.l2_norm()))
         failure = "the energy or the acceleration is not finite";
@@ -324,7 +324,7 @@ std::string DynamicSolver::advance(const double duration, const double end)
     {
       failure = refusal.what();
     }
-  report_.load_steps.push_back({static_cast<unsigned int>(n_steps_ + 1), full_load.factor, failure.empty(), failure});
+  report_.load_steps.push_back({static_cast<unsigned int>(n_steps_ + 1), 1., failure.empty(), failure});
   if (!failure.empty())
     return failure;
   displacement_ = u;
@@ -343,7 +343,7 @@ std::vector<Tensor<2, 2>> DynamicSolver::rate_stresses() const
   if (!rate_forces_.is_present())
     return stresses;
   stresses.resize(sheet_.mesh().n_locally_owned_active_cells() * QGauss<2>(sheet_.degree() + 1).size());
-  rate_forces_.add_stresses(displacement_, velocity_, full_load, stresses);
+  rate_forces_.add_stresses(displacement_, velocity_, stresses);
   return stresses;
 }
 } // namespace latcon::continuum

@@ -172,8 +172,6 @@ private:
   struct Residual;
   struct Step;
 
-  static constexpr GradientLoad full_load{1.}; // of normal gradients, which are constant
-
   void check_loaded() const;
   void apply_conditions();
   double release_share(double time) const;
@@ -255,7 +253,7 @@ void DynamicSolver::archive(Archive &archive)
   order.archive(archive, "acceleration", acceleration_);
   if (rate_forces_.n_branches() > 0)
   {
-    rate_forces_.archive(archive, displacement_, full_load.factor);
+    rate_forces_.archive(archive, displacement_);
     archive.records("branch_energies", branch_energies_);
     if (branch_energies_.size() != rate_forces_.n_branches())
       throw InvalidInput("the stored energies of branches are not those of the material");

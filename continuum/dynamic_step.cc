@@ -31,7 +31,7 @@ DynamicSolver::Residual DynamicSolver::evaluate(const Step &step, const Vector &
   Vector forces = sheet_.make_owned();
   multiply_by_mass(full_mass_, Step::mean(step.rule.alpha_m, step.a, a_1), inertial);
   state.energy = sheet_.residual(state.u_mean, forces, state.magnitude);
-  rate_forces_.add_forces(mean_duration(), state.u_mean, state.v_mean, full_load, forces, &state.magnitude);
+  rate_forces_.add_forces(mean_duration(), state.u_mean, state.v_mean, forces, &state.magnitude);
   state.residual = inertial;
   state.residual += forces;
   state.residual.add(-1., loads_, -step.mean_release_share(), release_forces_);
@@ -121,8 +121,8 @@ Assembler DynamicSolver::level_assembler() const
   {
     level.tangent(u, constraints, K);
     RateForces relaxed = rate_forces_.on(level);
-    relaxed.start(u, full_load.factor, {});
-    relaxed.add_tangent(mean_duration(), u, level.make_ghosted(), full_load,
+    relaxed.start(u, {});
+    relaxed.add_tangent(mean_duration(), u, level.make_ghosted(),
                         settings_.rule.gamma / (settings_.rule.beta * duration_), constraints, K);
     weigh_and_add_mass(level, constraints, K);
   };
@@ -141,7 +141,7 @@ Assembler DynamicSolver::assembler(const Vector &v)
     };
     sheet_.tangent(u, constraints, K);
     take_diagonal(elastic_diagonal_);
-    rate_forces_.add_tangent(mean_duration(), u, v, full_load, settings_.rule.gamma / (settings_.rule.beta * duration_),
+    rate_forces_.add_tangent(mean_duration(), u, v, settings_.rule.gamma / (settings_.rule.beta * duration_),
                              constraints, K);
     weigh_and_add_mass(sheet_, constraints, K);
     take_diagonal(effective_diagonal_);
@@ -206,8 +206,7 @@ EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, cons
   rise -= step.u;
   Vector rate = rise;
   rate *= 1. / step.dt;
-  ledger.dissipated +=
-    step.dt * rate_forces_.dissipation(with_ghosts(Step::mean(0.5, step.u, u)), with_ghosts(rate), full_load);
+  ledger.dissipated += step.dt * rate_forces_.dissipation(with_ghosts(Step::mean(0.5, step.u, u)), with_ghosts(rate));
   for (std::size_t i = 0; i < branches.size(); ++i)
     ledger.dissipated += branches[i].dissipated - branch_energies_[i].dissipated;
 
@@ -260,7 +259,7 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
       {[&](const Vector &at) { return evaluate(step, at); },
        [this](const Residual &at, const Vector &there) { return round_off(at, there); }, solve, nullptr,
        [this](const Residual &at) { return ", the largest residual is" + location_of_largest(at.residual); }});
-    return newton.solve(u, state, number, full_load.factor, 0, report_.iterations);
+    return newton.solve(u, state, number, 1., 0, report_.iterations);
   }
   catch (const NonPhysicalState &failure)
   {

@@ -52,13 +52,13 @@ class Integrator
 {
 public:
   Integrator(const Sheet &sheet, const Sheet::Vector &u, const PointForces &forces, const Order order)
-    : sheet_(sheet), fields_{NodalValues(u, sheet.owned())}, load_factors_{forces.load.factor}, order_(order),
+    : sheet_(sheet), fields_{NodalValues(u, sheet.owned())}, load_factors_{forces.load_factor}, order_(order),
       forces_(forces), tables_(sheet), lifted_(sheet.degree())
   {
     if (forces.velocity)
     {
       fields_.emplace_back(*forces.velocity, sheet.owned());
-      load_factors_.push_back(forces.load.rate);
+      load_factors_.push_back(0.);
     }
     for (unsigned int n = 0; n < sheet.element().n_dofs_per_cell() / 2; ++n)
       for (unsigned int i = 0; i < 2; ++i)
@@ -326,7 +326,7 @@ PointForces energy_densities(const Sheet &sheet, const double load_factor, const
     { add_energy(*sheet.constitution().gradient, point.u, order, density); };
   forces.is_symmetric = true;
   forces.has_penalty = true;
-  forces.load.factor = load_factor;
+  forces.load_factor = load_factor;
   return forces;
 }
 

@@ -35,13 +35,6 @@ struct CellPoint
   const FieldDerivatives &v;  ///< of the velocity, likewise; undefined without one
 };
 
-/// Load factor of prescribed normal gradients.
-struct GradientLoad
-{
-  double factor = 0.; ///< [-]
-  double rate = 0.;   ///< [1/s]
-};
-
 /// Densities at the points of a sheet whose derivatives are forces: those of the energy, or of viscosity and memory.
 struct PointForces
 {
@@ -54,7 +47,7 @@ struct PointForces
   bool is_symmetric = false;               ///< whether the derivative of the stresses is symmetric
   bool has_penalty = false;                ///< whether jumps of the normal derivative are penalised, eq. (C.28)
   const Sheet::Vector *velocity = nullptr; ///< [m/s], with ghost entries; nullptr: none
-  GradientLoad load;
+  double load_factor = 1.;                 ///< of prescribed normal gradients, whose rate is zero [-]
 };
 
 /// Returns the densities of the stored energy up to an order, eq. (C.28). `sheet` must outlive them.

@@ -46,7 +46,7 @@ RateForces::PointHistory RateForces::after(const FibreMemory::Step &step, const 
 }
 
 // Returns the forces after `duration`.
-PointForces RateForces::at(const double duration, const Order order, const Vector &v, const GradientLoad &load,
+PointForces RateForces::at(const double duration, const Order order, const Vector &v,
                            const double rate_by_displacement) const
 {
   const auto density = [=, steps = steps(duration)](const Viscosity *viscosity, const std::size_t part)
@@ -62,7 +62,6 @@ PointForces RateForces::at(const double duration, const Order order, const Vecto
   PointForces forces;
   forces.is_symmetric = viscosity_ == nullptr;
   forces.velocity = viscosity_ == nullptr ? nullptr : &v;
-  forces.load = load;
   forces.local = density(viscosity_, 0);
   if (has_gradient())
     forces.gradient = density(gradient_viscosity_, 1);
@@ -71,10 +70,9 @@ PointForces RateForces::at(const double duration, const Order order, const Vecto
 
 // Calls visit(part, law, point) at all points of the branches.
 template <class Visit>
-void RateForces::for_each_point(const Vector &u, const double load_factor, const Visit &visit) const
+void RateForces::for_each_point(const Vector &u, const Visit &visit) const
 {
   PointForces forces;
-  forces.load.factor = load_factor;
   forces.local = [&](const CellPoint &point, PointIntegrand &) { visit(0, *memory_[0], point); };
   if (memory_.size() > 1)
     forces.gradient = [&](const CellPoint &point, PointIntegrand &) { visit(1, *memory_[1], point); };
@@ -83,10 +81,10 @@ void RateForces::for_each_point(const Vector &u, const double load_factor, const
 }
 
 // Returns the strains at u, and overstresses of zero.
-RateForces::History RateForces::strains(const Vector &u, const double load_factor) const
+RateForces::History RateForces::strains(const Vector &u) const
 {
   History history;
-  for_each_point(u, load_factor,
+  for_each_point(u,
                  [&](const std::size_t part, const FibreMemory &law, const CellPoint &point)
                  {
                    auto &[overstress, strain] = history[part];
@@ -98,26 +96,24 @@ RateForces::History RateForces::strains(const Vector &u, const double load_facto
 }
 
 // Returns the number of variables of a part in each locally owned cell.
-std::vector<std::size_t> RateForces::n_variables_of_cells(const std::size_t part, const Vector &u,
-                                                          const double load_factor) const
+std::vector<std::size_t> RateForces::n_variables_of_cells(const std::size_t part, const Vector &u) const
 {
   std::vector<std::size_t> numbers(sheet_.mesh().n_locally_owned_active_cells());
   const std::size_t n_points = QGauss<2>(sheet_.degree() + 1).size();
-  for_each_point(u, load_factor,
-                 [&](const std::size_t of_part, const FibreMemory &law, const CellPoint &point)
+  for_each_point(u, [&](const std::size_t of_part, const FibreMemory &law, const CellPoint &point)
                  { numbers[point.number_in_cell / n_points] += of_part == part ? law.n_variables() : 0; });
   return numbers;
 }
 
-void RateForces::start(const Vector &u, const double load_factor, const std::vector<Vector> &relaxed)
+void RateForces::start(const Vector &u, const std::vector<Vector> &relaxed)
 {
   if (!memory_.empty() && !relaxed.empty() && relaxed.size() != n_branches())
     throw InvalidInput("there are " + std::to_string(n_branches()) + " branches, but " +
                        std::to_string(relaxed.size()) + " displacements in which they are relaxed");
-  history_ = strains(u, load_factor);
+  history_ = strains(u);
   for (std::size_t number = 0; number < relaxed.size(); ++number)
   {
-    const History before = strains(relaxed[number], load_factor);
+    const History before = strains(relaxed[number]);
     for (std::size_t part = 0; part < memory_.size(); ++part)
     {
       const FibreMemory &law = *memory_[part];
@@ -129,40 +125,38 @@ void RateForces::start(const Vector &u, const double load_factor, const std::vec
   }
 }
 
-void RateForces::add_forces(const double duration, const Vector &u, const Vector &v, const GradientLoad &load,
-                            Vector &forces, Vector *magnitude) const
+void RateForces::add_forces(const double duration, const Vector &u, const Vector &v, Vector &forces,
+                            Vector *magnitude) const
 {
   if (is_present())
-    continuum::add_forces(sheet_, u, at(duration, Order::first, v, load), forces, magnitude);
+    continuum::add_forces(sheet_, u, at(duration, Order::first, v), forces, magnitude);
 }
 
 template <class AnyMatrix>
-void RateForces::add_tangent(const double duration, const Vector &u, const Vector &v, const GradientLoad &load,
-                             const double rate_by_displacement, const AffineConstraints<double> &constraints,
-                             AnyMatrix &matrix) const
+void RateForces::add_tangent(const double duration, const Vector &u, const Vector &v, const double rate_by_displacement,
+                             const AffineConstraints<double> &constraints, AnyMatrix &matrix) const
 {
   if (is_present())
-    continuum::add_tangent(sheet_, u, at(duration, Order::second, v, load, rate_by_displacement), constraints, matrix);
+    continuum::add_tangent(sheet_, u, at(duration, Order::second, v, rate_by_displacement), constraints, matrix);
 }
 
-template void RateForces::add_tangent(double, const Vector &, const Vector &, const GradientLoad &, double,
-                                      const AffineConstraints<double> &, Sheet::Matrix &) const;
-template void RateForces::add_tangent(double, const Vector &, const Vector &, const GradientLoad &, double,
-                                      const AffineConstraints<double> &, SinglePrecisionMatrix &) const;
+template void RateForces::add_tangent(double, const Vector &, const Vector &, double, const AffineConstraints<double> &,
+                                      Sheet::Matrix &) const;
+template void RateForces::add_tangent(double, const Vector &, const Vector &, double, const AffineConstraints<double> &,
+                                      SinglePrecisionMatrix &) const;
 
-void RateForces::add_stresses(const Vector &u, const Vector &v, const GradientLoad &load,
-                              std::vector<Tensor<2, 2>> &stresses) const
+void RateForces::add_stresses(const Vector &u, const Vector &v, std::vector<Tensor<2, 2>> &stresses) const
 {
   if (is_present())
-    continuum::add_stresses(sheet_, u, at(0., Order::first, v, load), stresses);
+    continuum::add_stresses(sheet_, u, at(0., Order::first, v), stresses);
 }
 
-double RateForces::dissipation(const Vector &u, const Vector &v, const GradientLoad &load) const
+double RateForces::dissipation(const Vector &u, const Vector &v) const
 {
-  return viscosity_ == nullptr ? 0. : integral(sheet_, u, at(0., Order::value, v, load));
+  return viscosity_ == nullptr ? 0. : integral(sheet_, u, at(0., Order::value, v));
 }
 
-RateForces::History RateForces::advanced(const double duration, const Vector &u, const double load_factor,
+RateForces::History RateForces::advanced(const double duration, const Vector &u,
                                          std::vector<BranchEnergy> &energies) const
 {
   History next;
@@ -172,7 +166,7 @@ RateForces::History RateForces::advanced(const double duration, const Vector &u,
   std::vector<double> sums(2 * n, 0.); // stored, dissipated
   std::vector<double> density(2 * n);
   const std::vector<FibreMemory::Step> steps = this->steps(duration);
-  for_each_point(u, load_factor,
+  for_each_point(u,
                  [&](const std::size_t part, const FibreMemory &law, const CellPoint &point)
                  {
                    const PointHistory state = after(steps[part], part, point);
@@ -197,10 +191,10 @@ RateForces::History RateForces::advanced(const double duration, const Vector &u,
   return next;
 }
 
-std::vector<BranchEnergy> RateForces::stored(const Vector &u, const double load_factor) const
+std::vector<BranchEnergy> RateForces::stored(const Vector &u) const
 {
   std::vector<BranchEnergy> energies;
-  advanced(0., u, load_factor, energies);
+  advanced(0., u, energies);
   return energies;
 }
 } // namespace latcon::continuum

@@ -34,7 +34,7 @@ struct BranchEnergy
 /// last. Functions of a `duration` [s] >= 0 and u evaluate the state that follows from the history if the strains
 /// change linearly to those of u within this time; set_history() makes it the history.
 ///
-/// The nodal vectors u [m] and v [m/s] have ghost entries; a load is that of prescribed normal gradients. All functions
+/// The nodal vectors u [m] and v [m/s] have ghost entries; prescribed normal gradients are constant. All functions
 /// are collective, and throw NonPhysicalState on every rank.
 class RateForces
 {
@@ -54,28 +54,26 @@ public:
   std::size_t n_branches() const { return memory_.empty() ? 0 : memory_[0]->n_numbers(); } ///< of branch energies
 
   /// Sets the history to that of a sheet deformed suddenly to u from states in which branches were relaxed, with the
-  /// same load factor: q = E (e(u) - e(relaxed)). @param relaxed displacement for each branch by its number; empty: u
-  void start(const Vector &u, double load_factor, const std::vector<Vector> &relaxed);
+  /// same normal gradients: q = E (e(u) - e(relaxed)). @param relaxed displacement for each branch by its number;
+  /// empty: u
+  void start(const Vector &u, const std::vector<Vector> &relaxed);
 
   /// Adds the nodal forces [N/m] to `forces` and, if given, the absolute values of their terms to `magnitude`.
-  void add_forces(double duration, const Vector &u, const Vector &v, const GradientLoad &load, Vector &forces,
-                  Vector *magnitude) const;
+  void add_forces(double duration, const Vector &u, const Vector &v, Vector &forces, Vector *magnitude) const;
 
   /// Adds their derivative by u [N/m^2] to `matrix`, condensed by `constraints`, with dv/du = `rate_by_displacement`
   /// [1/s]. @tparam AnyMatrix Sheet::Matrix or SinglePrecisionMatrix
   template <class AnyMatrix>
-  void add_tangent(double duration, const Vector &u, const Vector &v, const GradientLoad &load,
-                   double rate_by_displacement, const dealii::AffineConstraints<double> &constraints,
-                   AnyMatrix &matrix) const;
+  void add_tangent(double duration, const Vector &u, const Vector &v, double rate_by_displacement,
+                   const dealii::AffineConstraints<double> &constraints, AnyMatrix &matrix) const;
 
   /// Adds the first Piola stresses [Pa] of v and of the present history, that of the last update at u, at the points of
   /// the elastic energy, the cells on this rank in their order.
-  void add_stresses(const Vector &u, const Vector &v, const GradientLoad &load,
-                    std::vector<dealii::Tensor<2, 2>> &stresses) const;
+  void add_stresses(const Vector &u, const Vector &v, std::vector<dealii::Tensor<2, 2>> &stresses) const;
 
   /// Returns the power dissipated by viscosity [W/m] per unit reference thickness, the integral of 2 R and 2 R_g. It
   /// exceeds that of the nodal forces by the power of prescribed normal gradients.
-  double dissipation(const Vector &u, const Vector &v, const GradientLoad &load) const;
+  double dissipation(const Vector &u, const Vector &v) const;
 
   /// Overstresses [Pa] and stretches [-], of gradients [Pa/m] and [1/m], where a law is evaluated on this rank.
   struct PointHistory
@@ -89,20 +87,20 @@ public:
 
   /// Returns the history at u after `duration`, and adds the energies dissipated until then to `energies`, whose
   /// stored energies are set to those at the end; n_branches() of them.
-  History advanced(double duration, const Vector &u, double load_factor, std::vector<BranchEnergy> &energies) const;
+  History advanced(double duration, const Vector &u, std::vector<BranchEnergy> &energies) const;
 
   /// Returns the energies that the branches store in the present history, that of the last update at u [J/m].
-  std::vector<BranchEnergy> stored(const Vector &u, double load_factor) const;
+  std::vector<BranchEnergy> stored(const Vector &u) const;
 
   /// Saves the history to an archive or loads it from there. @param u displacement at the last update
   template <class Archive>
-  void archive(Archive &archive, const Vector &u, double load_factor)
+  void archive(Archive &archive, const Vector &u)
   {
     if constexpr (Archive::loads)
-      start(u, load_factor, {});
+      start(u, {});
     for (std::size_t part = 0; part < memory_.size(); ++part)
     {
-      const CellOrder order(sheet_, n_variables_of_cells(part, u, load_factor));
+      const CellOrder order(sheet_, n_variables_of_cells(part, u));
       std::vector<double> all;
       if constexpr (!Archive::loads)
         all = order.gather(history_[part].overstress);
@@ -113,14 +111,13 @@ public:
   }
 
 private:
-  PointForces at(double duration, Order order, const Vector &v, const GradientLoad &load,
-                 double rate_by_displacement = 0.) const;
+  PointForces at(double duration, Order order, const Vector &v, double rate_by_displacement = 0.) const;
   PointHistory after(const FibreMemory::Step &step, std::size_t part, const CellPoint &point) const;
   std::vector<FibreMemory::Step> steps(double duration) const;
   template <class Visit>
-  void for_each_point(const Vector &u, double load_factor, const Visit &visit) const;
-  History strains(const Vector &u, double load_factor) const;
-  std::vector<std::size_t> n_variables_of_cells(std::size_t part, const Vector &u, double load_factor) const;
+  void for_each_point(const Vector &u, const Visit &visit) const;
+  History strains(const Vector &u) const;
+  std::vector<std::size_t> n_variables_of_cells(std::size_t part, const Vector &u) const;
 
   const Sheet &sheet_;
   const Viscosity *viscosity_;

@@ -197,8 +197,8 @@ TEST(GradientEquilibrium, LiftsAKinkAsInClosedForm)
     const double expected = n_by_h * gradient.modulus() * s * s * p * p / 4. * 2. * h;
     // Round-off of two energies of the order of 1e3 J/m.
     EXPECT_NEAR(with.energy(u) - without.energy(u), expected, 1e-11 * without.energy(u)) << p;
-    const double of_stretches = RateForces(with, &local_dashpots, nullptr).dissipation(with.make_ghosted(), u, {});
-    const double of_both = RateForces(with, &dashpots, nullptr).dissipation(with.make_ghosted(), u, {});
+    const double of_stretches = RateForces(with, &local_dashpots, nullptr).dissipation(with.make_ghosted(), u);
+    const double of_both = RateForces(with, &dashpots, nullptr).dissipation(with.make_ghosted(), u);
     EXPECT_NEAR(of_both - of_stretches, power.value * n_by_h * p * p / 2. * 2. * h, 1e-10 * of_both) << p;
   }
 }

@@ -79,7 +79,7 @@ inline Tensor<1, 2> momentum(const latcon::continuum::DynamicSolver &solver)
 struct RefusingNetwork : latcon::continuum::CauchyBorn
 {
   RefusingNetwork() : CauchyBorn(rubber_network()) {}
-  Response evaluate(const Tensor<2, 2> &F, latcon::continuum::Order order) const override
+  latcon::continuum::Response evaluate(const Tensor<2, 2> &F, latcon::continuum::Order order) const override
   {
     if (refusals == 0)
       return CauchyBorn::evaluate(F, order);

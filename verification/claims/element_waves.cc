@@ -237,7 +237,7 @@ std::array<bridge::PlaneWave, 2> discrete_waves(const WaveContinuum &medium, con
   continuum::Sheet::Matrix damping;
   sheet.make_matrix(sheet.conformity_constraints(), damping);
   continuum::RateForces(sheet, medium.viscosity.get(), nullptr)
-    .add_tangent(0., u, sheet.make_ghosted(), {}, 1., sheet.conformity_constraints(), damping);
+    .add_tangent(0., u, sheet.make_ghosted(), 1., sheet.conformity_constraints(), damping);
   Eigen::Matrix2d K2, C2, M2;
   for (std::size_t v = 0; v < 2; ++v)
     for (std::size_t w = 0; w < 2; ++w)
