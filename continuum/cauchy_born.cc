@@ -42,10 +42,4 @@ Response CauchyBorn::evaluate(const Tensor<2, 2> &F, const Order order) const
   }
   return W;
 }
-
-double CauchyBorn::thickness_stretch(const Tensor<2, 2> &F) const
-{
-  checked_determinant(F);
-  return 1.;
-}
 } // namespace latcon::continuum

@@ -10,8 +10,7 @@ namespace latcon::continuum
 /// Hyperelastic law of a network of fibres that all follow the deformation gradient (Cauchy-Born rule;
 /// theory-continuum.md, eqs. (C.11) to (C.14)):
 ///   W(F) = sum over families of  c_k psi_k(l_k),   l_k = |F N_k|    [Pa]
-/// Exact for a periodic network whose unit cell has one point. The law does not model the thickness:
-/// thickness_stretch() returns 1.
+/// Exact for a periodic network whose unit cell has one point. The law does not model the thickness.
 class CauchyBorn : public Material
 {
 public:
@@ -20,7 +19,6 @@ public:
   explicit CauchyBorn(std::vector<FibreFamily> families);
 
   Response evaluate(const dealii::Tensor<2, 2> &F, Order order) const override;
-  double thickness_stretch(const dealii::Tensor<2, 2> &F) const override;
 
   const std::vector<FibreFamily> &families() const { return families_; }
 

@@ -31,7 +31,6 @@ public:
     W.tangent -= 0.5 * cut.tangent;
     return W;
   }
-  double thickness_stretch(const Tensor<2, 2> &F) const override { return whole_.thickness_stretch(F); }
 
 private:
   const Material &whole_;

@@ -76,10 +76,4 @@ Response IsotropicNetwork::evaluate(const Tensor<2, 2> &F, const Order order) co
   }
   return result;
 }
-
-double IsotropicNetwork::thickness_stretch(const Tensor<2, 2> &F) const
-{
-  checked_determinant(F);
-  return 1.;
-}
 } // namespace latcon::continuum

@@ -12,8 +12,7 @@ namespace latcon::continuum
 /// form (theory-continuum.md, eqs. (C.50) to (C.56)). With Mooney-Rivlin rods it is the Mooney-Rivlin law of a network.
 /// The mean of custom potentials is a sum over n_directions equally spaced fibres, by which an analytic potential is
 /// integrated to round-off: with principal stretches p > q the error falls as ((p - q) / (p + q))^n_directions.
-/// It differs from CauchyBorn only in the dependence on direction. The law does not model the thickness:
-/// thickness_stretch() returns 1.
+/// It differs from CauchyBorn only in the dependence on direction. The law does not model the thickness.
 ///
 /// The mean depends only on F^T F and is therefore even in det F. As every law it throws for det F < 0: such a state
 /// cannot be reached, because the energy of rods with b >= 0 grows without bound as det F -> 0.
@@ -24,7 +23,6 @@ public:
   explicit IsotropicNetwork(const std::vector<FibreFamily> &families);
 
   Response evaluate(const dealii::Tensor<2, 2> &F, Order order) const override;
-  double thickness_stretch(const dealii::Tensor<2, 2> &F) const override;
 
   static constexpr unsigned int n_directions = 96;
 

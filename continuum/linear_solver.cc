@@ -58,7 +58,7 @@ void LinearSolver::update(const Sheet::Vector &u, const Assembler &assemble, con
 void LinearSolver::set_up()
 {
   if (!multigrid_)
-    multigrid_ = std::make_unique<Multigrid>(sheet_, held_, settings_.multigrid);
+    multigrid_ = std::make_unique<Multigrid>(sheet_, held_, settings_.coarsest_size);
   is_stale_ = true; // also if the update throws
   multigrid_->set_finest(*single_matrix_);
   multigrid_->update(state_, assemble_coarser_);

@@ -21,7 +21,8 @@ struct LinearSettings
   double rebuild_ratio = 1.5;
   /// Maximum number of Krylov iterations.
   unsigned int max_iterations = 200;
-  MultigridSettings multigrid;
+  /// Number of unknowns up to which a level of multigrid is solved directly.
+  dealii::types::global_dof_index coarsest_size = 2000;
 };
 
 /// Symmetry of the matrices of a LinearSolver.

@@ -46,9 +46,6 @@ public:
     return evaluate(F, Order::first).first_piola;
   }
   dealii::Tensor<4, 2> tangent(const dealii::Tensor<2, 2> &F) const { return evaluate(F, Order::second).tangent; }
-
-  /// Thickness stretch F_33 [-], current over reference thickness; 1 for laws that do not model the thickness.
-  virtual double thickness_stretch(const dealii::Tensor<2, 2> &F) const = 0;
 };
 
 /// Returns det F [-] of the in-plane deformation gradient. Throws NonPhysicalState unless it is finite and > 0. To be

@@ -41,16 +41,11 @@ namespace
 {
 // Bound of the eigenvalues of patches times tangent, theory-continuum.md, "Linear solver".
 constexpr double largest_eigenvalue = 6.;
+constexpr double smoothed_range = 6.; // largest over smallest eigenvalue that is smoothed
 } // namespace
 
-Multigrid::Multigrid(const Sheet &fine, const DirichletBoundaries &held, const MultigridSettings &settings)
-  : settings_(settings)
+Multigrid::Multigrid(const Sheet &fine, const DirichletBoundaries &held, const types::global_dof_index coarsest_size)
 {
-  if (settings.smoothing_degree == 0)
-    throw InvalidInput("the smoothing degree must be at least 1");
-  if (!(settings.smoothing_range > 1. && std::isfinite(settings.smoothing_range)))
-    throw InvalidInput("the smoothing range must be finite and greater than 1");
-
   // From the finest level down to the first level that is small enough.
   const auto meshes = MGTransferGlobalCoarseningTools::create_geometric_coarsening_sequence(
     static_cast<const Triangulation<2> &>(fine.mesh()));
@@ -67,7 +62,7 @@ Multigrid::Multigrid(const Sheet &fine, const DirichletBoundaries &held, const M
     }
     const Sheet &sheet = *level->sheet;
     level->constraints = homogeneous_constraints(sheet, held);
-    const bool is_coarsest = n == 0 || sheet.dof_handler().n_dofs() <= settings.coarsest_size;
+    const bool is_coarsest = n == 0 || sheet.dof_handler().n_dofs() <= coarsest_size;
     if (is_coarsest)
       sheet.make_matrix(level->constraints, level->coarsest_tangent);
     else if (level->own_sheet)
@@ -173,9 +168,8 @@ void Multigrid::set_tangent(const unsigned int l, const SinglePrecisionMatrix &K
   level.patches->factorise(K);
   // Double the degree on each coarser level, at a small part of the total cost: see theory-continuum.md, "Linear
   // solver". More doublings do not reduce the iterations.
-  const unsigned int doublings = std::min<unsigned int>(levels_.size() - 1 - l, 4);
-  Level::Smoother::AdditionalData data(settings_.smoothing_degree << doublings, settings_.smoothing_range, 0, 0.,
-                                       largest_eigenvalue);
+  const unsigned int degree = 2 << std::min<unsigned int>(levels_.size() - 1 - l, 4);
+  Level::Smoother::AdditionalData data(degree, smoothed_range, 0, 0., largest_eigenvalue);
   data.preconditioner = level.patches;
   level.smoother.initialize(K, data);
 }

@@ -45,18 +45,6 @@ private:
   Function<SinglePrecisionMatrix> single_;
 };
 
-/// Settings of Multigrid.
-struct MultigridSettings
-{
-  /// Degree >= 1 of the Chebyshev smoother on the finest level, before and after the coarse-grid correction. The degree
-  /// doubles on each coarser level, up to 16 times this value.
-  unsigned int smoothing_degree = 2;
-  double smoothing_range = 6.; ///< largest over smallest eigenvalue of the smoothed range [-], > 1
-  /// Number of unknowns below which a level is solved directly. A mesh that cannot be coarsened further is solved
-  /// directly as well.
-  dealii::types::global_dof_index coarsest_size = 2000;
-};
-
 /// Preconditioner for the tangent of a sheet: one V-cycle of geometric multigrid with global coarsening. Each level has
 /// a Sheet on a mesh that is coarsened everywhere by one refinement, including its hanging nodes. The tangent is
 /// assembled on each level at the interpolated state. The smoother is a Chebyshev polynomial over VertexPatches, and
@@ -72,10 +60,9 @@ class Multigrid
 public:
   using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
   /// Builds the parts that depend only on the mesh: levels, transfers, sparsity, patches. `fine` must outlive the
-  /// multigrid, and its mesh must not change. `held` are the components with prescribed displacement. Throws
-  /// InvalidInput for settings out of range.
-  Multigrid(const Sheet &fine, const DirichletBoundaries &held,
-            const MultigridSettings &settings = MultigridSettings());
+  /// multigrid, and its mesh must not change. `held` are the components with prescribed displacement. A level of at
+  /// most `coarsest_size` unknowns is solved directly, as is a mesh that cannot be coarsened further.
+  Multigrid(const Sheet &fine, const DirichletBoundaries &held, dealii::types::global_dof_index coarsest_size);
   ~Multigrid();
   Multigrid(const Multigrid &) = delete;
   Multigrid &operator=(const Multigrid &) = delete;
@@ -118,7 +105,6 @@ private:
   void set_tangent(unsigned int level, const SinglePrecisionMatrix &K);
   void cycle(unsigned int level, Vector &z, const Vector &r) const;
 
-  MultigridSettings settings_;
   std::vector<std::unique_ptr<Level>> levels_; // from the coarsest to the finest
   std::unique_ptr<DirectSolver> coarsest_;
 };

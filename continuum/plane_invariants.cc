@@ -49,23 +49,13 @@ void add(InvariantFunction &sum, const double factor, const InvariantFunction &t
   sum.by_JJ += factor * term.by_JJ;
 }
 
-Tensor<2, 2> cofactor(const Tensor<2, 2> &F)
-{
-  Tensor<2, 2> cof;
-  cof[0][0] = F[1][1];
-  cof[0][1] = -F[1][0];
-  cof[1][0] = -F[0][1];
-  cof[1][1] = F[0][0];
-  return cof;
-}
-
 Response response(const InvariantFunction &W, const Tensor<2, 2> &F, const Order order)
 {
   Response result;
   result.energy = W.value;
   if (order == Order::value)
     return result;
-  const Tensor<2, 2> cof = cofactor(F);
+  const Tensor<2, 2> cof({{F[1][1], -F[1][0]}, {-F[0][1], F[0][0]}}); // d det F / dF
   result.first_piola = 2. * W.by_I * F + W.by_J * cof;
   if (order == Order::first)
     return result;

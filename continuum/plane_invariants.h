@@ -16,9 +16,6 @@ struct InvariantFunction
 /// Adds factor * term to `sum`.
 void add(InvariantFunction &sum, double factor, const InvariantFunction &term);
 
-/// Returns the cofactor cof F_iJ = d det F / dF_iJ [-].
-dealii::Tensor<2, 2> cofactor(const dealii::Tensor<2, 2> &F);
-
 /// Returns an energy W(I, J) [Pa] at F with its derivatives by F up to `order` (theory-continuum.md, eqs. (C.55),
 /// (C.56)).
 Response response(const InvariantFunction &W, const dealii::Tensor<2, 2> &F, Order order);

@@ -43,7 +43,6 @@ public:
   {
     return left.evaluate(F, order);
   }
-  double thickness_stretch(const Tensor<2, 2> &F) const override { return left.thickness_stretch(F); }
 
   const continuum::MooneyRivlin left = rubber_sheet(), right = rubber_sheet(0.3);
 };

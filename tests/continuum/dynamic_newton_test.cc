@@ -51,7 +51,7 @@ TEST(DynamicSolver, GmresAgreesWithTheDirectSolver)
     RectangleMesh mesh(rectangle(8, 8));
     DynamicSettings settings = quadratic(5e-4);
     settings.linear.direct_limit = direct_limit;
-    settings.linear.multigrid.coarsest_size = 100;
+    settings.linear.coarsest_size = 100;
     DynamicSolver solver(mesh, Constitution(problem.law, problem.gradient), problem.conditions(), {density, 0.01},
                          settings, &viscosity);
     start(solver);

@@ -270,7 +270,7 @@ TEST(GradientEquilibrium, InexactStepsEndAtTheSameEquilibrium)
     StaticSettings settings;
     settings.degree = 2;
     settings.linear.direct_limit = 0;
-    settings.linear.multigrid.coarsest_size = 150;
+    settings.linear.coarsest_size = 150;
     settings.largest_forcing = largest_forcing;
     StaticSolver solver(mesh, Constitution(law, gradient), clamped_bump(1.5, 1.8, 0.02), settings);
     const SolverReport report = solver.solve();

@@ -25,7 +25,7 @@ struct Problem
     constraints = std::make_unique<AffineConstraints<double>>();
     constraints->copy_from(continuum::homogeneous_constraints(*sheet, all_held()));
     settings.direct_limit = 0;
-    settings.multigrid.coarsest_size = 100;
+    settings.coarsest_size = 100;
     solver = std::make_unique<LinearSolver>(*sheet, *constraints, all_held(), settings, symmetry);
     b = sheet->make_owned();
     body_force(*sheet, *constraints, b);

@@ -57,7 +57,6 @@ void expect_isotropic_moduli(const Material &law, const double lambda, const dou
   const Tensor<2, 2> I = matrix(1., 0., 0., 1.);
   EXPECT_NEAR(law.energy(I), 0., 10. * epsilon * mu);
   EXPECT_NEAR(law.first_piola_stress(I).norm(), 0., 10. * epsilon * mu);
-  EXPECT_NEAR(law.thickness_stretch(I), 1., 10. * epsilon);
   const Tensor<4, 2> T = law.tangent(I);
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int J = 0; J < 2; ++J)
@@ -114,7 +113,6 @@ TEST(CauchyBorn, AgreesWithDifferentiatedEnergy)
   {
     const Tensor<2, 2> F = random_deformation(generator);
     expect_derivatives(mixed_network, NetworkEnergy{mixed_network.families()}, F, 1.);
-    EXPECT_EQ(mixed_network.thickness_stretch(F), 1.);
   }
 }
 
@@ -275,7 +273,6 @@ TEST(Material, RefusesNonPositiveDeterminant)
       EXPECT_THROW(law->energy(F), continuum::NonPhysicalState);
       EXPECT_THROW(law->first_piola_stress(F), continuum::NonPhysicalState);
       EXPECT_THROW(law->tangent(F), continuum::NonPhysicalState);
-      EXPECT_THROW(law->thickness_stretch(F), continuum::NonPhysicalState);
     }
     try
     {

@@ -89,7 +89,7 @@ public:
     conditions_.normal_gradients = {{edge::top, constant(0.3, 0.2)}};
     continuum::DynamicSettings settings = quadratic(4e-4);
     settings.linear.direct_limit = 0;
-    settings.linear.multigrid.coarsest_size = 100;
+    settings.linear.coarsest_size = 100;
     settings.linear.rebuild_ratio = 1.1; // so that some but not all of the steps rebuild it
     make_solver(settings, has_dashpots);
   }

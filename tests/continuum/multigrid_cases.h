@@ -86,14 +86,14 @@ inline unsigned int solve(const Multigrid &multigrid, const SinglePrecisionMatri
 struct HeldSheet
 {
   HeldSheet(const double internal_length, const unsigned int degree, const latcon::continuum::Rectangle &shape,
-            const unsigned int times, const latcon::continuum::MultigridSettings &settings,
+            const unsigned int times, const dealii::types::global_dof_index coarsest_size,
             const MPI_Comm communicator = MPI_COMM_SELF)
     : gradient(5e5, internal_length), mesh(communicator)
   {
     latcon::continuum::make_rectangle(mesh, shape);
     refine_towards(mesh, Point<2>(0.4 * length, 0.003), times, length / 3.);
     sheet = std::make_unique<Sheet>(mesh, latcon::continuum::Constitution(law, gradient), degree);
-    multigrid = std::make_unique<Multigrid>(*sheet, all_held(), settings);
+    multigrid = std::make_unique<Multigrid>(*sheet, all_held(), coarsest_size);
     sheet->make_matrix(multigrid->constraints(), K);
     assemble_at_rest(*sheet, {}, multigrid->constraints(), K);
     K.make_symmetric();

@@ -71,7 +71,7 @@ Answer adaptive_answer(const MPI_Comm communicator, const dealii::types::global_
   settings.relative_tolerance = 1e-13;
   settings.linear.direct_limit = direct_limit;
   settings.linear.relative_tolerance = 1e-10;
-  settings.linear.multigrid.coarsest_size = 100;
+  settings.linear.coarsest_size = 100;
   StaticSolver solver(mesh, continuum::Constitution(law, gradient), conditions, settings);
   solver.solve();
   for (unsigned int cycle = 0; cycle < 2; ++cycle)
@@ -100,9 +100,7 @@ struct LinearAnswer
 // the ratio of the stiffnesses against short and long waves; measured 1e-6.
 LinearAnswer linear_answer(const MPI_Comm communicator, const unsigned int degree)
 {
-  continuum::MultigridSettings settings;
-  settings.coarsest_size = 100;
-  const multigrid_cases::HeldSheet problem(0.03 * length, degree, rectangle(6, 4), 3, settings, communicator);
+  const multigrid_cases::HeldSheet problem(0.03 * length, degree, rectangle(6, 4), 3, 100, communicator);
   const continuum::Sheet &sheet = *problem.sheet;
   continuum::Sheet::Vector b = sheet.make_owned();
   continuum::Sheet::Vector x = sheet.make_owned();

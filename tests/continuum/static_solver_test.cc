@@ -125,7 +125,7 @@ TEST(StaticSolver, ConjugateGradientsAgreeWithDirectSolver)
     StaticSolver direct(mesh, rubber, conditions, settings);
     const SolverReport expected = direct.solve();
     settings.linear.direct_limit = 0;
-    settings.linear.multigrid.coarsest_size = 300;
+    settings.linear.coarsest_size = 300;
     StaticSolver iterative(mesh, rubber, conditions, settings);
     const SolverReport report = iterative.solve();
     const double energy = direct.total_energy();
@@ -168,7 +168,7 @@ TEST(StaticSolver, StartsAnewIfTheStateOfACoarserMeshFails)
   StaticSolver direct(mesh, rubber, on_all_edges(waves), settings);
   direct.solve();
   settings.linear.direct_limit = 0;
-  settings.linear.multigrid.coarsest_size = 300;
+  settings.linear.coarsest_size = 300;
   StaticSolver iterative(mesh, rubber, on_all_edges(waves), settings);
   std::vector<double> load_factors;
   const SolverReport report = iterative.solve([&](const double load_factor) { load_factors.push_back(load_factor); });
@@ -191,7 +191,6 @@ public:
       throw NonPhysicalState("broken");
     return rubber.evaluate(F, order);
   }
-  double thickness_stretch(const Tensor<2, 2> &F) const override { return rubber.thickness_stretch(F); }
   bool is_broken = false;
 };
 

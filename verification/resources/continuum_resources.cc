@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "continuum/linear_solver.h"
 #include "continuum/meshes.h"
 #include "support/errors.h"
 #include "support/ranks.h"
@@ -75,7 +76,7 @@ ContinuumSize continuum_size(const input::Case &input)
   size.coarse_unknowns = size.final_unknowns;
   if (!is_direct(input, size.final_unknowns))
   {
-    constexpr double coarsest_size = 2000.; // as in continuum::MultigridSettings
+    const auto coarsest_size = static_cast<double>(continuum::LinearSettings().coarsest_size);
     double coarse = coarse_cells;
     while (4. * coarse <= size.cells && unknowns(4. * coarse) <= coarsest_size)
       coarse *= 4.;
