@@ -52,9 +52,9 @@ TEST(DynamicSolver, GmresAgreesWithTheDirectSolver)
     DynamicSettings settings = quadratic(5e-4);
     settings.linear.direct_limit = direct_limit;
     settings.linear.coarsest_size = 100;
-    DynamicSolver solver(mesh, Constitution(problem.law, problem.gradient), problem.conditions(), {density, 0.01},
-                         settings, &viscosity);
-    start(solver);
+    DynamicSolver solver(mesh, Constitution(problem.law, problem.gradient), problem.held(), {density, 0.01}, settings,
+                         &viscosity);
+    start(solver, nullptr, Problem::velocity());
     std::size_t newton = 0;
     unsigned int most_linear = 0;
     for (int n = 0; n < 6; ++n)

@@ -21,14 +21,14 @@ const auto average_acceleration = NewmarkParameters::average_acceleration();
 const auto generalised_alpha = NewmarkParameters::generalised_alpha(0.6);
 
 constexpr double final_time = 8e-3;
+const FibreViscosity dashpots = network_viscosity(80., 0.01);
 
 std::unique_ptr<DynamicSolver> moved(const Mesh &mesh, const Problem &problem, const NewmarkParameters &rule,
                                      const unsigned int n_steps, const bool is_viscous = true)
 {
   const DynamicSettings settings = quadratic(final_time / n_steps, rule);
-  auto solver =
-    std::make_unique<DynamicSolver>(mesh, Constitution(problem.law, problem.gradient), problem.held(),
-                                    Inertia{density, 0.01}, settings, is_viscous ? &problem.viscosity : nullptr);
+  auto solver = std::make_unique<DynamicSolver>(mesh, Constitution(problem.law, problem.gradient), problem.held(),
+                                                Inertia{density, 0.01}, settings, is_viscous ? &dashpots : nullptr);
   start(*solver, nullptr, Problem::velocity());
   run_until(*solver, final_time);
   return solver;
@@ -64,7 +64,7 @@ TEST(DynamicSolver, IsOfSecondOrderInTimeWithItsLedger)
     EXPECT_LT(std::abs(ledger.imbalance), 0.01 * energy);
     EXPECT_GT(ledger.micro_kinetic, 0.01 * ledger.kinetic);
     EXPECT_LT(ledger.micro_kinetic, ledger.kinetic);
-    EXPECT_EQ(ledger.dissipated > 0.05 * energy, is_viscous);
+    EXPECT_EQ(ledger.dissipated > 0.05 * energy, is_viscous) << ledger.dissipated << " of " << energy;
     EXPECT_EQ(ledger.dissipated == 0., !is_viscous);
   };
   expect_second_order(*moved(mesh, problem, average_acceleration, 40), *half, true);
