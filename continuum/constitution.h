@@ -15,26 +15,15 @@ struct Constitution
   /// Returns true if there is a gradient law that is not identically zero.
   bool has_gradient() const { return gradient != nullptr && !gradient->is_zero(); }
 
-  /// W(F) + W_g(F, G) [J/m^3] at the reference position X [m].
-  double energy(const dealii::Point<2> &X, const dealii::Tensor<2, 2> &F, const dealii::Tensor<3, 2> &G) const
+  /// Returns W(F) + W_g(F, G) [J/m^3] at the reference position X [m] with its first derivatives.
+  GradientResponse evaluate(const dealii::Point<2> &X, const dealii::Tensor<2, 2> &F,
+                            const dealii::Tensor<3, 2> &G) const
   {
-    return local->at(X).energy(F) + (has_gradient() ? gradient->energy(F, G) : 0.);
-  }
-
-  /// P_iJ = d(W + W_g)/dF_iJ [Pa] at the reference position X [m].
-  dealii::Tensor<2, 2> first_piola_stress(const dealii::Point<2> &X, const dealii::Tensor<2, 2> &F,
-                                          const dealii::Tensor<3, 2> &G) const
-  {
-    dealii::Tensor<2, 2> P = local->at(X).first_piola_stress(F);
-    if (has_gradient())
-      P += gradient->first_piola_stress(F, G);
-    return P;
-  }
-
-  /// Q_iJK = dW_g/dG_iJK [Pa m].
-  dealii::Tensor<3, 2> double_stress(const dealii::Tensor<2, 2> &F, const dealii::Tensor<3, 2> &G) const
-  {
-    return has_gradient() ? gradient->double_stress(F, G) : dealii::Tensor<3, 2>();
+    GradientResponse sum = has_gradient() ? gradient->evaluate(F, G, Order::first) : GradientResponse();
+    const Response W = local->at(X).evaluate(F, Order::first);
+    sum.energy += W.energy;
+    sum.first_piola += W.first_piola;
+    return sum;
   }
 
   const Material *local;

@@ -151,7 +151,8 @@ void DynamicSolver::start(const Vector &displacement, const Vector &velocity, co
   n_divided_steps_ = 0;
   ledger_ = EnergyLedger();
   report_ = SolverReport();
-  branch_energies_ = rate_forces_.stored(u_ghosted);
+  branch_energies_.clear();
+  rate_forces_.advanced(0., u_ghosted, branch_energies_);
   update_energies(ledger_, u, v, branch_energies_);
   initial_energy_ = ledger_.stored + ledger_.kinetic;
   has_started_ = true;

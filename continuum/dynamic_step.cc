@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 
 using namespace dealii;
@@ -73,32 +74,25 @@ std::string DynamicSolver::location_of_largest(const Vector &residual) const
 DynamicSolver::Residual DynamicSolver::best_residual(const Step &step, const Vector &first, const Vector &second,
                                                      Vector &u) const
 {
-  std::unique_ptr<Residual> state;
-  try
-  {
-    state = std::make_unique<Residual>(evaluate(step, first));
-    u = first;
-    if (state->free <= 0.1 * state->reference)
-      return *state;
-  }
-  catch (const NonPhysicalState &)
-  {
-    u = second;
-    return evaluate(step, second);
-  }
-  try
-  {
-    Residual other = evaluate(step, second);
-    if (other.free < state->free)
+  std::optional<Residual> best;
+  for (const Vector *predicted : {&first, &second})
+    try
     {
-      u = second;
-      return other;
+      Residual state = evaluate(step, *predicted);
+      if (!best || state.free < best->free)
+      {
+        best = std::move(state);
+        u = *predicted;
+      }
+      if (best->free <= 0.1 * best->reference)
+        break;
     }
-  }
-  catch (const NonPhysicalState &)
-  {
-  }
-  return *state;
+    catch (const NonPhysicalState &)
+    {
+      if (predicted == &second && !best)
+        throw;
+    }
+  return *best;
 }
 
 // Turns the derivative K of the mean forces by the mean displacement into that of the residual by the displacement at

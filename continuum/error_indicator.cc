@@ -33,7 +33,6 @@ public:
   double operator()(const LiftedFace::Cell &cell, const LiftedFace &at)
   {
     values_.reinit(cell, at.face, at.subface, at.neighbor, at.neighbor_face, at.neighbor_subface);
-    const Constitution &laws = sheet_.constitution();
     const double h = std::min(cell->measure() / cell->face(at.face)->measure(),
                               at.neighbor->measure() / at.neighbor->face(at.neighbor_face)->measure());
     for (unsigned int s = 0; s < 2; ++s)
@@ -59,9 +58,10 @@ public:
         slope_jump += sign * (F * N);
         for (unsigned int i = 0; i < 2; ++i)
           F[i][i] += 1.;
-        P_jump += sign * laws.first_piola_stress(values_.get_quadrature_points()[q], F, hessians_[s][q]);
-        if (sheet_.has_gradient())
-          double_traction_jump += sign * ((laws.double_stress(F, hessians_[s][q]) * N) * N);
+        const GradientResponse W =
+          sheet_.constitution().evaluate(values_.get_quadrature_points()[q], F, hessians_[s][q]);
+        P_jump += sign * W.first_piola;
+        double_traction_jump += sign * ((W.double_stress * N) * N);
       }
       double at_point = h / (2. * p * shear_modulus_) * (P_jump * N).norm_square();
       if (sheet_.has_gradient())

@@ -81,8 +81,7 @@ FibreMemory::Step FibreMemory::step(const double duration) const
     const double rise = -std::expm1(-x);
     const double mean = mean_decay(x);
     const double of_change = x > 0. ? modulus * mean_squared_rise(x) / x : 0.;
-    step.coefficients.push_back(
-      {std::exp(-x), modulus * mean, -0.5 * std::expm1(-2. * x) / modulus, rise * mean, of_change});
+    step.push_back({std::exp(-x), modulus * mean, -0.5 * std::expm1(-2. * x) / modulus, rise * mean, of_change});
   }
   return step;
 }
@@ -99,7 +98,7 @@ void FibreMemory::advance(const Step &step, const double *before, const double *
   for (std::size_t v = 0; v < variables_.size(); ++v)
   {
     const std::size_t e = variables_[v].strain;
-    q[v] = step.coefficients[v].decay * q[v] + step.coefficients[v].gain * (now[e] - before[e]);
+    q[v] = step[v].decay * q[v] + step[v].gain * (now[e] - before[e]);
   }
 }
 
@@ -121,7 +120,7 @@ void FibreMemory::add_dissipated(const Step &step, const double *before, const d
 {
   for (std::size_t v = 0; v < variables_.size(); ++v)
   {
-    const auto &of_branch = step.coefficients[v];
+    const auto &of_branch = step[v];
     const double change = now[variables_[v].strain] - before[variables_[v].strain];
     by_number[variables_[v].number] +=
       variables_[v].weight * (of_branch.of_squares * q[v] * q[v] + of_branch.of_product * q[v] * change +
@@ -139,7 +138,7 @@ void FibreMemory::add_density(const Step &step, const FieldDerivatives &u, const
     for (; v < variables_.size() && variables_[v].strain == e; ++v)
     {
       force += strains_[e].weight * q[v];
-      gain += order == Order::second ? strains_[e].weight * step.coefficients[v].gain : 0.;
+      gain += order == Order::second ? strains_[e].weight * step[v].gain : 0.;
     }
     const FibreStrain strain(strains_[e], u);
     strain.add_force(force, density);

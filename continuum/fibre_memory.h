@@ -52,20 +52,16 @@ public:
   std::size_t n_variables() const { return variables_.size(); }
   std::size_t n_numbers() const { return n_numbers_; } ///< of branches in energy ledgers
 
-  /// Coefficients of an update over one duration, per variable (theory-viscoelastic.md, eqs. (V.2), (V.5)).
-  struct Step
+  /// Coefficients of one variable in an update over one duration (theory-viscoelastic.md, eqs. (V.2), (V.5)).
+  struct Coefficients
   {
-    /// Coefficients of one variable.
-    struct Coefficients
-    {
-      double decay;      ///< e^(-h/tau) [-]
-      double gain;       ///< E (1 - e^(-h/tau)) tau/h [Pa]; E for h = 0
-      double of_squares; ///< dissipated energy per q^2 [1/Pa]
-      double of_product; ///< dissipated energy per q dl [-]
-      double of_change;  ///< dissipated energy per dl^2 [Pa]
-    };
-    std::vector<Coefficients> coefficients;
+    double decay;      ///< e^(-h/tau) [-]
+    double gain;       ///< E (1 - e^(-h/tau)) tau/h [Pa]; E for h = 0
+    double of_squares; ///< dissipated energy per q^2 [1/Pa]
+    double of_product; ///< dissipated energy per q dl [-]
+    double of_change;  ///< dissipated energy per dl^2 [Pa]
   };
+  using Step = std::vector<Coefficients>; ///< of all variables
 
   /// Returns the coefficients for the duration h [s] >= 0.
   Step step(double duration) const;

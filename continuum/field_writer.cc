@@ -62,7 +62,8 @@ public:
           F[i][J] = (i == J ? 1. : 0.) + inputs.solution_gradients[p][i][J];
         G[i] = inputs.solution_hessians[p][i];
       }
-      Tensor<2, 2> P = laws_.first_piola_stress(inputs.evaluation_points[p], F, G);
+      const GradientResponse W = laws_.evaluate(inputs.evaluation_points[p], F, G);
+      Tensor<2, 2> P = W.first_piola;
       for (unsigned int k = 0; k < interpolation_.n() && !stresses_.empty(); ++k)
         P += interpolation_(p, k) * stresses_[first_stress + k];
       const Tensor<2, 2> sigma = cauchy_stress(P, F);
@@ -73,8 +74,8 @@ public:
           computed[p][4 + 2 * i + J] = P[i][J];
           computed[p][8 + 2 * i + J] = sigma[i][J];
         }
-      computed[p][12] = laws_.energy(inputs.evaluation_points[p], F, G);
-      const Tensor<3, 2> Q = laws_.double_stress(F, G);
+      computed[p][12] = W.energy;
+      const Tensor<3, 2> &Q = W.double_stress;
       for (unsigned int i = 0; i < 2; ++i)
         for (unsigned int J = 0; J < 2; ++J)
           for (unsigned int K = 0; K < 2; ++K)

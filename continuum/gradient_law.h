@@ -37,14 +37,6 @@ public:
   virtual GradientResponse evaluate(const dealii::Tensor<2, 2> &F, const Gradient &G, Order order) const = 0;
 
   double energy(const dealii::Tensor<2, 2> &F, const Gradient &G) const { return evaluate(F, G, Order::value).energy; }
-  dealii::Tensor<2, 2> first_piola_stress(const dealii::Tensor<2, 2> &F, const Gradient &G) const
-  {
-    return evaluate(F, G, Order::first).first_piola;
-  }
-  Gradient double_stress(const dealii::Tensor<2, 2> &F, const Gradient &G) const
-  {
-    return evaluate(F, G, Order::first).double_stress;
-  }
 
   /// Returns dQ_iJK/dG_lMN [Pa m^2] at G = 0, index order [i][J][K][l][M][N].
   dealii::Tensor<6, 2> double_stress_by_G(const dealii::Tensor<2, 2> &F) const

@@ -41,7 +41,7 @@ void LinearSolver::update(const Sheet::Vector &u, const Assembler &assemble, con
   if (!single_matrix_)
   {
     single_matrix_ = std::make_unique<SinglePrecisionMatrix>();
-    sheet_.make_matrix(constraints_, *single_matrix_);
+    single_matrix_->reinit(sheet_, constraints_);
   }
   assemble(sheet_, u, constraints_, *single_matrix_);
   if (symmetry_ == Symmetry::symmetric)

@@ -66,7 +66,7 @@ Multigrid::Multigrid(const Sheet &fine, const DirichletBoundaries &held, const t
     if (is_coarsest)
       sheet.make_matrix(level->constraints, level->coarsest_tangent);
     else if (level->own_sheet)
-      sheet.make_matrix(level->constraints, level->own_tangent);
+      level->own_tangent.reinit(sheet, level->constraints);
     if (is_coarsest)
       level->layout = std::make_shared<const dealii::Utilities::MPI::Partitioner>(sheet.owned(), sheet.relevant(),
                                                                                   sheet.communicator());
@@ -200,16 +200,6 @@ void Multigrid::vmult(Vector &z, const Vector &r) const
 void Multigrid::initialize(Vector &v) const
 {
   v.reinit(levels_.back()->layout);
-}
-
-void Multigrid::copy(const Sheet::Vector &from, Vector &to)
-{
-  std::copy(from.begin(), from.end(), to.begin());
-}
-
-void Multigrid::copy(const Vector &from, Sheet::Vector &to)
-{
-  std::copy(from.begin(), from.end(), to.begin());
 }
 
 const AffineConstraints<double> &Multigrid::constraints() const

@@ -6,6 +6,7 @@
 
 #include <deal.II/lac/la_parallel_vector.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -82,9 +83,12 @@ public:
 
   /// Makes `v` a zero vector with the layout that vmult() expects.
   void initialize(Vector &v) const;
-  /// Copies the owned entries of vectors without ghost entries.
-  static void copy(const Sheet::Vector &from, Vector &to);
-  static void copy(const Vector &from, Sheet::Vector &to);
+  /// Copies the owned entries of a vector without ghost entries to one of the other type.
+  template <class From, class To>
+  static void copy(const From &from, To &to)
+  {
+    std::copy(from.begin(), from.end(), to.begin());
+  }
 
   /// Returns the constraints of the finest mesh: hanging nodes, and prescribed degrees of freedom at zero.
   const dealii::AffineConstraints<double> &constraints() const;

@@ -190,11 +190,4 @@ RateForces::History RateForces::advanced(const double duration, const Vector &u,
   }
   return next;
 }
-
-std::vector<BranchEnergy> RateForces::stored(const Vector &u) const
-{
-  std::vector<BranchEnergy> energies;
-  advanced(0., u, energies);
-  return energies;
-}
 } // namespace latcon::continuum

@@ -86,11 +86,8 @@ public:
   void set_history(History history) { history_ = std::move(history); }
 
   /// Returns the history at u after `duration`, and adds the energies dissipated until then to `energies`, whose
-  /// stored energies are set to those at the end; n_branches() of them.
+  /// stored energies are set to those at the end; n_branches() of them. Within no time, only the latter.
   History advanced(double duration, const Vector &u, std::vector<BranchEnergy> &energies) const;
-
-  /// Returns the energies that the branches store in the present history, that of the last update at u [J/m].
-  std::vector<BranchEnergy> stored(const Vector &u) const;
 
   /// Saves the history to an archive or loads it from there. @param u displacement at the last update
   template <class Archive>

@@ -47,8 +47,8 @@ void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector
           for (unsigned int i = 0; i < 2; ++i)
             F[q][i][i] += 1.;
           const Tensor<1, 2> traction =
-            sheet.constitution().first_piola_stress(values.quadrature_point(q), F[q], G[q]) * values.normal_vector(q) *
-            values.JxW(q);
+            sheet.constitution().evaluate(values.quadrature_point(q), F[q], G[q]).first_piola *
+            values.normal_vector(q) * values.JxW(q);
           for (unsigned int a = 0; a < dofs.size(); ++a)
             forces[a] += traction[element.system_to_component_index(a).first] * values.shape_value(a, q);
         }

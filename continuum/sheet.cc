@@ -217,9 +217,10 @@ std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point
   std::vector<PointState> states = gradients(u, points);
   for (PointState &state : states)
   {
-    state.P = constitution_.first_piola_stress(state.X, state.F, state.G);
-    state.Q = constitution_.double_stress(state.F, state.G);
-    state.energy_density = constitution_.energy(state.X, state.F, state.G);
+    const GradientResponse W = constitution_.evaluate(state.X, state.F, state.G);
+    state.P = W.first_piola;
+    state.Q = W.double_stress;
+    state.energy_density = W.energy;
   }
   return states;
 }

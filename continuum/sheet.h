@@ -98,7 +98,6 @@ public:
 
   /// Initialises `matrix` with the sparsity that tangent() needs, or only add_mass(), and zero entries.
   void make_matrix(const dealii::AffineConstraints<double> &constraints, Matrix &matrix, bool is_mass = false) const;
-  void make_matrix(const dealii::AffineConstraints<double> &constraints, SinglePrecisionMatrix &matrix) const;
 
   /// Returns the states at reference points [m]. Every rank passes the same points and gets all states. On a cell
   /// boundary, F and G are means over the adjacent cells, independent of the partition. Throws InvalidInput if a

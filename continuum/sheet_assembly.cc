@@ -56,29 +56,18 @@ void Sheet::make_matrix(const AffineConstraints<double> &constraints, Matrix &ma
   matrix.reinit(pattern);
 }
 
-void Sheet::make_matrix(const AffineConstraints<double> &constraints, SinglePrecisionMatrix &matrix) const
-{
-  matrix.reinit(*this, constraints);
-}
-
 DeterminantRange Sheet::determinant_range(const Vector &u) const
 {
   double smallest = std::numeric_limits<double>::infinity();
   double largest = -smallest;
-  FEValues<2> values(mapping_, element_, QGauss<2>(degree_ + 1), update_gradients);
-  std::vector<Tensor<2, 2>> gradients(values.n_quadrature_points);
-  for (const auto &cell : dof_handler_.active_cell_iterators())
-    if (cell->is_locally_owned())
-    {
-      values.reinit(cell);
-      values[FEValuesExtractors::Vector(0)].get_function_gradients(u, gradients);
-      for (const Tensor<2, 2> &H : gradients)
-      {
-        const double J = (1. + H[0][0]) * (1. + H[1][1]) - H[0][1] * H[1][0];
-        smallest = std::min(smallest, J);
-        largest = std::max(largest, J);
-      }
-    }
+  PointForces at_points;
+  at_points.local = [&](const CellPoint &point, PointIntegrand &)
+  {
+    const double J = determinant(deformation_gradient(point.u));
+    smallest = std::min(smallest, J);
+    largest = std::max(largest, J);
+  };
+  integrate(*this, u, at_points, Order::value, [](const Contribution &) {});
   return {dealii::Utilities::MPI::min(smallest, communicator()), dealii::Utilities::MPI::max(largest, communicator())};
 }
 } // namespace latcon::continuum

@@ -157,9 +157,10 @@ TEST(Assembly, AddsInSinglePrecision)
         sheet, {{continuum::edge::left, dealii::ComponentMask(std::vector<bool>{true, false})}});
       Sheet::Matrix K;
       continuum::SinglePrecisionMatrix single;
+      sheet.make_matrix(constraints, K);
+      single.reinit(sheet, constraints);
       const auto assemble = [&](auto &matrix)
       {
-        sheet.make_matrix(constraints, matrix);
         sheet.tangent(wavy_state(sheet), constraints, matrix);
         matrix *= scale;
         sheet.add_mass(1e9, 0.01, constraints, matrix);

@@ -94,7 +94,7 @@ struct HeldSheet
     refine_towards(mesh, Point<2>(0.4 * length, 0.003), times, length / 3.);
     sheet = std::make_unique<Sheet>(mesh, latcon::continuum::Constitution(law, gradient), degree);
     multigrid = std::make_unique<Multigrid>(*sheet, all_held(), coarsest_size);
-    sheet->make_matrix(multigrid->constraints(), K);
+    K.reinit(*sheet, multigrid->constraints());
     assemble_at_rest(*sheet, {}, multigrid->constraints(), K);
     K.make_symmetric();
     multigrid->set_finest(K);

@@ -139,7 +139,7 @@ TEST(Multigrid, HasAPatchForEveryFreeDegreeOfFreedom)
       sheet, {{continuum::edge::left, dealii::ComponentMask(std::vector<bool>{true, false})}});
     // A diagonal matrix.
     SinglePrecisionMatrix K;
-    sheet.make_matrix(constraints, K);
+    K.reinit(sheet, constraints);
     continuum::integrate(sheet, sheet.make_ghosted(), continuum::energy_densities(sheet, 1., continuum::Order::value),
                          continuum::Order::value,
                          [&](const continuum::Contribution &contribution)
