@@ -119,36 +119,40 @@ public:
   }
 };
 
-// The gradient energy is not negative at rough states, whose F and normal gradients jump by the order of one. With the
-// double traction of both sides in place of the lifting, some of them have less than -1e6 J/m at a penalty of 2.
+// The gradient energy is not negative at rough states, whose F and normal gradients jump by the order of one, also of
+// bonds that stiffen, and on cells skewed by a shear of 3. With the double traction of both sides in place of the
+// lifting, some of them have less than -1e6 J/m at a penalty of 2.
 TEST(GradientEquilibrium, HasNoNegativeGradientEnergy)
 {
-  const LatticeGradient gradient = rubber_gradient(0.02);
-  RectangleMesh mesh(rectangle(6, 4));
-  for (const auto &[degree, roughness] : {std::pair(2u, 5e-3), std::pair(3u, 2e-3)}) // [m], on cells of 2.5 cm
+  std::vector<BondFamily> bonds = rubber_bonds(0.02);
+  for (BondFamily &bond : bonds)
+    bond.fibre.potential = CustomPotential{std::make_shared<StiffeningBond>()};
+  const LatticeGradient rubber = rubber_gradient(0.02), stiffening(bonds, LatticeGradient::smallest_length(bonds));
+  for (const auto &[gradient, shear, degree, roughness] : // [m], on cells of 2.5 cm
+       {std::tuple(&rubber, 0., 2u, 5e-3), std::tuple(&rubber, 0., 3u, 2e-3), std::tuple(&stiffening, 0., 2u, 5e-3),
+        std::tuple(&rubber, 3., 2u, 1e-3)})
   {
-    Constitution laws(law, gradient);
+    RectangleMesh mesh(rectangle(6, 4));
+    dealii::GridTools::transform([by = shear](const Point<2> &X) { return Point<2>(X[0] + by * X[1], X[1]); }, mesh);
+    Constitution laws(law, *gradient);
     laws.penalty = 0.;
     const Sheet with(mesh, laws, degree), without(mesh, law, degree);
     std::mt19937 generator(23);
     std::uniform_real_distribution<double> rough(-roughness, roughness);
     unsigned int n_states = 0;
-    for (int sample = 0; sample < 100; ++sample)
+    for (int sample = 0; sample < 50; ++sample)
     {
-      auto u = with.make_ghosted();
-      {
-        auto owned = with.make_owned();
-        with.for_each_owned_dof(
-          [&](const auto dof, const unsigned int i, const auto &X)
-          {
-            if (owned(dof) == 0.) // nodes are visited once a cell
-              owned(dof) = 0.5 * X[i] + rough(generator);
-          });
-        u = owned;
-      }
+      auto u = with.make_owned();
+      with.for_each_owned_dof(
+        [&](const auto dof, const unsigned int i, const auto &X)
+        {
+          if (u(dof) == 0.) // nodes are visited once a cell
+            u(dof) = 0.5 * X[i] + rough(generator);
+        });
       try
       {
-        EXPECT_GE(with.energy(u) - without.energy(u), 0.) << degree << ' ' << sample;
+        EXPECT_GE(with.energy(ghosted(with, u)) - without.energy(ghosted(without, u)), 0.)
+          << shear << ' ' << degree << ' ' << sample;
         ++n_states;
       }
       catch (const NonPhysicalState &)
@@ -156,7 +160,7 @@ TEST(GradientEquilibrium, HasNoNegativeGradientEnergy)
         // A cell is folded.
       }
     }
-    EXPECT_GT(n_states, 75u);
+    EXPECT_GT(n_states, 37u) << shear << ' ' << degree;
   }
 }
 
@@ -200,55 +204,6 @@ TEST(GradientEquilibrium, LiftsAKinkAsInClosedForm)
     const double of_stretches = RateForces(with, &local_dashpots, nullptr).dissipation(with.make_ghosted(), u, {});
     const double of_both = RateForces(with, &dashpots, nullptr).dissipation(with.make_ghosted(), u, {});
     EXPECT_NEAR(of_both - of_stretches, power.value * n_by_h * p * p / 2. * 2. * h, 1e-10 * of_both) << p;
-  }
-}
-
-// psi'' is 20 times that at rest at the load. The equilibrium is independent of the penalty, and there is one without.
-TEST(GradientEquilibrium, StaysCoerciveWhereTheLawStiffens)
-{
-  CauchyBorn network = rubber_network();
-  std::vector<FibreFamily> fibres = network.families();
-  std::vector<BondFamily> bonds = rubber_bonds(0.02);
-  const auto bond = std::make_shared<StiffeningBond>();
-  for (std::size_t k = 0; k < fibres.size(); ++k)
-    bonds[k].fibre.potential = fibres[k].potential = CustomPotential{bond};
-  network = CauchyBorn(fibres);
-  const LatticeGradient gradient(bonds, LatticeGradient::smallest_length(bonds));
-  const auto energy = [&](const double penalty, const unsigned int cells)
-  {
-    RectangleMesh mesh(rectangle(cells, cells));
-    Constitution laws(network, gradient);
-    laws.penalty = penalty;
-    StaticSettings settings;
-    settings.degree = 2;
-    StaticSolver solver(mesh, laws, bump_problem(1.5, 1.5, 0.004), settings);
-    solver.solve();
-    return solver.total_energy();
-  };
-  const double expected = energy(0.5, 8);
-  const double error_of_mesh = std::abs(expected - energy(0.5, 16));
-  for (const double penalty : {0., 2., 20.})
-    EXPECT_NEAR(energy(penalty, 8), expected, error_of_mesh) << penalty;
-}
-
-// Cells skewed by a shear of 3, for which a penalty that suffices for squares would be too small.
-TEST(GradientEquilibrium, StaysCoerciveOnSkewedCells)
-{
-  const LatticeGradient gradient = rubber_gradient(0.05);
-  RectangleMesh mesh(rectangle(8, 8));
-  dealii::GridTools::transform([](const Point<2> &X) { return Point<2>(X[0] + 3. * X[1], X[1]); }, mesh);
-  const auto field = std::make_shared<Field>(
-    [](const Point<2> &X) {
-      return Tensor<1, 2>({0.1 * X[0], 0.2 * X[1] + 0.01 * std::sin(30. * X[0]) * std::sin(40. * X[1])});
-    });
-  for (const double penalty : {0., 0.5, 20.})
-  {
-    Constitution laws(law, gradient);
-    laws.penalty = penalty;
-    StaticSettings settings;
-    settings.degree = 2;
-    StaticSolver solver(mesh, laws, on_all_edges(field), settings);
-    EXPECT_EQ(solver.solve().load_steps.size(), 1u) << penalty;
   }
 }
 
@@ -312,28 +267,6 @@ TEST(GradientEquilibrium, NewtonIsQuadraticInEveryLoadStep)
   const std::vector<NewtonIteration> all = solver.solve().iterations;
   EXPECT_LT(all[0].load_factor, 1.);
   EXPECT_GE(newton_order(all, 0), 1.8);
-}
-
-// With zero length the gradient law has no effect; in homogeneous states it has no effect at any length.
-TEST(GradientEquilibrium, IsLocalWithoutLengthAndInHomogeneousStates)
-{
-  RectangleMesh mesh(rectangle(6, 4));
-  const auto energy = [&](const Constitution &constitution, const BoundaryConditions &conditions)
-  {
-    StaticSolver solver(mesh, constitution, conditions);
-    solver.solve();
-    return solver.total_energy();
-  };
-  const IsotropicGradient none(5e5, 0.), tiny(5e5, 1e-7), large(5e5, 0.05);
-  const BoundaryConditions bump(bump_problem(2., 2.2, 0.03));
-  const double local = energy(law, bump);
-  EXPECT_EQ(energy(Constitution(law, none), bump), local);
-  EXPECT_NEAR(energy(Constitution(law, tiny), bump), local, 1e-6 * local);
-  EXPECT_GT(energy(Constitution(law, large), bump), 1.01 * local);
-  const BoundaryConditions homogeneous(on_all_edges(affine(matrix(2.3, 0.1, -0.2, 2.8))));
-  const double flat = energy(law, homogeneous);
-  EXPECT_NEAR(energy(Constitution(law, large), homogeneous), flat, 1e-12 * flat);
-  EXPECT_NEAR(energy(Constitution(law, rubber_gradient(0.01)), homogeneous), flat, 1e-12 * flat);
 }
 
 // (1 - l^2 Laplace) multiplies a sinusoidal force of wave number k by 1 + l^2 k^2 for every shape function; the
