@@ -195,6 +195,18 @@ TEST(DynamicSolver, KeepsTheMomentumOfAFreeSheet)
   }
 }
 
+TEST(DynamicSolver, StartsWithTheAccelerationOfItsLoads)
+{
+  BoundaryConditions conditions;
+  conditions.body_force = BodyForce{constant(3. * density, -2. * density)};
+  RectangleMesh mesh(rectangle(2, 2));
+  DynamicSolver solver(mesh, law, conditions, {density, 0.}, quadratic(1e-4));
+  solver.start();
+  Vector difference = owned(solver.sheet(), solver.acceleration());
+  difference -= owned(solver.sheet(), nodal(solver.sheet(), [](const Point<2> &) { return Tensor<1, 2>({3., -2.}); }));
+  EXPECT_LT(difference.linfty_norm(), 1e-10);
+}
+
 // theory-continuum.md, eq. (C.45).
 TEST(DynamicSolver, LeavesEquilibriumAtRest)
 {
