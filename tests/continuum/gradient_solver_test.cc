@@ -1,5 +1,5 @@
-// Equilibrium with gradient energies: the discrete functional and its lifted gradients, which are stable on skewed cells;
-// inexact steps, limits and refusals.
+// Equilibrium with gradient energies: the discrete functional and its lifted gradients, which are stable on skewed
+// cells; inexact steps, limits and refusals.
 #include "continuum/errors.h"
 #include "continuum/rate_forces.h"
 #include "moving_sheets.h"
