@@ -1,7 +1,7 @@
 // The faces of a cell that are lifted, on refined and periodic meshes: each is one of both cells, and together they
 // are the perimeter.
 #include "continuum/lifted_shapes.h"
-#include "sheets.h"
+#include "multigrid_cases.h"
 
 #include <gtest/gtest.h>
 
@@ -15,21 +15,6 @@ using namespace sheets;
 
 constexpr unsigned int whole = dealii::numbers::invalid_unsigned_int;
 
-// Refined around a corner, so that hanging nodes are on periodic edges as well.
-void make_refined(Mesh &mesh, const bool periodic)
-{
-  auto shape = rectangle(4, 4);
-  shape.periodic_x = shape.periodic_y = periodic;
-  continuum::make_rectangle(mesh, shape);
-  for (int pass = 0; pass < 2; ++pass)
-  {
-    for (const auto &cell : mesh.active_cell_iterators())
-      if (cell->center()[0] < 0.4 * length && cell->center()[1] < 0.1 * height)
-        cell->set_refine_flag();
-    mesh.execute_coarsening_and_refinement();
-  }
-}
-
 double length_of(const continuum::LiftedFace::Cell &cell, const unsigned int face, const unsigned int half)
 {
   return (half == whole ? 1. : 0.5) * cell->face(face)->measure();
@@ -40,8 +25,9 @@ TEST(LiftedFaces, AreThoseOfBothCells)
   const continuum::CauchyBorn law = rubber_network();
   for (const bool periodic : {false, true})
   {
-    Mesh mesh(MPI_COMM_SELF);
-    make_refined(mesh, periodic);
+    // Refined around a corner, so that hanging nodes are on periodic edges as well.
+    RectangleMesh mesh({length, height, 4, 4, periodic, periodic});
+    multigrid_cases::refine_towards(mesh, Point<2>(0., -0.5 * height), 2, 0.5 * length);
     const continuum::Sheet sheet(mesh, law, 2);
     unsigned int n_halves = 0;
     for (const auto &cell : sheet.dof_handler().active_cell_iterators())

@@ -188,11 +188,6 @@ struct SheetWithHole
   std::unique_ptr<continuum::Sheet> sheet;
 };
 
-TEST(MotionArchive, GoesOnWithTheSameBitsWithTheDirectSolver)
-{
-  expect_same_bits_after_resuming<DirectMotion>(undisturbed<DirectMotion>());
-}
-
 template <class M>
 void expect_same_bits_with_kept_multigrid()
 {

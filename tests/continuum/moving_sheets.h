@@ -1,6 +1,6 @@
 #pragma once
 
-// Waves, strips, dashpots and Maxwell branches for tests of dynamics. SI units.
+// Dashpots, Maxwell branches and problems for tests of dynamics. SI units.
 
 #include "continuum/dynamic_solver.h"
 #include "continuum/errors.h"
@@ -100,18 +100,6 @@ inline latcon::continuum::BoundaryConditions periodic()
   conditions.periodic = {{latcon::continuum::edge::left, latcon::continuum::edge::right, 0},
                          {latcon::continuum::edge::bottom, latcon::continuum::edge::top, 1}};
   return conditions;
-}
-
-// Strip with one wavelength of 1 m and n cells along x, and two cells across.
-inline latcon::continuum::Rectangle strip(const unsigned int n)
-{
-  return {1., 2. / n, n, 2, true, true};
-}
-inline const double k_wave = 2. * pi; // [1/m]
-
-inline std::shared_ptr<Field> wave(const Tensor<1, 2> &polarisation)
-{
-  return std::make_shared<Field>([=](const Point<2> &X) { return std::cos(k_wave * X[0]) * polarisation; });
 }
 
 // Dashpots along the bonds of rubber_network; with a micro-inertia length, also their gradient part, of bonds

@@ -174,23 +174,6 @@ TEST(Multigrid, IsADirectSolverOnAMeshThatIsCoarseEnough)
   EXPECT_LE(problem.iterations(), 2u);
 }
 
-TEST(Multigrid, GivesTheSameBitsAgain)
-{
-  Multigrid::Vector first;
-  for (const bool again : {false, true})
-  {
-    const LinearProblem problem(0.1 * length, 3, 2, 2);
-    const auto r = problem.random(3);
-    auto z = r;
-    problem.multigrid->vmult(z, r);
-    problem.multigrid->vmult(z, r);
-    if (!again)
-      first = z;
-    z -= first;
-    EXPECT_EQ(z.linfty_norm(), 0.);
-  }
-}
-
 Tensor<1, 2> quadratic(const Point<2> &X)
 {
   return Tensor<1, 2>({0.4 * X[0] - 2. * X[0] * X[1], 0.2 * X[1] + 3. * X[0] * X[0] - X[1] * X[1]});

@@ -348,4 +348,16 @@ TEST(RateForces, RefuseGradientPartsWithoutLiftedGradients)
   EXPECT_THROW(RateForces(sheet, &viscosity, nullptr), InvalidInput);
 }
 
+TEST(RateForces, ThrowWhereASheetIsFolded)
+{
+  const CauchyBorn law = rubber_network();
+  RectangleMesh mesh(rectangle(2, 2));
+  const Sheet sheet(mesh, law, 2);
+  const FibreViscosity viscosity = network_viscosity(60.);
+  const auto folded = nodal(sheet, [](const Point<2> &X) { return Tensor<1, 2>({-2. * X[0], 0.}); });
+  auto forces = sheet.make_owned();
+  EXPECT_THROW(RateForces(sheet, &viscosity, nullptr).add_forces(0., folded, folded, {}, forces, nullptr),
+               NonPhysicalState);
+}
+
 } // namespace rate_forces_test

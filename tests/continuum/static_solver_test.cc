@@ -313,24 +313,6 @@ TEST(StaticSolver, BacktracksOnEnergy)
   EXPECT_EQ(solver.load_factor(), 1.);
 }
 
-TEST(StaticSolver, ReportsEveryLoadStepToTheObserver)
-{
-  RectangleMesh mesh(rectangle(4, 4));
-  StaticSettings settings;
-  settings.first_load_step = 0.25;
-  StaticSolver solver(mesh, network, on_all_edges(affine(matrix(2., 0., 0., 2.))), settings);
-  std::vector<double> factors;
-  solver.solve(
-    [&](const double factor)
-    {
-      factors.push_back(factor);
-      EXPECT_NEAR(solver.sheet().determinant_range(solver.displacement()).largest, (1. + factor) * (1. + factor),
-                  1e-10);
-    });
-  // Each step converges fast and doubles the next.
-  EXPECT_EQ(factors, (std::vector<double>{0.25, 0.75, 1.}));
-}
-
 TEST(StaticSolver, ThrowsWithHistoryWhenItDoesNotConverge)
 {
   // The right edge is pushed through the left one, which no load step can reach.

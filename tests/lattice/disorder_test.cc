@@ -96,6 +96,8 @@ TEST(Distribution, RejectsWidthsOutOfRange)
   EXPECT_THROW(Distribution(Kind::uniform, Distribution::widest(Kind::uniform)), std::invalid_argument);
   EXPECT_NO_THROW(Distribution(Kind::weibull, 1.));
   EXPECT_EQ(Distribution(Kind::none, 0.3).factor(5), 1.);
+  // Sheets stay the same: SplitMix64 and the cosine of Box and Muller, by a script of its own.
+  EXPECT_NEAR(Distribution(Kind::normal, 0.2).factor(3), 1.10215869724156, 1e-14);
   EXPECT_EQ(Distribution().width(), 0.);
 }
 

@@ -41,7 +41,6 @@ struct Choice
   double contact = 0.;           ///< distance in spacings; 0: none
   double contact_strength = 0.1; ///< stiffness and viscosity in those of a bond
   End left = End::held, right = End::held;
-  Eigen::Matrix2d turn = Eigen::Matrix2d::Identity(); ///< of the whole sheet
 };
 
 /// A crack from a slit at Y = 0 in a stretched sheet, held along its long edges.
@@ -51,17 +50,10 @@ inline std::unique_ptr<latcon::lattice::Simulation> start(const latcon::lattice:
   using namespace latcon::lattice;
   const TriangularLattice &sheet = band.lattice();
   const double d = sheet.is_triangular() ? sheet.spacing() : sheets::spacing;
-  const Eigen::Matrix2d F = choice.turn * sheets::stretched(2.3, 2.9);
+  const Eigen::Matrix2d F = sheets::stretched(2.3, 2.9);
   const bool is_left_held = choice.left == EndLoads::End::held, is_right_held = choice.right == EndLoads::End::held;
-  State state =
-    homogeneous_state(band, choice.material, sheets::stretched(2.3, 2.9), {is_left_held, is_right_held, true, true});
+  State state = homogeneous_state(band, choice.material, F, {is_left_held, is_right_held, true, true});
   add_noise(state, band, choice.noise * d, 1);
-  for (std::size_t place = 0; place < sheet.n_places(); ++place)
-  {
-    const Eigen::Vector2d x = choice.turn * Eigen::Vector2d(state.x[place], state.y[place]);
-    state.x[place] = x.x();
-    state.y[place] = x.y();
-  }
   auto simulation = std::make_unique<Simulation>(band, choice.material, std::move(state), choice.stepping,
                                                  Fracture(band, choice.material, 3.05, choice.toughening, F));
   if (!is_left_held || !is_right_held)

@@ -70,6 +70,7 @@ TEST(Scatter, GivesEachPointTheAreaLawAndNearlyNoForce)
           const Eigen::Vector2d R = lattice.bond_vector(bond);
           const double l = lattice.ring_radius(kind), tent = 1. - std::abs(R.norm() - l) / lattice.spacing();
           EXPECT_GT(tent, 0.);
+          EXPECT_NEAR(lattice.length_ratio(bond.near, kind) * R.norm(), lattice.rest_length(kind), 1e-12 * l);
           shortest = std::min(shortest, R.norm());
           sum[lattice.shell(kind)] += weight;
           pull[lattice.shell(kind)] += sense * weight * l / R.squaredNorm() * R;

@@ -82,25 +82,6 @@ TEST(AtomicFile, HasTheRightsOfAnyOtherFile)
   EXPECT_EQ(status.st_mode & 07777U, 0640U);
 }
 
-TEST(AtomicFile, IsOnItsPlaceOnceItIsWhole)
-{
-  const TemporaryFolder folder;
-  {
-    AtomicFile file(folder / "a.txt");
-    file.write("half of ");
-    EXPECT_FALSE(fs::exists(folder / "a.txt"));
-    file.write("it");
-    file.commit(Sync::no);
-  }
-  EXPECT_EQ(content_of(folder / "a.txt"), "half of it");
-  {
-    AtomicFile file(folder / "a.txt");
-    file.write("never committed");
-  }
-  EXPECT_EQ(content_of(folder / "a.txt"), "half of it");
-  EXPECT_EQ(entries(folder).size(), 1U);
-}
-
 TEST(AtomicFile, LibrariesOpenItByName)
 {
   const TemporaryFolder folder;

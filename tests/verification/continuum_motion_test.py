@@ -40,7 +40,7 @@ def test_energy_balances(out):
     inertia = (2. * math.pi * INERTIA / LENGTH) ** 2
     np.testing.assert_allclose(energy["micro_inertia"] / energy["kinetic"], inertia / (1. + inertia), rtol=1e-4)
     assert energy["elastic"][-1] > 0.3 * total[0]
-    # The frequency of the dispersion relation, in steps of average acceleration; measured 2.1e-5 (order: dynamic_waves_test.cc).
+    # The frequency of the dispersion relation (C.47), in steps of average acceleration; measured 2.1e-5 (order: dynamic_solver_test.cc).
     k, step = 2. * math.pi / LENGTH, 5e-6
     omega = k * math.sqrt(MODULUS / DENSITY * (1. + (STATIC * k) ** 2) / (1. + (INERTIA * k) ** 2))
     phase = math.acos(math.sqrt(energy["kinetic"][-1] / energy["kinetic"][0]))

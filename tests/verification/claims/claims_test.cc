@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
                             [](const Case &, const Subject &s) { return parts::intrinsic_length.check(s); }),
                   std::pair("nonlocal", Check(nonlocal))));
 
-// Among them theory-comparison.md, eqs. (W.4) and (W.5).
+// Among them theory-comparison.md, eqs. (W.4) and (W.5), and theory-continuum.md, eq. (C.47) in finite elements.
 TEST_P(HeldClaim, HoldsForBothShellSetsAcrossTheCrack)
 {
   faults::expect_holds(GetParam().second);

@@ -125,6 +125,15 @@ TEST(DisorderClaim, FailsForWrongFactors)
     {"not a number",
      factors([](double &factor, std::size_t place) { factor = place % 97 == 0 ? std::nan("") : factor; }),
      {"sheets with disorder"}},
+    // Sheets that scatter more than a distribution allows: the width is doubled in every other one (both signs of two
+    // loads), none in the others.
+    {"as wide in the mean of sheets as none is",
+     [n = 0u](lattice::State &state) mutable
+     {
+       const double wider = n++ / 4 % 2 == 0 ? 2. : 0.;
+       factors([=](double &factor, std::size_t) { factor = 1. + wider * (factor - 1.); })(state);
+     },
+     {"reduction of the bulk", "reduction of the shear"}},
     // Bonds that know of each other: rows of stiff and of soft ones.
     {"not independent",
      [](lattice::State &state)

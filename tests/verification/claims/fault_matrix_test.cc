@@ -260,7 +260,7 @@ TEST_P(FaultMatrix, FailsTheRowsThatSeeIt)
 }
 
 // What a crack may use besides: contact and absorbing ends, either integrator, and damped waves (theory-comparison.md,
-// eq. (H.9)).
+// eq. (H.9); in finite elements theory-continuum.md, eq. (C.62)).
 TEST(Surroundings, AreThoseOfTheirClosedForms)
 {
   for (const auto integrator :
@@ -279,8 +279,10 @@ TEST(Surroundings, AreThoseOfTheirClosedForms)
       continue; // its damped waves: verify_test.py
     WaveSpeedsOptions options = parts::waves({}, {subject.deformation});
     options.integrator = integrator;
-    const Results waves = wave_speeds_claim(subject, options).results;
-    EXPECT_TRUE(waves.all_hold()) << waves.verdict_text(6);
+    const ClaimOutcome waves = wave_speeds_claim(subject, options);
+    EXPECT_TRUE(waves.results.all_hold()) << waves.results.verdict_text(6);
+    // Theories of ten longer waves and the wave that runs, of both polarisations.
+    EXPECT_EQ(waves.tables.at("attenuation").rows().size(), 11u * 2u);
   }
 }
 

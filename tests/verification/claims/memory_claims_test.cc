@@ -140,28 +140,6 @@ TEST(Relaxation, FailsForWrongBranches)
   EXPECT_GE(faults::failing(relaxation_claim(subject(case_with_branches()), options).results, "finite elements"), 1u);
 }
 
-// Known answers of theory.md, eq. (L.30): limits, and one branch in closed form. With E / psi'' equal in all bonds,
-// s^2 + w_0^2 (1 + r s tau / (1 + s tau)) = 0.
-TEST(MemoryWaves, SolveTheirCubicEquation)
-{
-  const input::Case input = subjects::paper_case();
-  const lattice::TriangularLattice sheet = input.lattice();
-  const Material elastic = lattice::without_dashpots(input.material());
-  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
-  const Eigen::Vector2d K(0.7 / input.spacing, 0.);
-  const std::array<PlaneWave, 2> without = bloch_waves(sheet, elastic, I, K);
-  constexpr double ratio = 0.5;
-  for (const double scaled : {1e-4, 0.1, 1., 10., 1e4})
-    for (std::size_t w = 0; w < 2; ++w)
-    {
-      const double frequency = without[w].frequency, time = scaled / frequency;
-      const std::complex<double> s =
-        memory_waves(sheet, with_branches(elastic, {ratio}, {time}), I, K)[w].rate / frequency;
-      EXPECT_GT(s.imag(), 0.9);
-      EXPECT_LT(std::abs(s * s + 1. + ratio * s * scaled / (1. + s * scaled)), 1e-10) << scaled;
-    }
-}
-
 // Dashpots so strong that no wave oscillates leave no frequency and no decay.
 TEST(MemoryWaves, AreNoNumbersWhereNothingOscillates)
 {

@@ -25,11 +25,6 @@ TEST(Spelling, CountsTypingErrors)
   EXPECT_EQ(typing_errors("ca", "abc"), 3u); // the restricted distance: what was swapped is not changed again
 }
 
-TEST(Spelling, IsSymmetric)
-{
-  EXPECT_EQ(typing_errors("oscillating", "osclatingg"), typing_errors("osclatingg", "oscillating"));
-}
-
 TEST(Spelling, NearEnoughIsAThirdOfTheWordOrAPartOfIt)
 {
   EXPECT_TRUE(could_mean("ab", "abcd"));

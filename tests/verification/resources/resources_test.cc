@@ -35,6 +35,18 @@ TEST(Resources, UnknownsOfARectangleAreThoseOfItsNodes)
   EXPECT_EQ(continuum_size(input).coarse_unknowns, 2. * 19. * 19.); // 6 x 6 cells: with 12 x 12 there are 2738
 }
 
+TEST(Resources, FactorsOfTheCoarsestMeshFillUpBeyondTwentyThousandUnknowns)
+{
+  const auto bytes = [](double coarse)
+  {
+    ContinuumSize size{};
+    size.coarse_unknowns = coarse;
+    return continuum_memory(square(), size).shared;
+  };
+  EXPECT_DOUBLE_EQ(bytes(2e4), 2. * bytes(1e4));
+  EXPECT_DOUBLE_EQ(bytes(8e4), 4. * 1.3 * bytes(2e4));
+}
+
 TEST(Resources, AdaptiveCyclesAddThreeCellsForEachThatIsRefined)
 {
   Case input = square();
