@@ -1,8 +1,21 @@
-"""Runs latcon in forks of one process (fork_server.cc): MPI and the libraries, which take half a second, start once."""
+"""Runs latcon in forks of one process (fork_server.cc): MPI, the libraries and Python's packages, which take a second, start once."""
+import contextlib
+import ctypes
+import functools
+import importlib
+import json
 import os
 import pathlib
+import runpy
+import signal
 import subprocess
+import sys
 import tempfile
+import time
+import traceback
+
+PYTHON = {"study", "batch", "compare", "report", "entries", "help", "init"}  # commands that latcon continues in Python
+OF_SERVER = set()  # files that the server has opened
 
 
 class ForkServer:
@@ -16,8 +29,7 @@ class ForkServer:
 
     def run(self, arguments, folder, limit):
         """Runs latcon in `folder`, for at most `limit` s. @return `exit CODE`, `signal NUMBER` or `limit`"""
-        words = [os.fsencode(word).hex() for word in [str(self.output), str(folder), *arguments]]
-        self.process.stdin.write(f"{limit} " + " ".join(words) + "\n")
+        self.process.stdin.write(json.dumps([limit, str(self.output), str(folder), arguments]) + "\n")
         self.process.stdin.flush()
         answer = self.process.stdout.readline().strip()
         if not answer:
@@ -37,3 +49,91 @@ class ForkServer:
         self.process.wait()
         self.process.stdout.close()
         self.temporary.cleanup()
+
+
+def serve():
+    """Answers the requests of a ForkServer on standard input; runs in the server."""
+    subprocess._USE_VFORK = subprocess._USE_POSIX_SPAWN = False  # a child would share the memory of its parent, or never be Python
+    # What MPI and packages have opened they use in children too; other files are closed as execve closes them.
+    subprocess.Popen.__init__ = functools.partialmethod(subprocess.Popen.__init__, close_fds=False)
+    for line in sys.stdin:
+        limit, output, folder, words = json.loads(line)
+        prepare(words)
+        OF_SERVER.update(map(int, os.listdir("/proc/self/fd")))
+        child = os.fork()
+        if child == 0:
+            for number, name, flags in ((0, os.devnull, os.O_RDONLY), (1, f"{output}/stdout", os.O_WRONLY | os.O_CREAT | os.O_TRUNC),
+                                        (2, f"{output}/stderr", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)):
+                os.dup2(os.open(name, flags), number)
+            os.chdir(folder)
+            run_latcon([b"latcon", *map(os.fsencode, words)])
+        print(outcome(child, limit), flush=True)
+
+
+def prepare(words):
+    """Loads what the children for a command will need."""
+    if {"continuum", "verify"} & set(words) or "fracture" in words and "--skip-verification" not in words:
+        ctypes.PyDLL(None).load_elements()
+    importlib.import_module("latcon.study.command" if words and words[0] in PYTHON else "latcon.folder")
+    if {"fracture", "study", "report", "compare"} & set(words) and not {"--no-report", "--dry-run"} & set(words):
+        for module in ("matplotlib.pyplot", "vtkmodules.util", "latcon.report.comparison", "latcon.report.study"):
+            importlib.import_module(module)
+
+
+def outcome(child, limit):
+    """Waits for a child, and kills it after `limit` s."""
+    end = time.monotonic() + limit
+    while (ended := os.waitpid(child, os.WNOHANG)) == (0, 0):
+        if time.monotonic() > end:
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
+            return "limit"
+        time.sleep(1e-3)
+    code = os.waitstatus_to_exitcode(ended[1])
+    return f"exit {code}" if code >= 0 else f"signal {-code}"
+
+
+def run_latcon(words):
+    """Runs latcon in this process, which ends with it."""
+    ctypes.PyDLL(None).run_latcon((ctypes.c_char_p * (len(words) + 1))(*words))
+
+
+def replace_process(path, words, variables):
+    """Does what execve does for latcon, and for `python3 -sP -m MODULE ...` and `python3 -sP SCRIPT ...`; returns for other programs."""
+    is_latcon = os.path.samefile(path, "/proc/self/exe")
+    if not is_latcon and not (os.path.samefile(path, sys.executable) and words[1] == b"-sP"):
+        return
+    for number in signal.valid_signals():
+        if signal.getsignal(number) not in (signal.SIG_IGN, signal.SIG_DFL):
+            signal.signal(number, signal.SIG_DFL)
+    for file in set(map(int, os.listdir("/proc/self/fd"))) - OF_SERVER:
+        with contextlib.suppress(OSError):
+            if not os.get_inheritable(file):
+                os.close(file)
+    os.environb.clear()
+    os.environb.update(variable.split(b"=", 1) for variable in variables)
+    if is_latcon:
+        run_latcon(words)
+    run_python(list(map(os.fsdecode, words[2:])))
+
+
+def run_python(words):
+    """Does what the interpreter does with the words after its options; ends the process."""
+    sys.modules["latcon.folder"]._held.clear()  # by the parent
+    sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", buffering=1, closefd=False, errors="backslashreplace")
+    signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+    if signal.getsignal(signal.SIGINT) == signal.SIG_DFL:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    sys.argv, code = words[words[0] == "-m":], 1
+    try:
+        if words[0] == "-m":
+            runpy.run_module(words[1], run_name="__main__", alter_sys=True)
+        else:
+            runpy.run_path(words[0], run_name="__main__")
+        code = 0
+    except SystemExit as end:
+        code = end.code or 0
+    except BaseException:
+        traceback.print_exc()
+    sys.stdout.flush()
+    os._exit(code)
