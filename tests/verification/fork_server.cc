@@ -1,6 +1,6 @@
-// The program for tests. With arguments it is latcon. Without, it runs latcon in children made by fork (forked.py): what
-// takes half a second to start, MPI, the module with the finite elements, Python and its packages, starts once. Where such
-// a child, or a child of it, would replace itself by latcon or by Python, it runs them as they are.
+// The program for tests. With arguments it is latcon. Without, it runs latcon in children made by fork (forked.py):
+// what takes half a second to start, MPI, the module with the finite elements, Python and its packages, starts once.
+// Where such a child, or a child of it, would replace itself by Python, it runs the Python of the server.
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
 
@@ -51,23 +51,23 @@ void serve()
 extern "C"
 {
 
-// Loaded before a fork, the module serves all later children.
-void load_elements()
-{
-  static_cast<void>(elements::elements());
-}
+  // Loaded before a fork, the module serves all later children.
+  void load_elements()
+  {
+    static_cast<void>(elements::elements());
+  }
 
-// Runs latcon in this process, which ends with it.
-void run_latcon(char *argv[])
-{
-  is_child = true;
-  int argc = 0;
-  while (argv[argc] != nullptr)
-    ++argc;
-  const auto code = commands::run_program(argc, argv);
-  std::cout.flush();
-  std::fflush(nullptr);
-  _exit(static_cast<int>(code));
+  // Runs latcon in this process, which ends with it.
+  void run_latcon(char *argv[])
+  {
+    is_child = true;
+    int argc = 0;
+    while (argv[argc] != nullptr)
+      ++argc;
+    const auto code = commands::run_program(argc, argv);
+    std::cout.flush();
+    std::fflush(nullptr);
+    _exit(static_cast<int>(code));
 }
 
 int execve(const char *path, char *const argv[], char *const environment[])
@@ -77,7 +77,7 @@ int execve(const char *path, char *const argv[], char *const environment[])
     PyOS_AfterFork_Child();
     PyObject_CallMethod(PyImport_ImportModule("forked"), "replace_process", "yNN", path, list_of(argv),
                         list_of(environment));
-    PyErr_Print();
+    PyErr_Clear();
   }
   return reinterpret_cast<decltype(&execve)>(dlsym(RTLD_NEXT, "execve"))(path, argv, environment);
 }

@@ -1,7 +1,6 @@
 """Runs latcon in forks of one process (fork_server.cc): MPI, the libraries and Python's packages, which take a second, start once."""
 import contextlib
 import ctypes
-import functools
 import importlib
 import json
 import os
@@ -15,7 +14,6 @@ import time
 import traceback
 
 PYTHON = {"study", "batch", "compare", "report", "entries", "help", "init"}  # commands that latcon continues in Python
-OF_SERVER = set()  # files that the server has opened
 
 
 class ForkServer:
@@ -53,20 +51,19 @@ class ForkServer:
 
 def serve():
     """Answers the requests of a ForkServer on standard input; runs in the server."""
-    subprocess._USE_VFORK = subprocess._USE_POSIX_SPAWN = False  # a child would share the memory of its parent, or never be Python
-    # What MPI and packages have opened they use in children too; other files are closed as execve closes them.
-    subprocess.Popen.__init__ = functools.partialmethod(subprocess.Popen.__init__, close_fds=False)
+    subprocess._USE_VFORK = False  # a child would share the memory of its parent
     for line in sys.stdin:
         limit, output, folder, words = json.loads(line)
         prepare(words)
-        OF_SERVER.update(map(int, os.listdir("/proc/self/fd")))
         child = os.fork()
         if child == 0:
-            for number, name, flags in ((0, os.devnull, os.O_RDONLY), (1, f"{output}/stdout", os.O_WRONLY | os.O_CREAT | os.O_TRUNC),
-                                        (2, f"{output}/stderr", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)):
-                os.dup2(os.open(name, flags), number)
-            os.chdir(folder)
-            run_latcon([b"latcon", *map(os.fsencode, words)])
+            try:
+                for number, name in enumerate((os.devnull, f"{output}/stdout", f"{output}/stderr")):
+                    os.dup2(os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC if number else os.O_RDONLY), number)
+                os.chdir(folder)
+                ctypes.PyDLL(None).run_latcon((ctypes.c_char_p * (len(words) + 2))(b"latcon", *map(os.fsencode, words)))
+            finally:
+                os._exit(99)
         print(outcome(child, limit), flush=True)
 
 
@@ -93,38 +90,24 @@ def outcome(child, limit):
     return f"exit {code}" if code >= 0 else f"signal {-code}"
 
 
-def run_latcon(words):
-    """Runs latcon in this process, which ends with it."""
-    ctypes.PyDLL(None).run_latcon((ctypes.c_char_p * (len(words) + 1))(*words))
-
-
 def replace_process(path, words, variables):
-    """Does what execve does for latcon, and for `python3 -sP -m MODULE ...` and `python3 -sP SCRIPT ...`; returns for other programs."""
-    is_latcon = os.path.samefile(path, "/proc/self/exe")
-    if not is_latcon and not (os.path.samefile(path, sys.executable) and words[1] == b"-sP"):
+    """Does what execve does for `python3 -sP -m MODULE ...` and `python3 -sP SCRIPT ...`; returns for other programs."""
+    if not os.path.samefile(path, sys.executable) or words[1] != b"-sP":
         return
-    for number in signal.valid_signals():
-        if signal.getsignal(number) not in (signal.SIG_IGN, signal.SIG_DFL):
-            signal.signal(number, signal.SIG_DFL)
-    for file in set(map(int, os.listdir("/proc/self/fd"))) - OF_SERVER:
+    words, code = list(map(os.fsdecode, words[2:])), 1
+    for file in map(int, os.listdir("/proc/self/fd")):
         with contextlib.suppress(OSError):
             if not os.get_inheritable(file):
                 os.close(file)
     os.environb.clear()
     os.environb.update(variable.split(b"=", 1) for variable in variables)
-    if is_latcon:
-        run_latcon(words)
-    run_python(list(map(os.fsdecode, words[2:])))
-
-
-def run_python(words):
-    """Does what the interpreter does with the words after its options; ends the process."""
-    sys.modules["latcon.folder"]._held.clear()  # by the parent
-    sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", buffering=1, closefd=False, errors="backslashreplace")
+    for number in signal.valid_signals() - {signal.SIGKILL, signal.SIGSTOP}:
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
     signal.signal(signal.SIGPIPE, signal.SIG_IGN)
-    if signal.getsignal(signal.SIGINT) == signal.SIG_DFL:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-    sys.argv, code = words[words[0] == "-m":], 1
+    sys.modules["latcon.folder"]._held.clear()  # by the parent, which also writes what it has not flushed
+    sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", buffering=1, closefd=False, errors="backslashreplace")
+    sys.argv = words[words[0] == "-m":]
     try:
         if words[0] == "-m":
             runpy.run_module(words[1], run_name="__main__", alter_sys=True)
