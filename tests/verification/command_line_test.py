@@ -254,10 +254,3 @@ def test_claim_that_fails_is_3(out):
     assert re.search(r"1 of 2 checks fails:\n  fracture: Lagrangian crack speed: error .*, tolerance 0.2\n"
                                  r"fracture \S+ s; .*\n\Z", run.stdout)
     assert (out / "crack.json").exists()
-
-
-def test_unwritable_place_is_5(tmp_path):
-    blocked = tmp_path / "file"
-    blocked.write_text("in the way")
-    latcon("lattice", CASES / "quick.prm", "--output-dir", blocked / "out", expect=5)
-    assert blocked.read_text() == "in the way"
