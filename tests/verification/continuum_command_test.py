@@ -146,9 +146,8 @@ def test_tables_tell_one_story(once):
 
 def test_fields_open_outside_latcon(once):
     mesh = last_mesh(once)
-    assert mesh.GetFieldData().GetArray("TimeValue").GetValue(0) == 1.
-    points = mesh.GetPointData()
-    components = {points.GetArrayName(i): points.GetArray(i).GetNumberOfComponents() for i in range(points.GetNumberOfArrays())}
+    assert mesh.FieldData["TimeValue"][0] == 1.
+    components = {name: mesh.PointData[name][0].size for name in mesh.PointData.keys()}
     tensors = ["deformation_gradient", "first_piola_stress", "cauchy_stress", "strain_gradient_x",
                "strain_gradient_y", "double_stress_x", "double_stress_y"]
     assert components == {"displacement": 3, "strain_energy_density": 1, **dict.fromkeys(tensors, 9)}

@@ -85,10 +85,20 @@ def frames(path):
     return [(float(d.get("timestep")), path.parent / d.get("file")) for d in root.iter("DataSet")]
 
 
-def read(reader, path):
+def read(path):
+    """Data of a VTK file as VTK reads it; `PointData`, `CellData` and `FieldData` have its arrays by name, `Points` its points."""
+    from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
+    from vtkmodules.vtkIOXML import vtkXMLGenericDataObjectReader
+    reader = vtkXMLGenericDataObjectReader()
     reader.SetFileName(str(path))
     reader.Update()
-    return reader.GetOutput()
+    return WrapDataObject(reader.GetOutput())
+
+
+def unit(array):
+    """Unit of an array of a VTK file, None if it has none."""
+    from vtkmodules.vtkCommonCore import vtkDataArray
+    return array.VTKObject.GetInformation().Get(vtkDataArray.UNITS_LABEL())
 
 
 def files(folder):
