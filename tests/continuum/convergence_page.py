@@ -20,7 +20,7 @@ import numpy as np
 import pandas
 from matplotlib.lines import Line2D
 
-from latcon.report.pictures import BLACK, BLUE, GREEN, GREY, RED, WIDTH, Page, save
+from latcon.report.pictures import BLACK, BLUE, GREEN, GREY, RED, Page, save
 
 NORMS = ("L2", "H1", "H2")  # columns of a table
 TITLES = {"L2": "displacement, $L_2$ [m$^2$]", "H1": "gradient, $H_1$ [m]", "H2": "second gradient, broken $H_2$ [1]"}

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from continuum_run import HOLE, LAYER, MODULUS, SPACING, cells_of, field, last_mesh, numbers, points_of, results
-from program import CASES, latcon, read_csv, settings
+from continuum_run import HOLE, LAYER, MODULUS, SPACING, cells_of, field, last_mesh, points_of, results
+from program import CASES, latcon, numbers, read_csv, settings
 
 TOP_FORCE = "force on the top edge per thickness, x"
 

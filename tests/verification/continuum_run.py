@@ -16,14 +16,6 @@ def results(folder):
     return {row["quantity"]: float(row["continuum"]) for row in read_csv(folder / "results.csv")}
 
 
-def numbers(path):
-    """Columns of a table; checks that all cells are finite numbers."""
-    rows = read_csv(path)
-    columns = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
-    assert all(np.isfinite(column).all() for column in columns.values()), path
-    return columns
-
-
 def last_mesh(folder):
     return read(frames(folder / "continuum.pvd")[-1][1])
 

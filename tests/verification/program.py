@@ -11,6 +11,8 @@ import tempfile
 import time
 import xml.etree.ElementTree
 
+import numpy as np
+
 from forked import ForkServer
 
 # latcon, or the fork server, which with arguments is latcon.
@@ -77,6 +79,14 @@ def checkpoints(out):
 def read_csv(path):
     with open(path, newline="") as file:
         return list(csv.DictReader(file))
+
+
+def numbers(path):
+    """Columns of a table; checks that all cells are finite numbers."""
+    rows = read_csv(path)
+    columns = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+    assert all(np.isfinite(column).all() for column in columns.values()), path
+    return columns
 
 
 def frames(path):
