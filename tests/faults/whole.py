@@ -83,8 +83,8 @@ READERS = {
 
 
 def check(folder):
-    """Reads all files in a folder and below it, except temporary files, locks and terminal output. @return number of files
-    read"""
+    """Reads all files in a folder and below it, if there is one, except temporary files, locks and terminal output.
+    @return number of files read"""
     n = 0
     for path in sorted(folder.rglob("*")):
         inside = path.relative_to(folder)
