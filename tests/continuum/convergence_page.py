@@ -129,28 +129,8 @@ def draw(series, path):
 
 def page_text(series):
     """The whole page."""
-    parts = [f"""# Orders of convergence
-
-Made by `cmake --build build/release --target convergence_page` from the {series["last"].sum()} series of
-`tests/continuum/convergence_test.cc`; do not edit.
-
-The manufactured displacement on the unit square (side 1 m) is a stretch of 1.55 by 1.4 with a sine in each component, so
-that principal stretches range from 0.9 to 2.0. The body force, tractions and double tractions that keep it in equilibrium
-are obtained by automatic differentiation of the energies as they are defined, without any code under test. They are
-prescribed to the solver together with the displacement on the edges and, with a gradient law, the normal gradient there.
-Sheets "loaded above" have traction and double traction prescribed on the upper edge instead. The length of the gradient
-laws is l = 0.1 m, more than a cell of the finest meshes. Meshes with hanging nodes have a disc in the middle refined once
-more; h is the largest side of a cell.
-
-For a smooth solution and h < l, theory predicts that the errors of displacement, gradient and second gradient (cell by
-cell) have the orders 2/2/1, 4/3/2 and 5/4/3 for p = 2, 3, 4 with a gradient law, and p + 1, p, p - 1 without.
-`./test -L full` asserts these orders between the two finest meshes to within {TOLERANCE}, `./test` mostly between the two
-coarser ones.
-
-{summary_table(series)}
-Observed: smallest and largest order over local laws, meshes and edges, between the two finest meshes. Errors on every mesh, and
-the orders between them: [convergence.csv](convergence.csv).
-"""]
+    template = pathlib.Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
+    parts = [template.format(series=series["last"].sum(), tolerance=TOLERANCE, summary=summary_table(series))]
     for gradient in series["gradient"].unique():
         title = GRADIENT[gradient]
         parts.append(f"![Errors over h, {title}](images/convergence-{gradient}.png)\n\n*{title[0].upper()}{title[1:]}.*\n")
