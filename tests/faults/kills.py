@@ -11,7 +11,7 @@ class Failure(Exception):
 
 def kill_at_random(program, name, folder, rng, kills, ranks=(1,)):
     """@return number of kills, and of those before the first checkpoint"""
-    arguments = {**victims.VICTIMS, **victims.WITHOUT_CHECKPOINTS}[name]
+    arguments = victims.RUNS[name]
     expected, duration = victims.undisturbed(program, arguments, folder / "killed", name)  # pages name their folder
     out = folder / "killed"
     victims.renew(name, out)
