@@ -6,11 +6,11 @@ import json
 import os
 import pathlib
 import runpy
+import select
 import signal
 import subprocess
 import sys
 import tempfile
-import time
 import traceback
 
 PYTHON = {"study", "batch", "compare", "report", "entries", "help", "init"}  # commands that latcon continues in Python
@@ -79,15 +79,13 @@ def prepare(words):
 
 def outcome(child, limit):
     """Waits for a child, and kills it after `limit` s."""
-    end = time.monotonic() + limit
-    while (ended := os.waitpid(child, os.WNOHANG)) == (0, 0):
-        if time.monotonic() > end:
-            os.kill(child, signal.SIGKILL)
-            os.waitpid(child, 0)
-            return "limit"
-        time.sleep(1e-3)
-    code = os.waitstatus_to_exitcode(ended[1])
-    return f"exit {code}" if code >= 0 else f"signal {-code}"
+    descriptor = os.pidfd_open(child)
+    is_ended = select.select([descriptor], [], [], limit)[0]
+    os.close(descriptor)
+    if not is_ended:
+        os.kill(child, signal.SIGKILL)
+    code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    return "limit" if not is_ended else f"exit {code}" if code >= 0 else f"signal {-code}"
 
 
 def replace_process(path, words, variables):
