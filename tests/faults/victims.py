@@ -49,12 +49,10 @@ class Program:
         self.latcon, self.preloaded = str(latcon), preloaded
 
     def start(self, arguments, out, *, ranks=1, fault=None):
-        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-        if fault is not None:
-            environment.update(LD_PRELOAD=str(self.preloaded), LATCON_FAULT_IN=str(out), **fault)
+        variables = {} if fault is None else {"LD_PRELOAD": str(self.preloaded), "LATCON_FAULT_IN": str(out), **fault}
         launcher = [] if ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(ranks)]
         to = [str(out)] if arguments[0] == "report" else ["--output-dir", str(out)]
-        return subprocess.Popen([*launcher, self.latcon, *arguments, *to], env=environment,
+        return subprocess.Popen([*launcher, self.latcon, *arguments, *to], env=os.environ | variables,
                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
     def run(self, arguments, out, timeout=600, **how):

@@ -19,11 +19,10 @@ PYTHON = {"study", "batch", "compare", "report", "entries", "help", "init"}  # c
 class ForkServer:
     """A fork server, and the folder of the output of its children."""
 
-    def __init__(self, program, environment=None):
+    def __init__(self, program):
         self.temporary = tempfile.TemporaryDirectory()
         self.output = pathlib.Path(self.temporary.name)
-        environment = dict(environment or os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-        self.process = subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment)
+        self.process = subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     def run(self, arguments, folder, limit):
         """Runs latcon in `folder`, for at most `limit` s. @return `exit CODE`, `signal NUMBER` or `limit`"""

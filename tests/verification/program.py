@@ -25,6 +25,8 @@ if "LATCON_VERDICTS" in os.environ:
     for part in ("latcon", "matplotlib"):
         shutil.copytree(pathlib.Path(os.environ["LATCON_VERDICTS"]) / part, pathlib.Path(CACHE.name) / part)
 os.environ["XDG_CACHE_HOME"] = CACHE.name
+# Tests run as root, and side by side.
+os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_mpi_yield_when_idle="1")
 os.environ["MPLCONFIGDIR"] = f"{CACHE.name}/matplotlib"  # its list of fonts takes seconds to make, once is enough
 CASES = pathlib.Path(__file__).resolve().parents[2] / "verification" / "cases"
 
@@ -61,10 +63,8 @@ def claims_where(property_):
 
 
 def latcon_on_ranks(ranks, *arguments, expect=0):
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                       OMPI_MCA_mpi_yield_when_idle="1")  # tests run side by side
     return ended(subprocess.run(["mpirun", "--oversubscribe", "-n", str(ranks), LATCON, *map(str, arguments)],
-                                capture_output=True, text=True, timeout=600, env=environment), expect)
+                                capture_output=True, text=True, timeout=600), expect)
 
 
 def settings(*entries):
