@@ -19,8 +19,6 @@ PROGRAM = victims.Program(os.environ["LATCON"], os.environ["LATCON_FILE_FAULTS"]
 TIMES = int(os.environ.get("LATCON_FAULTS", 1))
 SEED = 1
 CRACK = victims.VICTIMS["crack"]
-needs_mount = pytest.mark.skipif(os.geteuid() != 0 or subprocess.run(["unshare", "-m", "mount", "-t", "tmpfs", "none", "/mnt"],
-                                                                     capture_output=True).returncode != 0, reason="no disk can be mounted here")
 
 
 @pytest.mark.parametrize("name", [*victims.VICTIMS, *(["relaxation"] if TIMES == 1 else victims.WITHOUT_CHECKPOINTS)])
@@ -47,7 +45,7 @@ def crack_on(disk, options, then=""):
     return subprocess.run(["unshare", "-m", "sh", "-c", script], capture_output=True, text=True, timeout=600)
 
 
-@needs_mount
+@pytest.mark.usefixtures("needs_mount")
 def test_small_disk(tmp_path, whole_run):
     """A real disk becomes full in the middle of a file."""
     complete, expected = whole_run
@@ -63,7 +61,7 @@ def test_small_disk(tmp_path, whole_run):
     kills.compare("crack", kept, expected)
 
 
-@needs_mount
+@pytest.mark.usefixtures("needs_mount")
 def test_disk_that_cannot_be_written(tmp_path):
     run = crack_on(tmp_path, "ro")
     assert run.returncode == 5, run.stderr

@@ -6,7 +6,6 @@ import math
 import os
 import shutil
 import signal
-import subprocess
 import sys
 import types
 
@@ -16,9 +15,6 @@ import pytest
 import latcon
 from conftest import tiny_case
 from latcon.quantities import RECORDED
-
-CAN_MOUNT = os.geteuid() == 0 and subprocess.run(["unshare", "-m", "mount", "-t", "tmpfs", "none", "/mnt"], capture_output=True,
-                                                 check=False).returncode == 0
 
 
 def rows(path):
@@ -244,7 +240,7 @@ def test_each_command_passes_the_confirmation_on(stand_in, tmp_path, monkeypatch
             assert (words.read_text().split()[0], "--yes" in words.read_text().split()) == (command.__name__, yes)
 
 
-@pytest.mark.skipif(not CAN_MOUNT, reason="nothing can be hidden here")
+@pytest.mark.usefixtures("needs_mount")
 def test_without_the_packages_of_the_report_a_run_keeps_its_results_and_says_what_to_install(stand_in, tmp_path, crack):
     bare = f'mount -t tmpfs none /usr/lib/python3/dist-packages/vtkmodules || exit 77; exec {latcon.find_program()} "$@"'
     stand_in(f"import os\nos.execvp('unshare', ['unshare', '-m', 'sh', '-c', {bare!r}, 'sh', *sys.argv[1:]])")
