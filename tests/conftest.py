@@ -43,5 +43,5 @@ def module_path():
 @pytest.fixture(scope="session")
 def needs_mount():
     """Skips tests that mount something where that is not allowed."""
-    if subprocess.run(["unshare", "-m", "mount", "-t", "tmpfs", "none", "/mnt"], capture_output=True, check=False).returncode != 0:
+    if subprocess.run(["unshare", "-m", "mount", "-t", "tmpfs", "none", "/mnt"], capture_output=True, check=False).returncode:
         pytest.skip("nothing can be mounted here")

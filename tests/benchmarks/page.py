@@ -120,11 +120,11 @@ def messages_table(part):
 
 
 def model_tables(parts):
-    """Efficiency on many ranks as the model of docs/performance.md predicts; none if a measurement that it needs is missing."""
+    """Efficiency on many ranks as the model of docs/performance.md predicts, if all that it needs was measured."""
     if "sizes" not in parts or "messages" not in parts:
         return []
     times = {entry["bytes"]: best(entry["seconds"]) for entry in parts["messages"]["exchanges"]}
-    # Latency of the shortest message [s], lowest bandwidth of messages as long as two rows [byte/s], sum over two ranks [s].
+    # Latency of the shortest message [s], lowest bandwidth of messages as long as two rows [byte/s], sum of two ranks [s].
     here = (times[min(times)], min(size / seconds for size, seconds in times.items() if 2**14 <= size <= 2**20),
             best(parts["messages"]["allreduce_seconds"]))
     network = (2e-6, 5e9, 4e-6)
@@ -174,5 +174,6 @@ def machine_text(document):
 
 def text(document):
     """Text for the terminal."""
-    notes = [f"{name}: not measured, {reason}" for kind in ("skipped", "failed") for name, reason in document[kind].items()]
+    reasons = document["skipped"] | document["failed"]
+    notes = [f"{name}: not measured, {reason}" for name, reason in reasons.items()]
     return "\n".join([machine_text(document) + "\n", *(table.text() for table in tables(document)), *notes])

@@ -75,7 +75,7 @@ def check(path, time, n_cells):
     grid = read(path)
     assert grid.GetNumberOfCells() == n_cells, f"{path.name} has {grid.GetNumberOfCells()} cells"
     if path.suffix == ".vtu":
-        assert list(grid.FieldData["TimeValue"]) == [time], f"TimeValue of {path.name} is not that of the series, {time!r}"
+        assert list(grid.FieldData["TimeValue"]) == [time], f"TimeValue of {path.name} is not {time!r}"
     field, X = grid.PointData, grid.Points
     wanted = {"displacement", "deformation_gradient", "first_piola_stress", "cauchy_stress", "strain_energy_density",
               "strain_gradient_x", "strain_gradient_y", "double_stress_x", "double_stress_y"}

@@ -39,8 +39,8 @@ def theory(gradient, degree):
 
 
 def read_series(folder):
-    """Errors of all tables of a folder, a row for each mesh in the order of the page, coarse to fine. "order of NORM" is from
-    the coarser mesh to this one, `last` marks the finest of a series."""
+    """Errors of all tables of a folder, a row for each mesh in the order of the page, coarse to fine. "order of NORM" is
+    from the coarser mesh to this one, `last` marks the finest of a series."""
     tables = []
     for path in folder.glob("*.csv"):
         table = pandas.read_csv(path, header=0, names=["h", *NORMS], index_col=False, dtype=float)
@@ -73,7 +73,7 @@ def summary_table(series):
     for (gradient, degree), alike in series[series["last"]].groupby(["gradient", "p"], observed=True):
         orders = [(str(theory(gradient, degree)[norm]), alike[f"order of {norm}"]) for norm in NORMS]
         rows.append([GRADIENT[gradient], str(degree), str(len(alike)),
-                     *(text for expected, found in orders for text in (expected, f"{found.min():.2f} … {found.max():.2f}"))])
+                     *(text for theory_, found in orders for text in (theory_, f"{found.min():.2f} … {found.max():.2f}"))])
     header = ["", "p", "series"] + [text for norm in NORMS for text in (f"{norm}: theory", "observed")]
     return table_of(header, rows)
 
@@ -81,7 +81,8 @@ def summary_table(series):
 def write_errors(series, path):
     """Errors on every mesh and the orders between them."""
     columns = {"gradient law": series["gradient"].map(GRADIENT), "law": series["local"].map(LOCAL),
-               "mesh and edges": series["mesh"].map(MESH), "p": series["p"], "h [m]": series["h"].map(lambda h: f"1/{1. / h:.4g}")}
+               "mesh and edges": series["mesh"].map(MESH), "p": series["p"],
+               "h [m]": series["h"].map(lambda h: f"1/{1. / h:.4g}")}
     for norm in NORMS:
         orders = series[f"order of {norm}"].map("{:.2f}".format, na_action="ignore")
         columns |= {norm: series[norm].map("{:.2e}".format), f"order of {norm}": orders}

@@ -36,7 +36,8 @@ SOME = {"crack": ("kill", "full"), "sheet in motion": ("full",)}  # files of all
                                          for fault in (SOME.get(name, ()) if TIMES == 1 else ("kill", "full"))])
 def test_run_survives_a_fault_at_a_call_that_changes_files(name, fault, module_path):
     pick = random.Random(f"{SEED} {name}")
-    assert moments.at_moments(PROGRAM, name, module_path / name, fault, lambda n: pick.sample(range(1, n + 1), min(n, TIMES))) > 30
+    assert moments.at_moments(PROGRAM, name, module_path / name, fault,
+                              lambda n: pick.sample(range(1, n + 1), min(n, TIMES))) > 30
 
 
 def crack_on(disk, options, then=""):

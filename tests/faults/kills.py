@@ -34,7 +34,7 @@ def kill_at_random(program, name, folder, rng, kills, ranks=(1,)):
 
 
 def advance(program, arguments, out, rng, duration, ranks):
-    """Resumes the run and kills it, or occasionally sends SIGTERM. @return "killed", "asked to stop", or "done" if it had ended"""
+    """Resumes the run and kills it, or occasionally sends SIGTERM. @return "killed", "asked to stop" or "done" before"""
     on = rng.choice(ranks)
     before = victims.time_of_change(out / "run.json")
     process = program.start(victims.on_threads(victims.resumed(arguments), rng.choice((1, 2))), out, ranks=on)

@@ -11,8 +11,7 @@ from program import latcon, settings
 
 
 HERE = pathlib.Path(__file__).parent
-# Words and entries of each; the last have no checkpoints: after a kill they start from the beginning, and a study with its
-# incomplete runs.
+# The last have no checkpoints: after a kill they start from the beginning, and a study with its incomplete runs.
 RUNS = {name: [*words, "--quiet", *settings(*(f"{key}={value}" for key, value in entries.items()))]
         for name, (words, entries) in json.loads((HERE / "victims.json").read_text()).items()}
 RUNS["study"][1] = str(HERE / "study.json")

@@ -231,8 +231,8 @@ def not_finite(folder):
                 yield path.name
         elif path.suffix in (".vtp", ".vtu"):
             data = read(path)
-            arrays = {name: part[name] for part in (data.PointData, data.CellData, data.FieldData) for name in part.keys()}
-            for name, values in {"points": data.Points, **arrays}.items():
+            parts = (data.PointData, data.CellData, data.FieldData)
+            for name, values in [("points", data.Points), *((name, part[name]) for part in parts for name in part.keys())]:
                 if (numpy.isinf(values) if name in MAY_BE_UNKNOWN else ~numpy.isfinite(values)).any():
                     yield f"{path.name} ({name})"
         elif path.suffix == ".vti" and path.name not in MAY_HAVE_GAPS:

@@ -135,8 +135,8 @@ def table(records, n_all):
                      f"{100. * n['killed'] / max(n['killed'] + n['survived'], 1):6.1f} %")
     seen = n["killed"] + n["survived"]
     if seen and len(records) < n_all:
-        low, high = binomtest(n["killed"], seen).proportion_ci(method="wilson")
-        lines.append(f"{len(records)} of {n_all} faults; with 95 % confidence the score of all is between {100. * low:.1f} % and {100. * high:.1f} %")
+        low, high = (100. * end for end in binomtest(n["killed"], seen).proportion_ci(method="wilson"))
+        lines.append(f"{len(records)} of {n_all} faults; with 95 % confidence the score of all is between {low:.1f} % and {high:.1f} %")
     lines += [f"survived: {r['file']}:{r['line']}  {r['kind']}\n    - {r['before']}\n    + {r['after']}" for r in records
               if r["outcome"] == "survived"]
     return "\n".join(lines), n["killed"] / seen if seen else 1.

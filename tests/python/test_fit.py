@@ -25,8 +25,8 @@ SOLUTION = {STRETCH: 3.03417, DENSITY: 1000}  # of 20 - 30 e + 20 e^2 = 19
 class Crack:
     """Stands in for the pool and the program: two quantities, of which each seed has its own error; notes its runs.
 
-    `body` is called first, with the values of the case and the directory; it returns the exit code and message of the run, and a
-    third item if nothing was measured, or None. An error of the body is raised before the quantities are measured.
+    `body` is called first, with the values of the case and the directory; it returns the exit code and message of the run,
+    and a third item if nothing was measured, or None. An error of the body is raised before the quantities are measured.
     """
 
     def __init__(self):

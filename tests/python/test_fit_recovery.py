@@ -1,4 +1,7 @@
-"""A fit of a small crack finds the parameters that its observations were made with. Uncertainties: test_fit_statistics.py."""
+"""A fit of a small crack finds the parameters that its observations were made with.
+
+How often uncertainties hold: test_fit_statistics.py.
+"""
 import math
 
 import numpy as np
@@ -22,10 +25,11 @@ def loaded_energy(run):
 
 def observe(case, directory, seeds):
     """Synthetic observations: means over seeds, with noise, and the uncertainty of both."""
-    runs = [latcon.fracture(case.set("Lattice/noise seed", seed), directory / str(seed), threads=1, skip_verification=True,
-                            report=False, progress=False) for seed in seeds]
+    runs = [latcon.fracture(case.set("Lattice/noise seed", seed), directory / str(seed), threads=1,
+                            skip_verification=True, report=False, progress=False) for seed in seeds]
     generator = np.random.default_rng(2026)
-    for name, values in ((SPEED, [run.crack.speed_lagrangian.value for run in runs]), (ENERGY, list(map(loaded_energy, runs)))):
+    speeds = [run.crack.speed_lagrangian.value for run in runs]
+    for name, values in ((SPEED, speeds), (ENERGY, list(map(loaded_energy, runs)))):
         uncertainty = math.hypot(NOISE[name], np.std(values, ddof=1) / math.sqrt(len(values)))
         yield Observation(name, float(np.mean(values) + generator.normal(0, NOISE[name])), uncertainty,
                           measure=loaded_energy if name == ENERGY else None)
@@ -34,8 +38,9 @@ def observe(case, directory, seeds):
 def test_known_parameters_are_recovered(tmp_path):
     strip = latcon.Case("quick").set(STRIP)
     observations = list(observe(strip.set(KNOWN), tmp_path / "observed", (300, 301)))
-    result = fit_case(strip, [Parameter(key, *bounds) for key, bounds in BOUNDS.items()], observations, tmp_path / "fit", seeds=[302],
-                      evaluations=14, skip_verification=True, search_seed=3, progress=False)
+    parameters = [Parameter(key, *bounds) for key, bounds in BOUNDS.items()]
+    result = fit_case(strip, parameters, observations, tmp_path / "fit", seeds=[302], evaluations=14,
+                      skip_verification=True, search_seed=3, progress=False)
     # In the region of 95 % confidence.
     offset = result.model.center - [(KNOWN[key] - low) / (high - low) for key, (low, high) in BOUNDS.items()]
     assert offset @ result.model.metric @ offset <= chi2.ppf(0.95, 2)

@@ -1,4 +1,4 @@
-"""Pages have the tables that their records give; notebooks are stored without outputs, and the page of the package names each."""
+"""Pages have the tables of their records; notebooks are stored without outputs, and the page of the package names each."""
 import importlib
 import json
 import pathlib

@@ -1,4 +1,4 @@
-"""Runs latcon in forks of one process (fork_server.cc): MPI, the libraries and Python's packages, which take a second, start once."""
+"""Runs latcon in forks of one process (fork_server.cc): MPI, libraries and Python's packages, which take a second, start once."""
 import contextlib
 import ctypes
 import importlib
@@ -103,7 +103,8 @@ def replace_process(path, words, variables):
             signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
     signal.signal(signal.SIGPIPE, signal.SIG_IGN)
     sys.modules["latcon.folder"]._held.clear()  # by the parent, which also writes what it has not flushed
-    sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", buffering=1, closefd=False, errors="backslashreplace")
+    sys.stdout = open(1, "w", closefd=False)
+    sys.stderr = open(2, "w", buffering=1, closefd=False, errors="backslashreplace")
     sys.argv = words[words[0] == "-m":]
     try:
         if words[0] == "-m":

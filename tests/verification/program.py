@@ -96,7 +96,7 @@ def frames(path):
 
 
 def read(path):
-    """Data of a VTK file as VTK reads it; `PointData`, `CellData` and `FieldData` have its arrays by name, `Points` its points."""
+    """Data of a VTK file as VTK reads it; `PointData`, `CellData` and `FieldData` have its arrays by name."""
     from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
     from vtkmodules.vtkIOXML import vtkXMLGenericDataObjectReader
     reader = vtkXMLGenericDataObjectReader()

@@ -1,6 +1,5 @@
-"""A run and the dry run of a file refuse the cases of refusals.txt, with the place of what is wrong, and nothing is written; and
-no others.
-So are the words of words.txt.
+"""A run and the dry run of a file refuse the cases of refusals.txt, with the place of what is wrong, and nothing is written;
+and no others. So are the words of words.txt.
 """
 import pathlib
 import shlex
