@@ -73,7 +73,7 @@ def summary_table(series):
     for (gradient, degree), alike in series[series["last"]].groupby(["gradient", "p"], observed=True):
         orders = [(str(theory(gradient, degree)[norm]), alike[f"order of {norm}"]) for norm in NORMS]
         rows.append([GRADIENT[gradient], str(degree), str(len(alike)),
-                     *(text for theory_, found in orders for text in (theory_, f"{found.min():.2f} … {found.max():.2f}"))])
+                     *(text for order, found in orders for text in (order, f"{found.min():.2f} … {found.max():.2f}"))])
     header = ["", "p", "series"] + [text for norm in NORMS for text in (f"{norm}: theory", "observed")]
     return table_of(header, rows)
 
