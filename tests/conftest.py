@@ -4,6 +4,7 @@ Where LATCON_NO_SKIPS is set, as in hosted CI, a test that cannot run there fail
 """
 import os
 import pathlib
+import subprocess
 import tempfile
 
 import pytest
@@ -37,3 +38,10 @@ def module_path():
     """Empty folder of what the tests of a file share."""
     with tempfile.TemporaryDirectory() as folder:
         yield pathlib.Path(folder)
+
+
+@pytest.fixture(scope="session")
+def needs_mount():
+    """Skips tests that mount something where that is not allowed."""
+    if subprocess.run(["unshare", "-m", "mount", "-t", "tmpfs", "none", "/mnt"], capture_output=True, check=False).returncode:
+        pytest.skip("nothing can be mounted here")

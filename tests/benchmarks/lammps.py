@@ -1,33 +1,11 @@
 """LAMMPS input of a sheet, and parsing of LAMMPS's log."""
+import pathlib
 import re
 
 from measure import Failed, run
 
-# Neighbour lists are not built: there are no pair forces, and bonds never change. Sites remain ordered by rows.
-INPUT = """units si
-dimension 2
-boundary f f p
-newton on
-atom_style bond
-atom_modify map array sort 0 0
-special_bonds lj/coul 1 1 1
-bond_style harmonic
-pair_style none
-comm_modify cutoff 0.01
-neighbor 0.0 bin
-neigh_modify once yes
-read_data {data}
-group free type 1
-fix motion free nve
-timestep {time_step!r}
-thermo_style custom step pe ke
-thermo_modify norm no format float %.17g
-thermo {steps}
-{dump}{runs}
-"""
-DUMP = """dump positions all custom {steps} {file} id x y
-dump_modify positions sort id format float %.17g
-"""
+INPUT = pathlib.Path(__file__).with_name("sheet.lammps").read_text(encoding="utf-8")
+DUMP = "dump positions all custom {steps} {file} id x y\ndump_modify positions sort id format float %.17g\n"
 
 
 def input_text(data, time_step, steps, repetitions, positions=None):

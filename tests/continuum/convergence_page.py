@@ -6,9 +6,6 @@ Usage: convergence_page.py FROM DOCS
 FROM: the program continuum_convergence_tests, which is run (minutes), or a folder with the tables that a run of this
 program wrote to the folder LATCON_TABLES. DOCS: the folder of the page; its pictures are written to DOCS/images.
 """
-import csv
-import dataclasses
-import math
 import os
 import pathlib
 import re
@@ -19,9 +16,11 @@ import tempfile
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
 
+import numpy as np
+import pandas
 from matplotlib.lines import Line2D
 
-from latcon.report.pictures import BLACK, BLUE, GREEN, GREY, RED, WIDTH, Page, save
+from latcon.report.pictures import BLACK, BLUE, GREEN, GREY, RED, Page, save
 
 NORMS = ("L2", "H1", "H2")  # columns of a table
 TITLES = {"L2": "displacement, $L_2$ [m$^2$]", "H1": "gradient, $H_1$ [m]", "H2": "second gradient, broken $H_2$ [1]"}
@@ -34,50 +33,32 @@ TOLERANCE = 0.2  # of an order, as convergence_test.cc asserts it
 SERIES = re.compile(rf"({'|'.join(LOCAL)})_({'|'.join(GRADIENT)})_(uniform|hanging)(_loaded)?_p([0-9])")
 
 
-@dataclasses.dataclass(frozen=True)
-class Series:
-    """Errors of one law, mesh family and degree: rows of (h, L2, H1, H2), coarse to fine."""
-    local: str
-    gradient: str
-    mesh: str
-    degree: int
-    rows: list
-
-    def orders(self, norm):
-        """Observed order from each mesh to the next finer one."""
-        column = 1 + NORMS.index(norm)
-        return [math.log(a[column] / b[column]) / math.log(a[0] / b[0]) for a, b in zip(self.rows, self.rows[1:])]
-
-
-class BadTable(Exception):
-    """A table does not have the format written by convergence_test.cc."""
-
-
 def theory(gradient, degree):
     """Orders of the three norms for a smooth solution and h < l."""
     return {"L2": 2 if degree == 2 and gradient != "local" else degree + 1, "H1": degree, "H2": degree - 1}
 
 
 def read_series(folder):
-    """Every table of a folder, in the order of the page."""
-    series = []
+    """Errors of all tables of a folder, a row for each mesh in the order of the page, coarse to fine. "order of NORM" is
+    from the coarser mesh to this one, `last` marks the finest of a series."""
+    tables = []
     for path in folder.glob("*.csv"):
+        table = pandas.read_csv(path, header=0, names=["h", *NORMS], index_col=False, dtype=float)
         match = SERIES.fullmatch(path.stem)
-        with open(path, newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-        try:
-            numbers = [tuple(map(float, row)) for row in rows[1:]]
-        except ValueError as error:
-            raise BadTable(f"{path}: {error}") from error
-        if not match or len(numbers) < 2 or any(len(row) != 4 or min(row) <= 0. for row in numbers):
-            raise BadTable(f"{path}: no table of a convergence series")
+        if not match or len(table) < 2 or not (table > 0.).all(axis=None):
+            raise ValueError(f"{path}: no table of a convergence series")
         local, gradient, mesh, loaded, degree = match.groups()
-        series.append(Series(local, gradient, mesh + (loaded or ""), int(degree), sorted(numbers, reverse=True)))
-    if not series:
-        raise BadTable(f"{folder}: no tables")
-    places = [list(names) for names in (LOCAL, GRADIENT, MESH)]
-    return sorted(series, key=lambda s: (places[1].index(s.gradient), places[0].index(s.local), places[2].index(s.mesh),
-                                         s.degree))
+        table = table.sort_values("h", ascending=False, ignore_index=True)
+        steps = np.log(table).diff()
+        tables.append(table.assign(local=local, gradient=gradient, mesh=mesh + (loaded or ""), p=int(degree),
+                                   last=table.index == len(table) - 1,
+                                   **{f"order of {norm}": steps[norm] / steps["h"] for norm in NORMS}))
+    if not tables:
+        raise ValueError(f"{folder}: no tables")
+    series = pandas.concat(tables)
+    for column, names in (("local", LOCAL), ("gradient", GRADIENT), ("mesh", MESH)):
+        series[column] = pandas.Categorical(series[column], list(names))
+    return series.sort_values(["gradient", "local", "mesh", "p"], kind="stable", ignore_index=True)
 
 
 def table_of(header, rows):
@@ -89,29 +70,23 @@ def table_of(header, rows):
 def summary_table(series):
     """Observed orders between the two finest meshes and theoretical orders, one row per gradient law and degree."""
     rows = []
-    for gradient in GRADIENT:
-        for degree in sorted({s.degree for s in series if s.gradient == gradient}):
-            alike = [s for s in series if (s.gradient, s.degree) == (gradient, degree)]
-            cells = []
-            for norm in NORMS:
-                last = [s.orders(norm)[-1] for s in alike]
-                cells += [str(theory(gradient, degree)[norm]), f"{min(last):.2f} … {max(last):.2f}"]
-            rows.append([GRADIENT[gradient], str(degree), str(len(alike)), *cells])
+    for (gradient, degree), alike in series[series["last"]].groupby(["gradient", "p"], observed=True):
+        orders = [(str(theory(gradient, degree)[norm]), alike[f"order of {norm}"]) for norm in NORMS]
+        rows.append([GRADIENT[gradient], str(degree), str(len(alike)),
+                     *(text for order, found in orders for text in (order, f"{found.min():.2f} … {found.max():.2f}"))])
     header = ["", "p", "series"] + [text for norm in NORMS for text in (f"{norm}: theory", "observed")]
     return table_of(header, rows)
 
 
 def write_errors(series, path):
     """Errors on every mesh and the orders between them."""
-    with path.open("w", encoding="utf-8", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(["gradient law", "law", "mesh and edges", "p", "h [m]"] + [text for norm in NORMS for text in (norm, f"order of {norm}")])
-        for s in series:
-            for i, row in enumerate(s.rows):
-                cells = [GRADIENT[s.gradient], LOCAL[s.local], MESH[s.mesh], s.degree, f"1/{1. / row[0]:.4g}"]
-                for norm, error in zip(NORMS, row[1:]):
-                    cells += [f"{error:.2e}", f"{s.orders(norm)[i - 1]:.2f}" if i > 0 else ""]
-                table.writerow(cells)
+    columns = {"gradient law": series["gradient"].map(GRADIENT), "law": series["local"].map(LOCAL),
+               "mesh and edges": series["mesh"].map(MESH), "p": series["p"],
+               "h [m]": series["h"].map(lambda h: f"1/{1. / h:.4g}")}
+    for norm in NORMS:
+        orders = series[f"order of {norm}"].map("{:.2f}".format, na_action="ignore")
+        columns |= {norm: series[norm].map("{:.2e}".format), f"order of {norm}": orders}
+    pandas.DataFrame(columns).to_csv(path, index=False)
 
 
 def draw(series, path):
@@ -119,35 +94,34 @@ def draw(series, path):
     page = Page(4.1)
     for panel, norm in enumerate(NORMS):
         axes = page.axes(0.62 + panel * 3.2, 0.35, 2.62, 2.75)
-        column = 1 + NORMS.index(norm)
-        for s in series:
-            colour = COLOURS[s.degree]
+        for (local, mesh, degree), s in series.groupby(["local", "mesh", "p"], observed=True):
+            colour = COLOURS[degree]
             # The local laws nearly coincide: one as a dot, the other as a cross on it.
             style = dict(marker="x", markersize=4, markeredgecolor=BLACK, zorder=3)
-            if s.local == "network":
-                style = dict(marker="^" if s.mesh == "uniform_loaded" else "o", markersize=6,
-                             markerfacecolor="white" if s.mesh == "hanging" else colour)
-            axes.loglog([row[0] for row in s.rows], [row[column] for row in s.rows], color=colour, linewidth=1.0, **style)
-        for degree in sorted({s.degree for s in series}):
+            if local == "network":
+                style = dict(marker="^" if mesh == "uniform_loaded" else "o", markersize=6,
+                             markerfacecolor="white" if mesh == "hanging" else colour)
+            axes.loglog(s["h"], s[norm], color=colour, linewidth=1.0, **style)
+        for degree, s in series.groupby("p"):
             # Below the lowest of the solid lines, so that it hides none.
-            lowest = min((s for s in series if s.degree == degree), key=lambda s: s.rows[-1][column])
-            h = [lowest.rows[0][0], lowest.rows[-1][0]]
-            order = theory(lowest.gradient, degree)[norm]
-            error = [0.55 * lowest.rows[-1][column] * (x / h[1]) ** order for x in h]
+            lowest = s.loc[s.loc[s["last"], norm].idxmin()]
+            h = np.array([s["h"].max(), lowest["h"]])
+            order = theory(lowest["gradient"], degree)[norm]
+            error = 0.55 * lowest[norm] * (h / h[1])**order
             axes.loglog(h, error, "--", color=COLOURS[degree], linewidth=1.0)
             axes.annotate(f"{order}", (h[1], error[1]), xytext=(-3, -2), textcoords="offset points", ha="right",
                           va="center", color=COLOURS[degree])
-        steps = sorted({row[0] for s in series for row in s.rows})
+        steps = np.unique(series["h"])
         axes.set_xticks(steps, [f"1/{1. / h:.3g}" for h in steps])
         axes.minorticks_off()
         axes.set(xlim=(0.75 * steps[0], 1.2 * steps[-1]), xlabel="largest side h of a cell [m]", title=TITLES[norm])
 
-    degrees = [Line2D([], [], color=COLOURS[d], label=f"p = {d}") for d in sorted({s.degree for s in series})]
+    degrees = [Line2D([], [], color=COLOURS[d], label=f"p = {d}") for d in np.unique(series["p"])]
     kinds = [("o", GREY, "uniform"), ("o", "white", "hanging nodes"), ("^", GREY, "loaded above"),
              ("x", BLACK, "Mooney-Rivlin")]
     kinds = [Line2D([], [], color=BLACK if mark == "x" else GREY, marker=mark, markersize=4 if mark == "x" else 6,
                     markerfacecolor=fill, linewidth=0, label=label)
-             for mark, fill, label in kinds if mark != "^" or any(s.mesh == "uniform_loaded" for s in series)]
+             for mark, fill, label in kinds if mark != "^" or (series["mesh"] == "uniform_loaded").any()]
     slope = Line2D([], [], color=BLACK, linestyle="--", linewidth=1.0, label="slope of theory")
     page.figure.legend(handles=[*degrees, slope, *kinds], loc="lower center", ncol=8, columnspacing=1.2,
                        handletextpad=0.4, bbox_to_anchor=(0.5, 0.))
@@ -156,31 +130,11 @@ def draw(series, path):
 
 def page_text(series):
     """The whole page."""
-    parts = [f"""# Orders of convergence
-
-Made by `cmake --build build/release --target convergence_page` from the {len(series)} series of
-`tests/continuum/convergence_test.cc`; do not edit.
-
-The manufactured displacement on the unit square (side 1 m) is a stretch of 1.55 by 1.4 with a sine in each component, so
-that principal stretches range from 0.9 to 2.0. The body force, tractions and double tractions that keep it in equilibrium
-are obtained by automatic differentiation of the energies as they are defined, without any code under test. They are
-prescribed to the solver together with the displacement on the edges and, with a gradient law, the normal gradient there.
-Sheets "loaded above" have traction and double traction prescribed on the upper edge instead. The length of the gradient
-laws is l = 0.1 m, more than a cell of the finest meshes. Meshes with hanging nodes have a disc in the middle refined once
-more; h is the largest side of a cell.
-
-For a smooth solution and h < l, theory predicts that the errors of displacement, gradient and second gradient (cell by
-cell) have the orders 2/2/1, 4/3/2 and 5/4/3 for p = 2, 3, 4 with a gradient law, and p + 1, p, p - 1 without.
-`./test -L full` asserts these orders between the two finest meshes to within {TOLERANCE}, `./test` mostly between the two
-coarser ones.
-
-{summary_table(series)}
-Observed: smallest and largest order over local laws, meshes and edges, between the two finest meshes. Errors on every mesh, and
-the orders between them: [convergence.csv](convergence.csv).
-"""]
-    for gradient, title in GRADIENT.items():
-        if any(s.gradient == gradient for s in series):
-            parts.append(f"![Errors over h, {title}](images/convergence-{gradient}.png)\n\n*{title[0].upper()}{title[1:]}.*\n")
+    template = pathlib.Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
+    parts = [template.format(series=series["last"].sum(), tolerance=TOLERANCE, summary=summary_table(series))]
+    for gradient in series["gradient"].unique():
+        title = GRADIENT[gradient]
+        parts.append(f"![Errors over h, {title}](images/convergence-{gradient}.png)\n\n*{title[0].upper()}{title[1:]}.*\n")
     return "\n".join(parts)
 
 
@@ -188,10 +142,8 @@ def write_page(folder, docs):
     """Page and pictures from the tables of a folder."""
     series = read_series(folder)
     (docs / "images").mkdir(parents=True, exist_ok=True)
-    for gradient in GRADIENT:
-        of_gradient = [s for s in series if s.gradient == gradient]
-        if of_gradient:
-            draw(of_gradient, docs / "images" / f"convergence-{gradient}.png")
+    for gradient, of_gradient in series.groupby("gradient", observed=True):
+        draw(of_gradient, docs / "images" / f"convergence-{gradient}.png")
     (docs / "convergence.md").write_text(page_text(series), encoding="utf-8")
     write_errors(series, docs / "convergence.csv")
 

@@ -4,10 +4,9 @@ import json
 import pathlib
 import re
 
-import vtk
+from program import read
 
 REFERENCE = sorted((pathlib.Path(__file__).resolve().parents[2] / "docs").glob("reference*.md"))
-READERS = {".vtp": vtk.vtkXMLPolyDataReader, ".vtu": vtk.vtkXMLUnstructuredGridReader, ".vti": vtk.vtkXMLImageDataReader}
 
 
 def rows_of_tables(text):
@@ -65,12 +64,8 @@ def keys(value):
 
 
 def arrays(path):
-    reader = READERS[path.suffix]()
-    reader.SetFileName(str(path))
-    reader.Update()
-    data = reader.GetOutput()
-    return [part.GetArrayName(i) for part in (data.GetPointData(), data.GetCellData(), data.GetFieldData())
-            for i in range(part.GetNumberOfArrays())]
+    data = read(path)
+    return [name for part in (data.PointData, data.CellData, data.FieldData) for name in part.keys()]
 
 
 def undocumented(folder):
@@ -93,7 +88,7 @@ def undocumented(folder):
             inside = [name for name in columns(path) if not named(name, about)]
         elif path.suffix == ".json":
             inside = [name for name in keys(json.loads(path.read_text())) if not named(name, about)]
-        elif path.suffix in READERS:
+        elif path.suffix in (".vtp", ".vtu", ".vti"):
             inside = [name for name in arrays(path) if not reference.field(name)]
         missing |= {f"{path.name}: {name}" for name in inside}
     return sorted(missing)

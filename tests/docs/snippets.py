@@ -17,10 +17,11 @@ statements have no exit code:
 import dataclasses
 import re
 
+from markdown_it import MarkdownIt
+
 from printed_numbers import agrees
 
-MARK = re.compile(r"^<!-- (not run|run weekly|exit code): (.+) -->$")
-FENCE = re.compile(r"^```(\w*)$")
+MARK = re.compile(r"<!-- (not run|run weekly|exit code): (.+) -->\n?")
 
 
 class BadPage(Exception):
@@ -44,36 +45,29 @@ class Block:
 def blocks(page, text):
     """All fenced blocks of a page, in order. @throws BadPage for an unmatched fence or mark"""
     found, lines = [], text.splitlines()
-    mark, i, after = None, 0, None  # after: the commands that end on the line before, blank ones left out
-    while i < len(lines):
-        fence, marked = FENCE.match(lines[i]), MARK.match(lines[i])
-        if fence:
-            begin = i
-            i += 1
-            while i < len(lines) and lines[i] != "```":
-                i += 1
-            if i == len(lines):
-                raise BadPage(f"{page}:{begin + 1}: a fence is not closed")
-            if not fence[1]:
-                raise BadPage(f"{page}:{begin + 1}: a block needs a language, `text` if it is none")
-            block = Block(page, begin + 1, fence[1], "\n".join(lines[begin + 1:i]) + "\n", *(mark or ("", "")))
-            if mark and block.language != "sh" and (block.language != "python" or mark[0] == "exit code"):
-                raise BadPage(f"{block.place()}: '{mark[0]}' is for commands (sh)")
-            if block.language == "text" and after:
-                after.output = block.text
-            else:
-                found.append(block)
-            after = block if block.language in ("sh", "python") else None
-            mark = None
-        elif marked:
-            mark, after = (marked[1], marked[2]), None
-        elif lines[i].strip():
+    mark, after = None, None  # of the block that follows; the commands that end before, nothing in between
+    for token in MarkdownIt().parse(text):
+        place = f"{page}:{token.map[0] + 1 if token.map else '?'}"
+        if token.type != "fence":
             if mark:
-                raise BadPage(f"{page}:{i + 1}: '{mark[0]}' is not followed by a block")
-            if re.match(r" {4}(\./|latcon |mpirun |cmake |pvpython )", lines[i]):
-                raise BadPage(f"{page}:{i + 1}: commands want a fence with a language")
-            after = None
-        i += 1
+                raise BadPage(f"{place}: '{mark[0]}' is not followed by a block")
+            if token.type == "code_block" and re.match(r"(\./|latcon |mpirun |cmake |pvpython )", token.content):
+                raise BadPage(f"{place}: commands want a fence with a language")
+            after, match = None, MARK.fullmatch(token.content)
+            mark = match.groups() if match and token.type == "html_block" else None
+            continue
+        if lines[token.map[1] - 1].strip() != token.markup:
+            raise BadPage(f"{place}: a fence is not closed")
+        if not token.info:
+            raise BadPage(f"{place}: a block needs a language, `text` if it is none")
+        block = Block(page, token.map[0] + 1, token.info, token.content, *(mark or ("", "")))
+        if mark and block.language != "sh" and (block.language != "python" or mark[0] == "exit code"):
+            raise BadPage(f"{place}: '{mark[0]}' is for commands (sh)")
+        if block.language == "text" and after:
+            after.output = block.text
+        else:
+            found.append(block)
+        after, mark = block if block.language in ("sh", "python") else None, None
     return found
 
 

@@ -10,31 +10,31 @@ class Failure(Exception):
 
 
 def kill_at_random(program, name, folder, rng, kills, ranks=(1,)):
-    """@return statistics: kills, files read, completed runs, kills before the first checkpoint"""
-    arguments = {**victims.VICTIMS, **victims.WITHOUT_CHECKPOINTS}[name]
+    """@return number of kills, and of those before the first checkpoint"""
+    arguments = victims.RUNS[name]
     expected, duration = victims.undisturbed(program, arguments, folder / "killed", name)  # pages name their folder
     out = folder / "killed"
     victims.renew(name, out)
-    told = {"kills": 0, "files_read": 0, "runs": 0, "without_checkpoint": 0, "asked_to_stop": 0}
-    while told["kills"] < kills:
-        finished = advance(program, arguments, out, rng, duration, ranks, told)
-        told["files_read"] += whole.check(out) if out.exists() else 0
-        if finished:
+    told = dict.fromkeys(("killed", "asked to stop", "done"), 0)
+    without_checkpoint = 0
+    while told["killed"] < kills:
+        how = advance(program, arguments, out, rng, duration, ranks)
+        told[how] += 1
+        whole.check(out)
+        if how == "done":
             compare(name, out, expected)
-            told["runs"] += 1
             victims.renew(name, out)
-        elif not list(out.glob("checkpoints/*.h5")):
-            told["without_checkpoint"] += 1
+        without_checkpoint += how == "killed" and not list(out.glob("checkpoints/*.h5"))
     status, said = program.run(victims.resumed(arguments), out)
     if status not in victims.DONE:
         raise Failure(f"{name}: exit {status} after the last kill: {said}")
     compare(name, out, expected)
-    told["runs"] += 1
-    return told
+    print(name, told)
+    return told["killed"], without_checkpoint
 
 
-def advance(program, arguments, out, rng, duration, ranks, told):
-    """Resumes the run and kills it, or occasionally sends SIGTERM. @return whether it had ended before"""
+def advance(program, arguments, out, rng, duration, ranks):
+    """Resumes the run and kills it, or occasionally sends SIGTERM. @return "killed", "asked to stop" or "done" before"""
     on = rng.choice(ranks)
     before = victims.time_of_change(out / "run.json")
     process = program.start(victims.on_threads(victims.resumed(arguments), rng.choice((1, 2))), out, ranks=on)
@@ -46,21 +46,19 @@ def advance(program, arguments, out, rng, duration, ranks, told):
         time.sleep(0.005)
     # A signal that mpirun receives before it has started the ranks does not concern latcon.
     if process.poll() is None and on == 1 and rng.random() < 0.1:
-        told["asked_to_stop"] += 1
         process.terminate()
         _, said = process.communicate(timeout=120)
         # It may end before it checks for signals; before the handlers are installed a signal simply ends it.
         if process.returncode not in (130, -15, *victims.DONE):
             raise Failure(f"exit {process.returncode} when asked to stop: {said}")
     elif process.poll() is None:
-        told["kills"] += 1
         victims.kill(process)
-        return False
+        return "killed"
     else:
         _, said = process.communicate()
         if process.returncode not in victims.DONE:
             raise Failure(f"exit {process.returncode}: {said}")
-    return process.returncode in victims.DONE
+    return "done" if process.returncode in victims.DONE else "asked to stop"
 
 
 def compare(name, out, expected):

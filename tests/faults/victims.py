@@ -1,4 +1,5 @@
 """Small runs of every kind that writes checkpoints, on which the fault harness acts."""
+import json
 import os
 import pathlib
 import shutil
@@ -6,51 +7,19 @@ import signal
 import subprocess
 import time
 
-from program import CASES, latcon
+from program import latcon, settings
 
 
-def settings(**entries):
-    """--set options; `Section__name` represents Section/name, `_` for a blank."""
-    words = []
-    for key, value in entries.items():
-        words += ["--set", key.replace("__", "/").replace("_", " ") + "=" + str(value)]
-    return words
-
-
-STRIP = ["fracture", str(CASES / "quick.prm"), "--skip-verification", "--no-report", "--quiet",
-         *settings(Sheet__length="2.5 cm", Sheet__height="1.5 cm", Output__frame_interval="0.1 ms",
-                   Output__energy_interval=40, Checkpoints__steps=48, Time__end="1 ms", Near_tip__interval="7e-6",
-                   Near_tip__ahead="4 mm", Near_tip__behind="4 mm", Near_tip__half_height="4 mm")]
-VICTIMS = {
-    "crack": [*STRIP, *settings(Fracture__right_end="absorbing", Contact__present="true")],
-    "retracting crack in long steps": [*STRIP, *settings(Fracture__toughening="retraction", Time__stages=4,
-                                                         Time__integrator="runge-kutta-chebyshev")],
-    "lattice in motion": ["lattice", str(CASES / "quick.prm"), "--quiet",
-                          *settings(Lattice__solution="motion", Time__end="0.1 ms", Sheet__length="2.5 cm",
-                                    Output__frame_interval="0.02 ms", Output__energy_interval=30,
-                                    Checkpoints__steps=32)],
-    "crack of the continuum": [
-        "fracture", str(CASES / "quick.prm"), "--side", "continuum", "--skip-verification", "--no-report", "--quiet",
-        *settings(Sheet__spacing="1 mm", Sheet__length="30 mm", Sheet__height="16 mm", Fracture__seed_sites=8,
-                  Time__end="0.4 ms", Time__integrator="runge-kutta-chebyshev", Output__frame_interval="0.05 ms",
-                  Output__energy_interval=10, Checkpoints__steps=7)],
-}
+HERE = pathlib.Path(__file__).parent
+# The last have no checkpoints: after a kill they start from the beginning, and a study with its incomplete runs.
+RUNS = {name: [*words, "--quiet", *settings(*(f"{key}={value}" for key, value in entries.items()))]
+        for name, (words, entries) in json.loads((HERE / "victims.json").read_text()).items()}
+RUNS["study"][1] = str(HERE / "study.json")
+RUNS["report"] = ["report"]  # of a crack that has run before
+WITHOUT_CHECKPOINTS = {name: RUNS[name] for name in ("relaxation", "study", "verify", "report")}
+VICTIMS = {name: words for name, words in RUNS.items() if name not in WITHOUT_CHECKPOINTS}
 # Runs that are bitwise identical for any number of ranks.
-ON_RANKS = list(VICTIMS)
-VICTIMS["sheet in motion"] = [
-    "continuum", str(CASES / "shear_layer.prm"), "--quiet",
-    *settings(Continuum__solution="motion", Continuum__cells_y=8, Continuum__degree=2, Continuum__time_step="5 us",
-              Left_edge__condition="held", Right_edge__condition="held", Continuum__direct_limit=0,
-              Loading__shear=0.1, Initial_state__velocity_x="6*sin(pi*y/0.02)^2*sin(pi*x/0.01)^2",
-              Time__end="0.1 ms", Output__frame_interval="0.02 ms", Output__energy_interval=2, Checkpoints__steps=3)]
-# Runs without checkpoints: after a kill they start from the beginning, and a study with its incomplete runs.
-WITHOUT_CHECKPOINTS = {
-    "relaxation": ["lattice", str(CASES / "quick.prm"), "--quiet",
-                   *settings(Lattice__solution="relaxed", Sheet__length="5 cm", Sheet__height="3 cm")],
-    "study": ["study", str(pathlib.Path(__file__).with_name("study.json")), "--quiet", "--skip-verification"],
-    "verify": ["verify", "intrinsic-length", "--quick", "--quiet"],
-    "report": ["report"],  # of a crack that has run before
-}
+ON_RANKS = [name for name in VICTIMS if name != "sheet in motion"]
 # Files that record the circumstances of a run.
 NOT_RESULTS = ("run.json", "log.txt", ".latcon.lock", "study.json", "study.html")
 DONE = (0, 3)  # 3: the energy balance of such small strips may exceed the tolerance
@@ -79,12 +48,10 @@ class Program:
         self.latcon, self.preloaded = str(latcon), preloaded
 
     def start(self, arguments, out, *, ranks=1, fault=None):
-        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-        if fault is not None:
-            environment.update(LD_PRELOAD=str(self.preloaded), LATCON_FAULT_IN=str(out), **fault)
+        variables = {} if fault is None else {"LD_PRELOAD": str(self.preloaded), "LATCON_FAULT_IN": str(out), **fault}
         launcher = [] if ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(ranks)]
         to = [str(out)] if arguments[0] == "report" else ["--output-dir", str(out)]
-        return subprocess.Popen([*launcher, self.latcon, *arguments, *to], env=environment,
+        return subprocess.Popen([*launcher, self.latcon, *arguments, *to], env=os.environ | variables,
                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
     def run(self, arguments, out, timeout=600, **how):

@@ -5,7 +5,8 @@ import json
 import xml.etree.ElementTree
 
 import h5py
-import vtk
+from vtkmodules.vtkIOImage import vtkPNGReader
+from vtkmodules.vtkIOXML import vtkXMLGenericDataObjectReader
 
 USER_BLOCK = 512
 
@@ -70,14 +71,11 @@ READERS = {
     ".csv": read_csv,
     ".json": lambda path: json.loads(path.read_text()),
     ".pvd": read_collection,
-    ".vtp": lambda path: read_vtk(vtk.vtkXMLPolyDataReader(), path),
-    ".vtu": lambda path: read_vtk(vtk.vtkXMLUnstructuredGridReader(), path),
-    ".pvtu": lambda path: read_vtk(vtk.vtkXMLPUnstructuredGridReader(), path),
-    ".vti": lambda path: read_vtk(vtk.vtkXMLImageDataReader(), path),
+    **dict.fromkeys((".vtp", ".vtu", ".pvtu", ".vti"), lambda path: read_vtk(vtkXMLGenericDataObjectReader(), path)),
     ".h5": read_checkpoint,
     ".prm": lambda path: path.read_text(),
     ".html": read_page,
-    ".png": lambda path: read_vtk(vtk.vtkPNGReader(), path),
+    ".png": lambda path: read_vtk(vtkPNGReader(), path),
     ".gif": read_animation,
     ".svg": lambda path: xml.etree.ElementTree.parse(path),
     ".latcon-files": read_list,  # which has no suffix
@@ -85,8 +83,8 @@ READERS = {
 
 
 def check(folder):
-    """Reads all files in a folder and below it, except temporary files, locks and terminal output. @return number of files
-    read"""
+    """Reads all files in a folder and below it, if there is one, except temporary files, locks and terminal output.
+    @return number of files read"""
     n = 0
     for path in sorted(folder.rglob("*")):
         inside = path.relative_to(folder)

@@ -13,8 +13,6 @@ import sys
 import tempfile
 
 import numpy
-import vtk
-from vtk.util.numpy_support import vtk_to_numpy
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "verification"))
 os.environ.update(ASAN_OPTIONS="detect_leaks=0:abort_on_error=0", UBSAN_OPTIONS=
@@ -223,7 +221,6 @@ MAY_CHANGE = [entry for entry in ENTRIES
 MOST_STEPS, SHORT = 60, 2.  # of a run whose automatic step is known; largest estimated time of a run [s]
 # By definition not finite where no sample has a site, or too few bonds are left.
 MAY_HAVE_GAPS, MAY_BE_UNKNOWN = {"near_tip.vti", "near_tip_folded.vti"}, {"strain_gradient_x", "strain_gradient_y"}
-READERS = {".vtp": vtk.vtkXMLPolyDataReader, ".vtu": vtk.vtkXMLUnstructuredGridReader}
 
 
 def not_finite(folder):
@@ -232,14 +229,12 @@ def not_finite(folder):
         if path.suffix in (".csv", ".json", ".pvd", ".prm"):
             if re.search(r"(?i)(?<![a-z_])[+-]?(nan|inf|infinity)(?![a-z_])", path.read_text(errors="replace")):
                 yield path.name
-        elif path.suffix in READERS:
-            data = read(READERS[path.suffix](), path)
-            arrays = [data.GetPoints().GetData(), *(part.GetArray(i) for part in (data.GetPointData(), data.GetCellData(), data.GetFieldData())
-                                                    for i in range(part.GetNumberOfArrays()))]
-            for array in arrays:
-                values = vtk_to_numpy(array)
-                if (numpy.isinf(values) if array.GetName() in MAY_BE_UNKNOWN else ~numpy.isfinite(values)).any():
-                    yield f"{path.name} ({array.GetName()})"
+        elif path.suffix in (".vtp", ".vtu"):
+            data = read(path)
+            parts = (data.PointData, data.CellData, data.FieldData)
+            for name, values in [("points", data.Points), *((name, part[name]) for part in parts for name in part.keys())]:
+                if (numpy.isinf(values) if name in MAY_BE_UNKNOWN else ~numpy.isfinite(values)).any():
+                    yield f"{path.name} ({name})"
         elif path.suffix == ".vti" and path.name not in MAY_HAVE_GAPS:
             yield path.name + " (not looked at)"
 

@@ -49,46 +49,28 @@ def _literal(number):
     return "1." if value == 0. else repr(2. * value)
 
 
-# kind, pattern, replacement (a string, or a function of the match).
+# Texts that replace each other, by kind of fault.
+_PAIRS = {"arithmetic": ((" + ", " - "), (" * ", " / "), (" += ", " -= "), (" *= ", " /= "), ("hn::Add(", "hn::Sub(")),
+          "comparison": ((" < ", " <= "), (" > ", " >= "), (" < ", " > "), (" == ", " != "), ("hn::Lt(", "hn::Gt(")),
+          "least and greatest": (("min(", "max("), ("hn::Min(", "hn::Max("), ("minCoeff(", "maxCoeff(")),
+          "logic": ((" && ", " || "), ("hn::And(", "hn::Or("), ("true", "false")), "function": (("sin(", "cos("),)}
+# Further faults: kind, pattern, replacement (a string, or a function of the match).
 _EXCHANGES = [
-    ("arithmetic", r" \+ ", " - "),
-    ("arithmetic", r" - ", " + "),
-    ("arithmetic", r" \* ", " / "),
-    ("arithmetic", r" / ", " * "),
-    ("arithmetic", r" \+= ", " -= "),
-    ("arithmetic", r" -= ", " += "),
-    ("arithmetic", r" \*= ", " /= "),
-    ("arithmetic", r" /= ", " *= "),
     ("arithmetic", r" % ", " / "),
-    ("arithmetic", r"hn::(Add|Sub|Mul)\(", lambda m: {"Add": "hn::Sub(", "Sub": "hn::Add(", "Mul": "hn::Div("}[m.group(1)]),
+    ("arithmetic", r"hn::Mul\(", "hn::Div("),
     ("sign", r"(?<=[(\[{,=?:] )-(?=[\w(])|(?<=[(\[{])-(?=[\w(])|(?<=return )-(?=[\w(])", ""),
-    ("comparison", r" < ", " <= "),
-    ("comparison", r" <= ", " < "),
-    ("comparison", r" > ", " >= "),
-    ("comparison", r" >= ", " > "),
-    ("comparison", r" < ", " > "),
-    ("comparison", r" > ", " < "),
-    ("comparison", r" == ", " != "),
-    ("comparison", r" != ", " == "),
-    ("comparison", r"hn::(Lt|Gt)\(", lambda m: {"Lt": "hn::Gt(", "Gt": "hn::Lt("}[m.group(1)]),
     ("constant", r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+)(?:e-?\d+)?(?![\w.])", lambda m: _literal(m.group(0))),
     ("x and y", r"(?<![&*])\b(v|a|f|n|d|dv|)([xy])(\(\)|_?)(?=\b|[^\w])",
      lambda m: m.group(1) + {"x": "y", "y": "x"}[m.group(2)] + m.group(3)),
-    ("least and greatest", r"\b(min|max)\(", lambda m: {"min": "max(", "max": "min("}[m.group(1)]),
-    ("least and greatest", r"hn::(Min|Max)\(", lambda m: {"Min": "hn::Max(", "Max": "hn::Min("}[m.group(1)]),
-    ("least and greatest", r"\b(min|max)Coeff\(", lambda m: {"min": "maxCoeff(", "max": "minCoeff("}[m.group(1)]),
-    ("logic", r" && ", " || "),
-    ("logic", r" \|\| ", " && "),
-    ("logic", r"hn::(And|Or)\(", lambda m: {"And": "hn::Or(", "Or": "hn::And("}[m.group(1)]),
-    ("logic", r"\b(true|false)\b", lambda m: {"true": "false", "false": "true"}[m.group(1)]),
     ("logic", r"(?<=[( ])!(?=[\w(])", ""),
-    ("function", r"\b(sin|cos)\(", lambda m: {"sin": "cos(", "cos": "sin("}[m.group(1)]),
-    ("function", r"std::sqrt\(", "("),
-    ("function", r"std::abs\(", "("),
+    ("function", r"std::(sqrt|abs)\(", "("),
     ("function", r"\.(transpose)\(\)", ""),
     ("choice", r" \? ([\w.]+) : ([\w.]+)(?=[;,)\]]|$)", lambda m: f" ? {m.group(2)} : {m.group(1)}"),
     ("factor 2", r"(?<=return )(?=[\w(-][^;{]*;$)", "2. * "),
 ]
+for kind, pairs in _PAIRS.items():
+    for before, after in (pair[::step] for pair in pairs for step in (1, -1)):
+        _EXCHANGES.append((kind, re.sub(r"^\b|\b$", r"\\b", re.escape(before)), after))
 _EXCHANGES = [(kind, re.compile(pattern), to) for kind, pattern, to in _EXCHANGES]
 _TEMPLATE_NUMBERS = re.compile(r"<[\w:]*(?:(?:, )?\d+)+>|, \d+> ")  # sizes of types: other values do not compile
 # A whole statement on a line of its own: a call, an assignment to what exists, a jump.

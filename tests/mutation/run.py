@@ -18,6 +18,8 @@ import subprocess
 import sys
 import time
 
+from scipy.stats import binomtest
+
 sys.dont_write_bytecode = True
 
 import mutants
@@ -133,9 +135,7 @@ def table(records, n_all):
                      f"{100. * n['killed'] / max(n['killed'] + n['survived'], 1):6.1f} %")
     seen = n["killed"] + n["survived"]
     if seen and len(records) < n_all:
-        p, z = n["killed"] / seen, 1.96
-        centre, half = p + z**2 / (2 * seen), z * math.sqrt(p * (1 - p) / seen + z**2 / (4 * seen**2))
-        low, high = (100. * (centre + sign * half) / (1 + z**2 / seen) for sign in (-1, 1))
+        low, high = (100. * end for end in binomtest(n["killed"], seen).proportion_ci(method="wilson"))
         lines.append(f"{len(records)} of {n_all} faults; with 95 % confidence the score of all is between {low:.1f} % and {high:.1f} %")
     lines += [f"survived: {r['file']}:{r['line']}  {r['kind']}\n    - {r['before']}\n    + {r['after']}" for r in records
               if r["outcome"] == "survived"]

@@ -1,6 +1,6 @@
 """Checks that cmake/set-up.sh builds in its own clone and is silent if there is nothing to build, and the exit codes of ./run."""
-import json
 import os
+import pathlib
 import shutil
 import subprocess
 
@@ -8,28 +8,7 @@ import pytest
 
 from folders import SOURCE
 
-# A project with the steps of every build of latcon: search for added files, and for the commit.
-PROJECT = """\
-cmake_minimum_required(VERSION 3.25)
-project(small C)
-option(BUILD_TESTING "" OFF)
-file(GLOB sources CONFIGURE_DEPENDS *.c)
-add_executable(latcon ${sources})
-add_custom_target(commit
-  COMMAND ${CMAKE_COMMAND} -D SOURCE=${PROJECT_SOURCE_DIR} -D HEADER=${CMAKE_BINARY_DIR}/commit.h
-          -P ${PROJECT_SOURCE_DIR}/cmake/git_commit.cmake
-  BYPRODUCTS ${CMAKE_BINARY_DIR}/commit.h COMMENT "" VERBATIM)
-add_dependencies(latcon commit)
-target_include_directories(latcon PRIVATE ${CMAKE_BINARY_DIR})
-"""
-PROGRAM = """\
-#include <stdio.h>
-#include "commit.h"
-int main(void) { puts("%s"); return LATCON_GIT_COMMIT[0] == 0; }
-"""
-PRESETS = {"version": 6, "configurePresets": [
-    {"name": "release", "generator": "Ninja", "binaryDir": "${sourceDir}/build/release",
-     "cacheVariables": {"BUILD_TESTING": "ON"}}]}
+SMALL = pathlib.Path(__file__).with_name("small")  # a project
 
 
 def empty_clone(folder):
@@ -51,10 +30,12 @@ def run_in(folder, *words):
 @pytest.fixture
 def clone(tmp_path):
     clone = empty_clone(tmp_path)
-    (clone / "CMakeLists.txt").write_text(PROJECT)
-    (clone / "CMakePresets.json").write_text(json.dumps(PRESETS))
-    (clone / "main.c").write_text(PROGRAM % "first")
-    return clone
+    return shutil.copytree(SMALL, clone, dirs_exist_ok=True)
+
+
+def rewrite(clone, name):
+    """Makes the program of the project print another name."""
+    (clone / "main.c").write_text((SMALL / "main.c").read_text().replace("first", name))
 
 
 def set_up(tmp_path, clone):
@@ -76,7 +57,7 @@ def test_shows_the_steps_of_the_first_build_alone(clone, tmp_path):
     assert "Building" in set_up(tmp_path, clone)
     assert says(tmp_path, clone) == "first\n"
     assert set_up(tmp_path, clone) == ""
-    (clone / "main.c").write_text(PROGRAM % "second")
+    rewrite(clone, "second")
     assert set_up(tmp_path, clone) == ""
     assert says(tmp_path, clone) == "second\n"
     (clone / "main.c").write_text("no program\n")
@@ -89,7 +70,7 @@ def test_a_copied_clone_builds_in_its_own_place(clone, tmp_path):
     set_up(tmp_path, clone)
     copy = tmp_path / "copy"
     shutil.copytree(clone, copy, symlinks=True)
-    (copy / "main.c").write_text(PROGRAM % "copy")
+    rewrite(copy, "copy")
     before = state(clone)
     assert "Configuring" in set_up(tmp_path, copy)
     assert says(tmp_path, copy) == "copy\n"

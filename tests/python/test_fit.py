@@ -25,8 +25,8 @@ SOLUTION = {STRETCH: 3.03417, DENSITY: 1000}  # of 20 - 30 e + 20 e^2 = 19
 class Crack:
     """Stands in for the pool and the program: two quantities, of which each seed has its own error; notes its runs.
 
-    `body` is called first, with the values of the case and the directory; it returns the exit code and message of the run, or None.
-    An error of the body is raised before the quantities are measured.
+    `body` is called first, with the values of the case and the directory; it returns the exit code and message of the run,
+    and a third item if nothing was measured, or None. An error of the body is raised before the quantities are measured.
     """
 
     def __init__(self):
@@ -61,11 +61,6 @@ class Crack:
         (directory / "crack.json").write_text(json.dumps(crack))
         (directory / "run.json").write_text(json.dumps({"failed_rows": self.failed_rows}))
         return code
-
-
-def without_crack(code, message):
-    """End of a run that measured nothing."""
-    return code, message, "nothing"
 
 
 @pytest.fixture
@@ -149,13 +144,8 @@ def test_words_are_compared_with_the_fraction_of_seeds(small_fit, crack, tmp_pat
 
 
 def test_refused_failed_and_undetermined_points_are_recorded_and_worse(small_fit, crack, tmp_path):
-    def end(stretch, seed, **_):
-        if stretch > 3.1:
-            return without_crack(2, "too stretched")
-        if stretch < 2.85 and seed == 2:
-            return without_crack(4, "blew up")
-        return None
-    crack.body = end
+    crack.body = lambda stretch, seed, **_: ((2, "too stretched", "nothing") if stretch > 3.1 else
+                                             (4, "blew up", "nothing") if stretch < 2.85 and seed == 2 else None)
     result = small_fit(tmp_path / "fit", evaluations=24)
     points = result.points
     refused, failed = points[STRETCH] > 3.1, points[STRETCH] < 2.85
@@ -174,10 +164,7 @@ def test_a_crack_that_misses_its_reference_values_is_measured(small_fit, crack, 
     crack.body = lambda **_: (3, "the wavelength differs")
     crack.failed_rows = {"fracture: wavelength": "reference"}
     assert set(small_fit(tmp_path / "fit", evaluations=4).points["ended"]) == {"done"}
-
-    def refuse(**_):
-        return without_crack(3, "no rubber")
-    crack.body = refuse
+    crack.body = lambda **_: (3, "no rubber", "nothing")
     with pytest.raises(latcon.LatconError, match="was refused: no rubber"):
         small_fit(tmp_path / "refused", evaluations=4)
 
@@ -194,9 +181,7 @@ def test_a_crack_whose_energies_do_not_balance_is_not_measured(small_fit, crack,
 
 
 def test_a_first_batch_without_result_is_an_error(small_fit, crack, tmp_path):
-    def refuse(**_):
-        return without_crack(2, "no rubber")
-    crack.body = refuse
+    crack.body = lambda **_: (2, "no rubber", "nothing")
     with pytest.raises(latcon.LatconError, match="no run of the first 4 points is done; the first was refused: no rubber"):
         small_fit(tmp_path / "fit")
     assert len(crack.runs) == 8
@@ -204,11 +189,7 @@ def test_a_first_batch_without_result_is_an_error(small_fit, crack, tmp_path):
 
 @pytest.mark.parametrize("code, kind", [(5, latcon.OutputFailed), (130, latcon.Interrupted)])
 def test_a_full_disk_or_a_signal_stops_the_fit_and_a_later_call_continues_it(small_fit, crack, tmp_path, code, kind):
-    def fill(directory, **_):
-        if directory.name.startswith("00005"):
-            return without_crack(code, "disk full")
-        return None
-    crack.body = fill
+    crack.body = lambda directory, **_: (code, "disk full", "nothing") if directory.name.startswith("00005") else None
     with pytest.raises(kind, match="disk full"):
         small_fit(tmp_path / "fit")
     assert len(lines(tmp_path / "fit")) == 5
@@ -337,11 +318,7 @@ def test_wrong_arguments_are_refused_before_anything_runs(small_fit, crack, tmp_
 
 
 def test_page_has_tables_and_pictures(small_fit, crack, tmp_path):
-    def refuse(stretch, **_):
-        if stretch > 3.1:
-            return without_crack(2, "<stretched>")
-        return None
-    crack.body = refuse
+    crack.body = lambda stretch, **_: (2, "<stretched>", "nothing") if stretch > 3.1 else None
     result = small_fit(tmp_path / "fit")
     page = result.to_html()
     text = page.read_text()

@@ -3,9 +3,10 @@ import json
 import re
 import shutil
 
+import numpy as np
 import pytest
 
-from program import CASES, checkpoints, files, latcon, latcon_on_ranks, read_csv
+from program import CASES, checkpoints, files, latcon, latcon_on_ranks, numbers
 
 SPECTRUM = CASES / "spectrum.prm"
 STRIP = ["fracture", SPECTRUM, "--skip-verification", "--no-report", "--quiet", "--set", "Sheet/length=2.5 cm", "--set",
@@ -20,10 +21,10 @@ BRANCHES = [f"{shell}_branch_{i}" for shell in ("nearest", "next_nearest") for i
 
 def branch_ledger(out, *columns):
     """First and last row of a ledger with these columns and those of the branches, in which energy is stored and lost."""
-    rows = read_csv(out / "energy.csv")
-    assert list(rows[0]) == ["t", "elastic", "kinetic", *columns, "imbalance",
+    ledger = numbers(out / "energy.csv")
+    assert list(ledger) == ["t", "elastic", "kinetic", *columns, "imbalance",
                              *(f"{name}_{what}" for name in BRANCHES for what in ("stored", "dissipated"))]
-    first, last = ({key: float(value) for key, value in row.items()} for row in (rows[0], rows[-1]))
+    first, last = ({key: column[row] for key, column in ledger.items()} for row in (0, -1))
     for name in BRANCHES:
         assert first[f"{name}_dissipated"] == 0
         assert last[f"{name}_stored"] > 0
@@ -83,9 +84,9 @@ def test_motion_of_finite_elements_records_and_resumes_branches(out, tmp_path):
     # Ranks sum in another order.
     shared = tmp_path / "shared"
     latcon_on_ranks(2, "continuum", SPECTRUM, *MOTION, "--output-dir", shared)
-    for ours, theirs in zip(read_csv(out / "energy.csv"), read_csv(shared / "energy.csv"), strict=True):
-        for key, value in ours.items():
-            assert float(theirs[key]) == pytest.approx(float(value), abs=1e-9 * first["elastic"]), key
+    ours, theirs = numbers(out / "energy.csv"), numbers(shared / "energy.csv")
+    for key, column in ours.items():
+        np.testing.assert_allclose(theirs[key], column, rtol=0., atol=1e-9 * first["elastic"], err_msg=key)
 
 
 def test_memory_is_estimated():

@@ -7,8 +7,8 @@ import types
 
 import numpy as np
 import pytest
-import vtk
-from vtk.util.numpy_support import vtk_to_numpy
+from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
+from vtkmodules.vtkFiltersCore import vtkProbeFilter
 
 from program import CASES, frames, latcon, latcon_on_ranks, read, read_csv
 
@@ -18,11 +18,7 @@ MOTION = ["--set", "Time/end=0.02 ms", "--set", "Output/frame interval=0"]
 
 
 def sites_of(folder):
-    return read(vtk.vtkXMLPolyDataReader(), folder / "difference_sites.vtp")
-
-
-def values(data, name):
-    return vtk_to_numpy(data.GetPointData().GetArray(name)).astype(float)
+    return read(folder / "difference_sites.vtp")
 
 
 def found(folder):
@@ -80,7 +76,7 @@ def test_equal_sheets_agree(once, out):
 
 def expect_norm(sites, row, field, chosen, reduce):
     """Checks the error of a row by that of the chosen sites, computed independently."""
-    difference = (values(sites, f"{field}_difference")[chosen]**2).sum(axis=1)
+    difference = (sites.PointData[f"{field}_difference"][chosen].reshape(chosen.sum(), -1)**2).sum(axis=1)
     scale = max(float(row["lattice"]), float(row["continuum"]))
     assert float(row["error"]) > 1e-2
     assert float(row["error"]) == pytest.approx(np.sqrt(reduce(difference)) / scale, abs=1e-12)
@@ -90,40 +86,42 @@ def test_difference_is_that_of_another_interpolation(once, out):
     compare(out, once.lattice, once.runs / "free", expect=3)  # free sides are another load
     assert [(time, path.name) for time, path in frames(out / "difference.pvd")] == (
         [(1., "difference_sites.vtp"), (1., "difference_continuum.vtu")])
-    cells = read(vtk.vtkXMLUnstructuredGridReader(), frames(once.runs / "free" / "continuum.pvd")[-1][1])
-    sites = read(vtk.vtkXMLPolyDataReader(), once.lattice / "lattice-0001.vtp")
-    probe = vtk.vtkProbeFilter()
-    probe.SetSourceData(cells)
-    probe.SetInputData(sites)
+    cells = read(frames(once.runs / "free" / "continuum.pvd")[-1][1])
+    sites = read(once.lattice / "lattice-0001.vtp")
+    probe = vtkProbeFilter()
+    probe.SetSourceData(cells.VTKObject)
+    probe.SetInputData(sites.VTKObject)
     probe.Update()
-    inside = values(probe.GetOutput(), "vtkValidPointMask") == 1
+    probed = WrapDataObject(probe.GetOutput()).PointData
+    inside = probed["vtkValidPointMask"] == 1
     assert inside.sum() > 0.9 * len(inside)
     theirs = sites_of(out)
-    assert values(theirs, "outside").sum() == 0.
-    u = values(sites, "displacement")
+    assert theirs.PointData["outside"].sum() == 0.
+    u = sites.PointData["displacement"]
     # The file's positions and fields have 24 bits.
-    np.testing.assert_allclose(values(theirs, "displacement_continuum")[inside],
-                               values(probe.GetOutput(), "displacement")[inside], rtol=0., atol=5e-7 * abs(u).max())
+    np.testing.assert_allclose(theirs.PointData["displacement_continuum"][inside],
+                               probed["displacement"][inside], rtol=0., atol=5e-7 * abs(u).max())
     for name in FIELDS:
-        np.testing.assert_array_equal(values(theirs, name), values(sites, name))
-        np.testing.assert_array_equal(values(theirs, name + "_difference"), values(theirs, name) - values(theirs, name + "_continuum"))
-    expect_norm(theirs, found(out)["displacement, rms difference"], "displacement", values(theirs, "held") == 0, np.mean)
-    chosen = (values(theirs, "held") == 0) & (values(theirs, "complete") == 1)
+        np.testing.assert_array_equal(theirs.PointData[name], sites.PointData[name])
+        lattice, continuum, difference = (theirs.PointData[name + end] for end in ("", "_continuum", "_difference"))
+        np.testing.assert_array_equal(difference, lattice - continuum)
+    expect_norm(theirs, found(out)["displacement, rms difference"], "displacement", theirs.PointData["held"] == 0, np.mean)
+    chosen = (theirs.PointData["held"] == 0) & (theirs.PointData["complete"] == 1)
     expect_norm(theirs, found(out)["cauchy_stress, largest difference"], "cauchy_stress", chosen, np.max)
     # The continuum is unchanged.
-    copy = read(vtk.vtkXMLUnstructuredGridReader(), out / "difference_continuum.vtu")
-    np.testing.assert_array_equal(values(copy, "displacement"), values(cells, "displacement"))
+    copy = read(out / "difference_continuum.vtu")
+    np.testing.assert_array_equal(copy.PointData["displacement"], cells.PointData["displacement"])
 
 
 def test_sites_in_excluded_circles_are_not_compared(once, out):
     compare(out, once.lattice, once.runs / "free", "--exclude", "1 cm,2 mm,3 mm", "--exclude", "0.002,-0.004,0.0015", expect=3)
     theirs = sites_of(out)
-    X = vtk_to_numpy(theirs.GetPoints().GetData()).astype(float)
+    X = theirs.Points.astype(float)
     circles = (np.hypot(X[:, 0] - 0.01, X[:, 1] - 0.002) < 0.003) | (np.hypot(X[:, 0] - 0.002, X[:, 1] + 0.004) < 0.0015)
-    np.testing.assert_array_equal(values(theirs, "excluded") == 1, circles)
+    np.testing.assert_array_equal(theirs.PointData["excluded"] == 1, circles)
     rows = found(out)
     assert int(rows["sites in excluded circles"]["lattice"]) == circles.sum()
-    chosen = (values(theirs, "held") == 0) & ~circles
+    chosen = (theirs.PointData["held"] == 0) & ~circles
     assert int(rows["free sites inside"]["lattice"]) == chosen.sum()
     expect_norm(theirs, rows["displacement, rms difference"], "displacement", chosen, np.mean)
 
@@ -135,9 +133,9 @@ def test_a_part_of_the_sheet_is_compared_where_both_are(tmp_path, once, out):
     refused(out, ["not the same sheet"], once.lattice, half)
     compare(out, once.lattice, half, "--overlap", "--tolerance", "displacement=1e-6", "--tolerance", "first_piola_stress=1e-6")
     theirs = sites_of(out)
-    X = vtk_to_numpy(theirs.GetPoints().GetData()).astype(float)
-    np.testing.assert_array_equal(values(theirs, "outside") == 1, X[:, 0] > 0.01 + 1e-8)
-    assert np.isnan(values(theirs, "displacement_difference")[X[:, 0] > 0.011, :2]).all()
+    X = theirs.Points.astype(float)
+    np.testing.assert_array_equal(theirs.PointData["outside"] == 1, X[:, 0] > 0.01 + 1e-8)
+    assert np.isnan(theirs.PointData["displacement_difference"][X[:, 0] > 0.011, :2]).all()
 
 
 def test_ranks_leave_no_trace(once, tmp_path, out):

@@ -1,5 +1,4 @@
 """Fixtures of tests of the program and of its report: processes in the background, a folder of runs."""
-import os
 import pathlib
 import subprocess
 import tempfile
@@ -20,9 +19,8 @@ def start():
     started = []
 
     def begin(*arguments, launcher=(), **keywords):
-        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
         process = subprocess.Popen([*launcher, LATCON, *map(str, arguments)], stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE, text=True, env=environment, **keywords)
+                                   stderr=subprocess.PIPE, text=True, **keywords)
         started.append(process)
         return process
 

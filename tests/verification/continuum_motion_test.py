@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from continuum_run import DENSITY, LAYER, MODULUS, numbers
-from program import CASES, latcon, read_csv, settings
+from continuum_run import DENSITY, LAYER, MODULUS
+from program import CASES, latcon, numbers, read_csv, settings
 
 # A shear wave in a strip that is periodic both ways.
 AMPLITUDE = 0.01  # of velocity [m/s]

@@ -2,8 +2,6 @@
 import math
 
 import numpy as np
-import vtk
-from vtk.util.numpy_support import vtk_to_numpy
 
 from program import CASES, frames, read, read_csv
 
@@ -18,26 +16,18 @@ def results(folder):
     return {row["quantity"]: float(row["continuum"]) for row in read_csv(folder / "results.csv")}
 
 
-def numbers(path):
-    """Columns of a table; checks that all cells are finite numbers."""
-    rows = read_csv(path)
-    columns = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
-    assert all(np.isfinite(column).all() for column in columns.values()), path
-    return columns
-
-
 def last_mesh(folder):
-    return read(vtk.vtkXMLUnstructuredGridReader(), frames(folder / "continuum.pvd")[-1][1])
+    return read(frames(folder / "continuum.pvd")[-1][1])
 
 
 def field(mesh, name):
     """Values at the points; tensors as (point, row, column) of the plane."""
-    values = vtk_to_numpy(mesh.GetPointData().GetArray(name)).astype(float)
-    return values.reshape(-1, 3, 3)[:, :2, :2] if values.ndim == 2 and values.shape[1] == 9 else values
+    values = mesh.PointData[name].astype(float)
+    return values.transpose(0, 2, 1)[:, :2, :2] if values.ndim == 3 else values  # VTK takes columns for rows
 
 
 def points_of(mesh):
-    return vtk_to_numpy(mesh.GetPoints().GetData())[:, :2].astype(float)
+    return mesh.Points[:, :2].astype(float)
 
 
 def cells_of(mesh):

@@ -4,11 +4,10 @@ import shutil
 import signal
 import socket
 import subprocess
-import time
 
 import pytest
 
-from program import CASES, LATCON
+from program import CASES, LATCON, wait_for
 
 TEST_PROGRAMS = os.environ["LATCON_TEST_PROGRAMS"].split(":")
 
@@ -62,8 +61,7 @@ def test_shares_no_folder(tmp, tmp_path):
 def test_leaves_nothing_when_killed(tmp, tmp_path):
     run = subprocess.Popen([LATCON, "fracture", CASES / "quick.prm", "--skip-verification", "--quiet",
                             "--output-dir", tmp_path / "out"], env=environment(TMPDIR=str(tmp)))
-    while not (tmp_path / "out" / "energy.csv").exists() and run.poll() is None:
-        time.sleep(0.01)
+    wait_for((tmp_path / "out" / "energy.csv").exists, run)
     run.kill()
     assert run.wait() == -signal.SIGKILL
     assert names_in(tmp) == []
@@ -91,8 +89,7 @@ def test_threads_that_wait_sleep_unless_they_are_told_otherwise(tmp_path):
     for told in ({}, {"OMP_WAIT_POLICY": "active"}):
         run = subprocess.Popen([LATCON, "fracture", CASES / "quick.prm", "--skip-verification", "--quiet",
                                 "--output-dir", tmp_path / "out"], env=dict(free, **told))
-        while not (tmp_path / "out" / "energy.csv").exists() and run.poll() is None:
-            time.sleep(0.01)
+        wait_for((tmp_path / "out" / "energy.csv").exists, run)
         with open(f"/proc/{run.pid}/environ", "rb") as file:
             variables = dict(item.split(b"=", 1) for item in file.read().split(b"\0") if item)
         with open(f"/proc/{run.pid}/comm", encoding="utf-8") as file:

@@ -11,6 +11,8 @@ import tempfile
 import time
 import xml.etree.ElementTree
 
+import numpy as np
+
 from forked import ForkServer
 
 # latcon, or the fork server, which with arguments is latcon.
@@ -23,6 +25,8 @@ if "LATCON_VERDICTS" in os.environ:
     for part in ("latcon", "matplotlib"):
         shutil.copytree(pathlib.Path(os.environ["LATCON_VERDICTS"]) / part, pathlib.Path(CACHE.name) / part)
 os.environ["XDG_CACHE_HOME"] = CACHE.name
+# Tests run as root, and side by side.
+os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_mpi_yield_when_idle="1")
 os.environ["MPLCONFIGDIR"] = f"{CACHE.name}/matplotlib"  # its list of fonts takes seconds to make, once is enough
 CASES = pathlib.Path(__file__).resolve().parents[2] / "verification" / "cases"
 
@@ -59,10 +63,8 @@ def claims_where(property_):
 
 
 def latcon_on_ranks(ranks, *arguments, expect=0):
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                       OMPI_MCA_mpi_yield_when_idle="1")  # tests run side by side
     return ended(subprocess.run(["mpirun", "--oversubscribe", "-n", str(ranks), LATCON, *map(str, arguments)],
-                                capture_output=True, text=True, timeout=600, env=environment), expect)
+                                capture_output=True, text=True, timeout=600), expect)
 
 
 def settings(*entries):
@@ -79,16 +81,34 @@ def read_csv(path):
         return list(csv.DictReader(file))
 
 
+def numbers(path):
+    """Columns of a table; checks that all cells are finite numbers."""
+    rows = read_csv(path)
+    columns = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+    assert all(np.isfinite(column).all() for column in columns.values()), path
+    return columns
+
+
 def frames(path):
     """(time, file) of every data set of a .pvd."""
     root = xml.etree.ElementTree.parse(path).getroot()
     return [(float(d.get("timestep")), path.parent / d.get("file")) for d in root.iter("DataSet")]
 
 
-def read(reader, path):
+def read(path):
+    """Data of a VTK file as VTK reads it; `PointData`, `CellData` and `FieldData` have its arrays by name."""
+    from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
+    from vtkmodules.vtkIOXML import vtkXMLGenericDataObjectReader
+    reader = vtkXMLGenericDataObjectReader()
     reader.SetFileName(str(path))
     reader.Update()
-    return reader.GetOutput()
+    return WrapDataObject(reader.GetOutput())
+
+
+def unit(array):
+    """Unit of an array of a VTK file, None if it has none."""
+    from vtkmodules.vtkCommonCore import vtkDataArray
+    return array.VTKObject.GetInformation().Get(vtkDataArray.UNITS_LABEL())
 
 
 def files(folder):

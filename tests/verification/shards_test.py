@@ -3,9 +3,8 @@ import json
 import os
 import signal
 import subprocess
-import time
 
-from program import LATCON, latcon
+from program import LATCON, latcon, wait_for
 from studies import Studies, files_in, run, write_study
 
 RUNS = 4  # of TINY: base twice, low, thin
@@ -36,9 +35,7 @@ class TestShards(Studies):
 
     def test_stopped_shard_continues(self, tiny_study):
         shard = subprocess.Popen([LATCON, *self.words("--shard", "1/1", "--threads", "1")], stdout=subprocess.DEVNULL)
-        end = time.monotonic() + 300
-        while not list((self.out / "runs").glob("*[0-9]")) and time.monotonic() < end:
-            time.sleep(0.02)
+        assert wait_for(lambda: list((self.out / "runs").glob("*[0-9]")), shard)
         shard.send_signal(signal.SIGTERM)
         assert shard.wait(120) == 130
         measured = [path for path in (self.out / "runs").glob("*[0-9]")]
@@ -107,9 +104,7 @@ class TestShards(Studies):
                        "SLURM_ARRAY_TASK_ID": "1"}
         part = self.out / "runs" / "base-1.part"
         with subprocess.Popen(["bash", self.out / "batch/runs.sh"], env=environment) as task:
-            end = time.monotonic() + 300
-            while not (part / "lattice-0000.vtp").exists() and time.monotonic() < end:
-                time.sleep(0.01)
+            assert wait_for((part / "lattice-0000.vtp").exists, task)
             task.send_signal(signal.SIGUSR1)  # as Slurm does, to the script alone
             assert task.wait(120) == 130
         assert (self.folder / "requeued").read_text() == "requeue 42_1\n"

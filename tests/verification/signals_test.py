@@ -70,10 +70,7 @@ def test_dry_run(tmp_path, start):
     seeds = list(range(20000))
     study.write_text(json.dumps({"title": "t", "base": QUICK, "runs": {"a": {"seeds": seeds}}, "claims": [
         {"claim": "c", "paper": "s", "rows": [{"run": "a", "quantity": "pattern"}]}]}))
-    process = start("study", study, "--dry-run")
-    assert wait_for(lambda: catches(process, signal.SIGINT), process)
-    process.send_signal(signal.SIGINT)
-    ends(process)
+    is_ended_as_it_begins(start, "study", study, "--dry-run")
 
 
 def test_report_ends_with_its_script(start, out):

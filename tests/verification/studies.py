@@ -8,24 +8,7 @@ import pytest
 from program import CASES, latcon
 
 # Strips so small that a crack runs through in a moment, with nearest neighbours alone, which are faster to check.
-TINY = {
-    "title": "A tiny study",
-    "base": str(CASES / "quick.prm"),
-    "set": {"Sheet/length": "2.5 cm", "Sheet/height": "1.5 cm", "Time/end": "1 ms",
-            "Next-nearest neighbours/present": False},
-    "quick": {"set": {"Time/end": "0.5 ms"}},
-    "runs": {
-        "base": {"seeds": [1, 2]},
-        "low": {"set": {"Sheet/height": "1 cm"}},
-        "thin": {"set": {"Nearest neighbours/viscosity": 40}, "quick": False},
-    },
-    "claims": [
-        {"claim": "The crack runs", "paper": "It does.", "rows": [
-            {"run": "base", "quantity": "speed_lagrangian", "above": 1},
-            {"runs": ["low", "base"], "quantity": "speed_lagrangian", "against": "Sheet/height"},
-            {"run": "base", "quantity": "pattern"}]},
-    ],
-}
+TINY = json.loads(pathlib.Path(__file__).with_name("tiny.json").read_text()) | {"base": str(CASES / "quick.prm")}
 
 
 def write_study(folder, change=None):

@@ -1,5 +1,6 @@
 """Tests of the page of a made-up study: checks, pictures of runs, numbers, maps. The gallery: tests/docs/gallery_test.py."""
 import json
+import pathlib
 import re
 from unittest import mock
 
@@ -16,7 +17,6 @@ from latcon.report.study_plots import MEASURED, NEAR_TIP, PATH, asked_quantities
 from latcon.report.study_runs import read_study
 
 QUANTITIES = {quantity: None for quantity, *_ in MEASURED + NEAR_TIP} | {"speed_laboratory": 40.0, "end_time": 3e-3}
-WITHOUT = {"Next-nearest neighbours/present": "false"}
 
 
 def made_up_seed(run, seed, pattern, state="measured", **values):
@@ -35,12 +35,7 @@ def made_up_row(runs, quantity, verdict="reported", against=None, **more):
 
 def made_up_study():
     """study.json: an oscillating crack, a straight one, and two without next-nearest neighbours."""
-    names = {"wavy": {}, "calm": {}, "along": WITHOUT, "across": WITHOUT}
-    return {
-        "title": "Made up", "version": "1.2.3", "git_commit": "0" * 40, "quick": False, "verification": "none",
-        "units": {"wavelength": "m", "amplitude": "m", "crest_amplitude": "m", "speed_lagrangian": "m/s", "end_time": "s"},
-        "settings": {}, "left_out": [], "pictures": ["along", "wavy", "calm", "across"],
-        "runs": [{"run": name, "about": f"the {name} one", "set": changed} for name, changed in names.items()],
+    return json.loads(pathlib.Path(__file__).with_name("made_up_study.json").read_text()) | {
         "seeds": [
             made_up_seed("wavy", 1, None, state="failed"),
             made_up_seed("wavy", 2, "oscillating", wavelength=0.021, amplitude=1e-3, crest_amplitude=1.5e-3,
@@ -50,8 +45,7 @@ def made_up_study():
             made_up_seed("along", 1, "oscillating"), made_up_seed("across", 1, "straight", wedge_angle=33.0)],
         "claims": [{"claim": "It winds", "paper": "It does.", "note": "", "verdict": "holds", "rows": [
             made_up_row(["wavy"], "pattern", "holds"),
-            made_up_row(["calm", "wavy"], "wavelength", "holds", "zeta", measured="exponent 0.77")]}],
-    }
+            made_up_row(["calm", "wavy"], "wavelength", "holds", "zeta", measured="exponent 0.77")]}]}
 
 
 class MadeUpStudy:

@@ -16,9 +16,6 @@ from studies import TINY, Studies, files_in, run, write_study
 SMALL = [word for entry, value in TINY["set"].items() for word in ("--set", f"{entry}={str(value).lower()}")]
 # Two cracks that run through in a moment.
 SWEEP = ["--sweep", "Sheet/height=1 cm,1.5 cm", *SMALL[:2], *SMALL[4:]]
-needs_mount = pytest.mark.skipif(os.geteuid() != 0 or subprocess.run(
-    ["unshare", "-m", "mount", "-t", "tmpfs", "none", "/mnt"], capture_output=True, check=False).returncode != 0,
-    reason="nothing can be mounted here")
 
 
 class Small(Studies):
@@ -144,7 +141,7 @@ class TestTroubles(Small):
             assert f"{self.out} has the results of another study, 'A tiny study'; choose another folder" in printed
         assert files_in(self.out) == before
 
-    @needs_mount
+    @pytest.mark.usefixtures("needs_mount")
     def test_node_without_packages_lacks_the_page_alone(self):
         study, bare = self.write_study(), self.folder / "bare"
         without = ["unshare", "-m", "sh", "-c", 'mount --bind /dev/null "$(readlink -f /usr/bin/python3)" && exec "$@"', "sh"]
@@ -164,7 +161,7 @@ class TestTroubles(Small):
         # A page of an earlier run is not announced.
         assert f"{bare}/study.html" not in self.run_study(study, "-o", bare, "--resume", launcher=without, page=True).splitlines()
 
-    @needs_mount
+    @pytest.mark.usefixtures("needs_mount")
     def test_full_disk_loses_nothing(self):
         def longer(document):
             document["runs"]["high"] = {}

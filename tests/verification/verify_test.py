@@ -125,8 +125,8 @@ def test_frames_of_the_running_crack_can_be_compared(out, tmp_path):
     for side in continua:
         differences = []
         for centre in (X, X - 8 * d):
-            run = latcon("compare", out / lattice["file"], out / side["file"], "--overlap", "--exclude", f"{centre},{Y},{5 * d}",
-                         "--output-dir", tmp_path / "compared")
+            latcon("compare", out / lattice["file"], out / side["file"], "--overlap", "--exclude", f"{centre},{Y},{5 * d}",
+                   "--output-dir", tmp_path / "compared")
             rows = {row["quantity"]: row for row in read_csv(tmp_path / "compared" / "results.csv")}
             differences.append(float(rows["velocity, largest difference"]["error"]))
         assert differences[0] < 0.5 * differences[1], side
