@@ -22,34 +22,47 @@ double last_order(const std::vector<NewtonIteration> &iterations)
   return n < 3 ? 0. : newton_order(iterations, n - 3);
 }
 
-// Unsymmetric matrix of dashpots at finite strain, in steps so long that the predictor is poor: Newton's method is
-// quadratic, and GMRES with multigrid of the symmetric part agrees with the direct solver.
-TEST(DynamicSolver, NewtonIsQuadraticAndGmresAgreesWithTheDirectSolver)
+TEST(DynamicSolver, NewtonIsQuadraticWithViscosityAtFiniteStrain)
+{
+  RectangleMesh mesh(rectangle(4, 4));
+  const Problem problem;
+  const FibreViscosity viscosity = network_viscosity(200., 0.01);
+  // Long steps, so that the predictor is poor.
+  DynamicSolver solver(mesh, Constitution(problem.law, problem.gradient), problem.conditions(), {density, 0.01},
+                       quadratic(2e-3, NewmarkParameters::generalised_alpha(0.6)), &viscosity);
+  start(solver);
+  double best = 0.;
+  for (int n = 0; n < 4; ++n)
+  {
+    solver.step();
+    best = std::max(best, last_order(solver.last_report().iterations));
+    EXPECT_LE(solver.last_report().iterations.size(), 8u) << solver.last_report().text();
+  }
+  EXPECT_GE(best, 1.7) << solver.last_report().text();
+}
+
+// Unsymmetric matrix of dashpots at finite strain, solved by GMRES with multigrid of its symmetric part.
+TEST(DynamicSolver, GmresAgreesWithTheDirectSolver)
 {
   const Problem problem;
   const FibreViscosity viscosity = network_viscosity(200., 0.01);
   const auto moved = [&](const dealii::types::global_dof_index direct_limit)
   {
     RectangleMesh mesh(rectangle(8, 8));
-    DynamicSettings settings = quadratic(2e-3, NewmarkParameters::generalised_alpha(0.6));
-    settings.relative_tolerance = 1e-11;
+    DynamicSettings settings = quadratic(5e-4);
     settings.linear.direct_limit = direct_limit;
     settings.linear.coarsest_size = 100;
-    DynamicSolver solver(mesh, Constitution(problem.law, problem.gradient), problem.conditions(), {density, 0.01},
-                         settings, &viscosity);
-    start(solver);
+    DynamicSolver solver(mesh, Constitution(problem.law, problem.gradient), problem.held(), {density, 0.01}, settings,
+                         &viscosity);
+    start(solver, nullptr, Problem::velocity());
     std::size_t newton = 0;
     unsigned int most_linear = 0;
-    double best_order = 0.;
-    for (int n = 0; n < 4; ++n)
+    for (int n = 0; n < 6; ++n)
     {
       solver.step();
-      EXPECT_LE(solver.last_report().iterations.size(), 8u) << solver.last_report().text();
       newton += solver.last_report().iterations.size();
       most_linear = std::max(most_linear, most_linear_iterations(solver.last_report()));
-      best_order = std::max(best_order, last_order(solver.last_report().iterations));
     }
-    EXPECT_GE(best_order, 1.7) << solver.last_report().text();
     return std::make_tuple(owned(solver.sheet(), solver.displacement()), solver.ledger(), newton, most_linear);
   };
   const auto [exact, exact_ledger, newton, none] = moved(1000000);
@@ -57,8 +70,8 @@ TEST(DynamicSolver, NewtonIsQuadraticAndGmresAgreesWithTheDirectSolver)
   EXPECT_EQ(none, 0u);
   EXPECT_GT(most_linear, 2u);
   EXPECT_LE(most_linear, 30u);
-  EXPECT_LE(newton_of_gmres, newton + 4); // linear systems are solved to 1e-8 instead of round-off
-  // Each step converges to 1e-11 of the acting forces; waves as long as the sheet, which dominate u, are amplified no
+  EXPECT_LE(newton_of_gmres, newton + 6); // linear systems are solved to 1e-8 instead of round-off
+  // Each step converges to 1e-10 of the acting forces; waves as long as the sheet, which dominate u, are amplified no
   // more than the forces.
   Vector difference = u;
   difference -= exact;

@@ -356,7 +356,7 @@ TEST(RateForces, ThrowWhereASheetIsFolded)
   const FibreViscosity viscosity = network_viscosity(60.);
   const auto folded = nodal(sheet, [](const Point<2> &X) { return Tensor<1, 2>({-2. * X[0], 0.}); });
   auto forces = sheet.make_owned();
-  EXPECT_THROW(RateForces(sheet, &viscosity, nullptr).add_forces(0., folded, folded, {}, forces, nullptr),
+  EXPECT_THROW(RateForces(sheet, &viscosity, nullptr).add_forces(0., folded, folded, forces, nullptr),
                NonPhysicalState);
 }
 
