@@ -130,7 +130,7 @@ def draw(series, path):
 
 def page_text(series):
     """The whole page."""
-    template = pathlib.Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
+    template = pathlib.Path(__file__).with_suffix(".txt").read_text(encoding="utf-8")
     parts = [template.format(series=series["last"].sum(), tolerance=TOLERANCE, summary=summary_table(series))]
     for gradient in series["gradient"].unique():
         title = GRADIENT[gradient]
