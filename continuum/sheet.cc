@@ -56,11 +56,6 @@ std::unique_ptr<Sheet> Sheet::clone_on(const Mesh &mesh) const
 
 void Sheet::check_input() const
 {
-  const auto require = [](const bool holds, const std::string &rule)
-  {
-    if (!holds)
-      throw InvalidInput(rule);
-  };
   require(mesh_.n_levels() > 0, "the mesh of a sheet has no cells");
   require(!has_gradient() || degree_ >= 2, "a gradient law needs elements of degree 2 or more");
   require(std::isfinite(normal_stiffness_), "a gradient law needs a finite normal stiffness at F = I");

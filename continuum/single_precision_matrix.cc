@@ -105,6 +105,8 @@ void sort_without_repetition(std::vector<Index> &dofs)
 void SinglePrecisionMatrix::reinit(const Sheet &sheet, const AffineConstraints<double> &constraints)
 {
   constraints_ = &constraints;
+  is_condensed_ = std::any_of(constraints.get_lines().begin(), constraints.get_lines().end(),
+                              [](const auto &line) { return !line.entries.empty(); });
   n_unknowns_ = sheet.dof_handler().n_dofs();
   DynamicSparsityPattern pattern = coupled_pairs(sheet, constraints);
   IndexSet owned(pattern.n_rows());
@@ -263,7 +265,7 @@ void SinglePrecisionMatrix::make_symmetric()
         const Entry transposed = {layout().local_to_global(column), layout().local_to_global(row), value / scale_};
         if (column >= n_owned && transposed.row > transposed.column)
           messages[owner[column - n_owned]].push_back(transposed);
-        else if (column > row && column < n_owned)
+        else if (is_condensed_ && column > row && column < n_owned)
           set(transposed, false);
       });
   for (const auto &received : dealii::Utilities::MPI::some_to_some(layout().get_mpi_communicator(), messages))

@@ -92,6 +92,7 @@ private:
   void set(const Entry &entry, bool adds);
 
   const dealii::AffineConstraints<double> *constraints_ = nullptr;
+  bool is_condensed_ = false; // where entries of elements are sums, in another order than those of the transposed ones
   Index n_unknowns_ = 0;
   // Rows have the positions of the layout: those of this rank, then those of other ranks to which this rank adds.
   std::vector<std::size_t> first_block_; // per pair of rows, and the end
