@@ -5,11 +5,15 @@ The program starts this file by its path. Exit codes, those of latcon: 0 success
 file; 3 a claim fails; 5 a file cannot be written; 69 (EX_UNAVAILABLE of sysexits.h, which the program replaces by its own) a package
 is missing.
 """
+import signal
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # ends the script in silence, while it imports too
+
 import argparse
 import importlib
 import logging
 import os
-import signal
 import sys
 from pathlib import Path
 
@@ -66,7 +70,6 @@ def main(words=None):
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # ends the script in silence, while it imports too
     # Without a home, matplotlib keeps its list of fonts in a temporary folder; its advice would be in the log of every run.
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     # A `matplotlibrc` of the current folder would take precedence: the folder of a run may belong to somebody else.
