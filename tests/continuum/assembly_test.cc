@@ -203,20 +203,6 @@ TEST(Assembly, AddsInSinglePrecision)
           EXPECT_NEAR(single.diag_element(dof), K.diag_element(dof), rounding);
           EXPECT_NEAR(along_y_of_single(dof), along_y(dof), i == 1 ? 1e-12 * sum : rounding);
         });
-
-      // Symmetric to the last bit, also where elements are condensed.
-      single.make_symmetric();
-      std::map<std::pair<unsigned int, unsigned int>, double> entries;
-      const unsigned int n_owned = single.layout().locally_owned_size();
-      for (unsigned int row = 0; row < n_owned; ++row)
-        single.for_each_entry(row,
-                              [&](const unsigned int column, const double value)
-                              {
-                                if (column < n_owned)
-                                  entries[{row, column}] = value;
-                              });
-      for (const auto &[at, value] : entries)
-        EXPECT_EQ(value, entries.at({at.second, at.first}));
     }
 }
 
