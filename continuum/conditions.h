@@ -15,7 +15,7 @@ namespace latcon::continuum
 using VectorField = std::shared_ptr<const dealii::Function<2>>;
 
 /// Components of a field that is prescribed on one part of the boundary: load factor * field_i(X), a function of the
-/// reference position X [m].
+/// reference position X [m]; in a motion the factor is 1.
 struct BoundaryField
 {
   dealii::types::boundary_id boundary;

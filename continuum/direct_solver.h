@@ -32,8 +32,8 @@ public:
   DirectSolver(const DirectSolver &) = delete;
   DirectSolver &operator=(const DirectSolver &) = delete;
 
-  /// Factorises a copy of `K`, which has the sparsity of the matrices before. Throws LinearSolverFailed if `K` is singular, and InvalidInput, before it is factorised,
-  /// if MUMPS estimates that it needs more memory than there is.
+  /// Factorises a copy of `K`, which has the sparsity of the matrices before. Throws LinearSolverFailed if `K` is
+  /// singular, and InvalidInput, before it is factorised, if MUMPS estimates that it needs more memory than there is.
   void factorise(const Sheet::Matrix &K);
 
   /// Solves K x = b for the last factorised matrix; the vectors have no ghost entries.

@@ -37,6 +37,13 @@ DynamicSolver::DynamicSolver(const Sheet::Mesh &mesh, const Constitution &consti
   require(settings_.time_step > 0. && std::isfinite(settings_.time_step), "the time step must be positive and finite");
   require(settings_.relative_tolerance > 0. && settings_.relative_tolerance < 1.,
           "the relative tolerance of the residual must be in (0, 1)");
+  const NewmarkParameters &rule = settings_.rule;
+  constexpr double rounding = 1e-12;
+  require(rule.alpha_m <= rule.alpha_f + rounding && rule.alpha_f <= 0.5 + rounding && rule.alpha_f >= 0. &&
+            rule.beta >= 0.25 + 0.5 * (rule.alpha_f - rule.alpha_m) - rounding && std::isfinite(rule.beta),
+          "a time integrator is stable only with alpha_m <= alpha_f <= 1/2 and beta >= 1/4 + (alpha_f - alpha_m)/2");
+  require(std::abs(rule.gamma - (0.5 - rule.alpha_m + rule.alpha_f)) <= rounding,
+          "a time integrator is of second order only with gamma = 1/2 - alpha_m + alpha_f");
 
   apply_conditions();
   sheet_.make_matrix(sheet_.conformity_constraints(), full_mass_, /* is_mass */ true);

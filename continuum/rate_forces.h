@@ -71,8 +71,8 @@ public:
   /// the elastic energy, the cells on this rank in their order.
   void add_stresses(const Vector &u, const Vector &v, std::vector<dealii::Tensor<2, 2>> &stresses) const;
 
-  /// Returns the power dissipated by viscosity [W/m] per unit reference thickness, the integral of 2 R and 2 R_g. It
-  /// exceeds that of the nodal forces by the power of prescribed normal gradients.
+  /// Returns the power dissipated by viscosity [W/m] per unit reference thickness, the integral of 2 R and 2 R_g, which
+  /// is that of the nodal forces.
   double dissipation(const Vector &u, const Vector &v) const;
 
   /// Overstresses [Pa] and stretches [-], of gradients [Pa/m] and [1/m], where a law is evaluated on this rank.

@@ -265,7 +265,7 @@ struct Units
   double time() const { return length * std::sqrt(density / stress); }
 };
 
-// Sheet with all quantities that have units: mass with micro-inertia, both laws, dashpots, a moving edge, a traction, a
+// Sheet with all quantities that have units: mass with micro-inertia, both laws, dashpots, a held edge, a traction, a
 // weak normal gradient.
 struct MovingSheet
 {
@@ -324,14 +324,19 @@ TEST(DynamicSolver, RefusesImpossibleInput)
 {
   RectangleMesh mesh(rectangle(2, 2));
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  DynamicSettings loose{1e-3};
+  DynamicSettings loose{1e-3}, first_order{1e-3}, conditionally_stable{1e-3};
   loose.relative_tolerance = 1.;
-  for (const auto &[inertia, settings] : std::vector<std::pair<Inertia, DynamicSettings>>{{{0., 0.}, {1e-3}},
-                                                                                          {{density, -1.}, {1e-3}},
-                                                                                          {{density, nan}, {1e-3}},
-                                                                                          {{density, 0.}, {0.}},
-                                                                                          {{density, 0.}, {nan}},
-                                                                                          {{density, 0.}, loose}})
+  first_order.rule.gamma = 0.6;
+  conditionally_stable.rule.beta = 1. / 6.; // linear acceleration
+  for (const auto &[inertia, settings] :
+       std::vector<std::pair<Inertia, DynamicSettings>>{{{0., 0.}, {1e-3}},
+                                                        {{density, -1.}, {1e-3}},
+                                                        {{density, nan}, {1e-3}},
+                                                        {{density, 0.}, {0.}},
+                                                        {{density, 0.}, {nan}},
+                                                        {{density, 0.}, loose},
+                                                        {{density, 0.}, first_order},
+                                                        {{density, 0.}, conditionally_stable}})
     EXPECT_THROW(DynamicSolver(mesh, law, {}, inertia, settings), InvalidInput);
   EXPECT_THROW(NewmarkParameters::generalised_alpha(-0.1), InvalidInput);
   EXPECT_THROW(NewmarkParameters::generalised_alpha(1.1), InvalidInput);
