@@ -168,7 +168,8 @@ private:
 
   void begin()
   {
-    contribution_ = Contribution();
+    contribution_.energy = 0.;
+    contribution_.dofs.clear();
     nodes_.clear();
   }
 
@@ -269,7 +270,7 @@ private:
   void fill_tangent(FullMatrix<double> &K) const
   {
     const std::size_t n = nodes_.size();
-    K.reinit(2 * n, 2 * n);
+    K.TableBase<2, double>::reinit(TableIndices<2>(2 * n, 2 * n), true); // every entry is overwritten
     for (unsigned int block = 0; block < n_blocks() && !forces_.is_symmetric; ++block)
       for (std::size_t a = 0; a < n; ++a)
         for (std::size_t b = 0; b < n; ++b)

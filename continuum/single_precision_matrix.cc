@@ -117,9 +117,9 @@ void SinglePrecisionMatrix::reinit(const Sheet &sheet, const AffineConstraints<d
 
   std::vector<Index> foreign; // rows and columns
   for (const Index row : pattern.row_index_set())
-    for (auto column = pattern.begin(row); column != pattern.end(row); ++column)
-      if (!owned.is_element(column->column()))
-        foreign.push_back(column->column());
+    for (unsigned int k = 0; k < pattern.row_length(row); ++k)
+      if (const Index column = pattern.column_number(row, k); !owned.is_element(column))
+        foreign.push_back(column);
   sort_without_repetition(foreign);
   IndexSet ghosts(n_unknowns_);
   for (const Index pair : foreign)
@@ -135,8 +135,8 @@ void SinglePrecisionMatrix::reinit(const Sheet &sheet, const AffineConstraints<d
   {
     const Index pair = layout().local_to_global(2 * row) / 2;
     if (pattern.row_index_set().is_element(pair))
-      for (auto column = pattern.begin(pair); column != pattern.end(pair); ++column)
-        columns_.push_back(layout().global_to_local(2 * column->column()) / 2);
+      for (unsigned int k = 0; k < pattern.row_length(pair); ++k)
+        columns_.push_back(layout().global_to_local(2 * pattern.column_number(pair, k)) / 2);
     std::sort(columns_.begin() + first_block_.back(), columns_.end());
     first_block_.push_back(columns_.size());
   }
