@@ -1,17 +1,18 @@
 #include "continuum/static_solver.h"
 
 #include "continuum/collective.h"
-#include "continuum/error_indicator.h"
 #include "continuum/errors.h"
 #include "continuum/newton_solver.h"
 #include "continuum/reactions.h"
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/timer.h>
 #include <deal.II/distributed/grid_refinement.h>
 #include <deal.II/distributed/solution_transfer.h>
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/multigrid/mg_transfer_global_coarsening.h>
+#include <deal.II/numerics/error_estimator.h>
 
 #include <algorithm>
 #include <cmath>
@@ -295,8 +296,10 @@ void StaticSolver::refine(Sheet::Mesh &mesh, const double fraction)
 {
   require(&mesh == &sheet_.mesh(), "refine() needs the mesh of the solver's own sheet");
   require(fraction > 0. && fraction <= 1., "the fraction of cells to refine must be in (0, 1]");
-  parallel::distributed::GridRefinement::refine_and_coarsen_fixed_number(mesh, error_indicators(sheet_, displacement_),
-                                                                         fraction, 0.);
+  dealii::Vector<float> jumps(mesh.n_active_cells()); // eq. (C.33)
+  KellyErrorEstimator<2>::estimate(sheet_.mapping(), sheet_.dof_handler(), QGauss<1>(sheet_.degree() + 1), {},
+                                   displacement_, jumps);
+  parallel::distributed::GridRefinement::refine_and_coarsen_fixed_number(mesh, jumps, fraction, 0.);
   mesh.prepare_coarsening_and_refinement();
   parallel::distributed::SolutionTransfer<2, Vector> transfer(sheet_.dof_handler());
   transfer.prepare_for_coarsening_and_refinement(displacement_);

@@ -61,8 +61,8 @@ public:
   /// last accepted one.
   SolverReport solve(const Observer &observer = Observer());
 
-  /// Refines the `fraction` [-] of the cells of `mesh`, the mesh of the sheet, with the largest error indicators, and
-  /// interpolates the state; equilibrate() then restores equilibrium. Throws InvalidInput for another mesh or a
+  /// Refines the `fraction` [-] of the cells of `mesh`, the mesh of the sheet, with the largest indicators, eq. (C.33),
+  /// and interpolates the state; equilibrate() then restores equilibrium. Throws InvalidInput for another mesh or a
   /// fraction outside (0, 1].
   void refine(Sheet::Mesh &mesh, double fraction);
 

@@ -1,5 +1,4 @@
-// Domains and their boundary ids, and refinement by error indicators.
-#include "continuum/error_indicator.h"
+// Domains and their boundary ids, and refinement by jumps.
 #include "continuum/errors.h"
 #include "continuum/meshes.h"
 #include "sheets.h"
@@ -330,9 +329,9 @@ $EndElements
   EXPECT_THROW((void)continuum::n_coarse_cells(write_file("square.msh", square("1 7"))), continuum::InvalidInput);
 }
 
-// The error of the energy falls faster than with the square root of the number of unknowns, its rate on uniform meshes
-// because of the singularity at the tip.
-TEST(ErrorIndicator, RefinesAtTheTipOfANotch)
+// theory-continuum.md, eq. (C.33): the error of the energy falls faster than with the square root of the number of
+// unknowns, its rate on uniform meshes because of the singularity at the tip.
+TEST(Refinement, IsDenseAtTheTipOfANotch)
 {
   const continuum::CauchyBorn law = rubber_network();
   const continuum::IsotropicGradient gradient(5e5, 0.005);
@@ -364,19 +363,6 @@ TEST(ErrorIndicator, RefinesAtTheTipOfANotch)
   // The error of the last mesh is about the last change.
   const auto error = [&](const unsigned int cycle) { return energies[cycle] - 2. * energies[5] + energies[4]; };
   EXPECT_GT(std::log(error(1) / error(3)) / std::log(unknowns[3] / unknowns[1]), 1.);
-}
-
-// theory-continuum.md, eq. (C.33).
-TEST(ErrorIndicator, VanishesInHomogeneousDeformation)
-{
-  const continuum::CauchyBorn law = rubber_network();
-  const continuum::LatticeGradient gradient = rubber_gradient(0.005);
-  RectangleMesh mesh(rectangle(6, 4));
-  StaticSolver solver(mesh, continuum::Constitution(law, gradient), on_all_edges(affine(matrix(2.3, 0.1, 0.2, 2.8))));
-  solver.solve();
-  // Compared with the energy of an inhomogeneous deformation.
-  EXPECT_LT(continuum::error_indicators(solver.sheet(), solver.displacement()).l2_norm(),
-            1e-9 * std::sqrt(solver.total_energy()));
 }
 
 } // namespace meshes_test
