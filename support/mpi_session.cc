@@ -19,6 +19,7 @@ MpiSession::MpiSession()
     constexpr int keep = 0; // do not overwrite values set by the user
     setenv("OMPI_MCA_ess_singleton_isolated", "1", keep);
     setenv("OMPI_MCA_orte_create_session_dirs", "0", keep);
+    setenv("OMPI_MCA_pml", "ob1", keep);
   }
   int provided = MPI_THREAD_SINGLE;
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)

@@ -37,16 +37,22 @@ class File:
         self.stretch = {frozenset(pair): value for pair, value in zip(self.site[frame.bonds].tolist(), frame.stretch)}
 
 
+@pytest.fixture(scope="module")
+def browser():
+    """A browser, which takes seconds to start."""
+    with Browser(1280, SCREEN) as browser:
+        yield browser
+
+
 class TestViewer:
     @pytest.fixture(scope="class")
-    def shown(self, module_path):
+    def shown(self, module_path, browser):
         """The folder of a page, and a browser."""
         runs = module_path / "runs"
         write_verification(runs / "verify", [HOLDS, REPORTED])
         write_torn_sheet(runs / "torn")
         assert main(["report", str(runs), "--quiet"]) == 0
-        with Browser(1280, SCREEN) as browser:
-            yield runs, browser
+        return runs, browser
 
     @pytest.fixture(autouse=True)
     def opened(self, shown):
@@ -148,7 +154,7 @@ class TestViewer:
         assert np.median(away) < 0.6 * x[0] * SPACING * 1.8  # of a spacing, stretched
 
     @pytest.mark.parametrize("number, configuration, canvas", [
-        (FRAMES - 1, "deformed", "sheet"), (FRAMES - 1, "deformed", "near-tip"), (5, "undeformed", "sheet"), (0, "deformed", "sheet")])
+        (FRAMES - 1, "deformed", "sheet"), (FRAMES - 1, "deformed", "near-tip"), (5, "undeformed", "sheet")])
     def test_values_below_the_pointer_are_those_of_the_file(self, number, configuration, canvas):
         whole = File(self.runs / "torn" / "lattice-0001.vtp")
         self.choose("configuration", configuration)
@@ -190,7 +196,7 @@ def report_ranges(folder):
     return sheet_data.sheet_data(run, read_motion(run), 10**9).contents["ranges"]
 
 
-def test_both_sheets_show_the_same_time(tmp_path):
+def test_both_sheets_show_the_same_time(tmp_path, browser):
     folder = tmp_path
     for run in ("one", "other"):
         write_torn_sheet(folder / run)
@@ -207,30 +213,29 @@ def test_both_sheets_show_the_same_time(tmp_path):
     (folder / "compare").mkdir()
     (folder / "compare" / "compare.json").write_text(json.dumps(document))
     assert main(["compare", str(folder / "compare"), "--quiet"]) == 0
-    with Browser(1280, SCREEN) as browser:
-        browser.open(folder / "compare" / "compare.html")
-        browser.wait("document.querySelectorAll('.viewer.ready').length === 2")
+    browser.open(folder / "compare" / "compare.html")
+    browser.wait("document.querySelectorAll('.viewer.ready').length === 2")
 
-        def shown():
-            return browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.frame)")
+    def shown():
+        return browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.frame)")
 
-        for moved in (0, 1):
-            for frame, time in enumerate(times[moved]):
-                browser.value(f"(() => {{ const s = document.querySelectorAll('.viewer .slider')[{moved}];"
-                              f"s.value = {frame}; s.dispatchEvent(new Event('input', {{bubbles: true}})); }})()")
-                nearest = [int(np.abs(np.array(all_times) - time).argmin()) for all_times in times]
-                assert shown() == nearest
-        browser.value("(() => { const s = document.querySelectorAll('.viewer .colour')[1]; s.value = 'damage';"
-                      "s.dispatchEvent(new Event('change', {bubbles: true})); })()")
-        assert browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.quantity)") == ["damage", "damage"]
-        ranges = browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.sheet.ranges)")
-        own = [report_ranges(folder / run) for run in ("one", "other")]
-        assert own[0] != own[1]
-        for name, (low, high) in ranges[0].items():
-            assert [low, high] == [min(one[name][0] for one in own), max(one[name][1] for one in own)]
-            assert ranges[1][name] == [low, high]
-        assert f"{len(fewer)} frames" in browser.value("document.body.innerText")
-        assert browser.said() == []
+    for moved in (0, 1):
+        for frame, time in enumerate(times[moved]):
+            browser.value(f"(() => {{ const s = document.querySelectorAll('.viewer .slider')[{moved}];"
+                          f"s.value = {frame}; s.dispatchEvent(new Event('input', {{bubbles: true}})); }})()")
+            nearest = [int(np.abs(np.array(all_times) - time).argmin()) for all_times in times]
+            assert shown() == nearest
+    browser.value("(() => { const s = document.querySelectorAll('.viewer .colour')[1]; s.value = 'damage';"
+                  "s.dispatchEvent(new Event('change', {bubbles: true})); })()")
+    assert browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.quantity)") == ["damage", "damage"]
+    ranges = browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.sheet.ranges)")
+    own = [report_ranges(folder / run) for run in ("one", "other")]
+    assert own[0] != own[1]
+    for name, (low, high) in ranges[0].items():
+        assert [low, high] == [min(one[name][0] for one in own), max(one[name][1] for one in own)]
+        assert ranges[1][name] == [low, high]
+    assert f"{len(fewer)} frames" in browser.value("document.body.innerText")
+    assert browser.said() == []
 
 
 def test_a_damaged_comparison_is_bad_input(tmp_path):

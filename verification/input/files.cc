@@ -60,9 +60,14 @@ InputFile read_input_file(const std::string &path)
   if (!file)
     return {"", std::generic_category().message(errno)};
   InputFile input;
-  input.text.resize(largest + 1);
-  file.read(input.text.data(), static_cast<std::streamsize>(input.text.size()));
-  input.text.resize(static_cast<std::size_t>(file.gcount()));
+  while (file && input.text.size() <= largest) // most files are small
+  {
+    constexpr std::streamsize block = 1 << 16;
+    const std::size_t before = input.text.size();
+    input.text.resize(before + block);
+    file.read(&input.text[before], block);
+    input.text.resize(before + static_cast<std::size_t>(file.gcount()));
+  }
   if (file.bad())
     input.problem = std::generic_category().message(errno);
   else if (input.text.size() > largest)
