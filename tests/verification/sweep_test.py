@@ -2,7 +2,6 @@
 import ctypes
 import json
 import os
-import shutil
 import struct
 import subprocess
 from pathlib import Path
@@ -132,15 +131,6 @@ class TestSweeps(Small):
         assert "6 runs" in self.run_study(self.out / "sweep.json", "--dry-run")
 
 class TestTroubles(Small):
-    def test_folder_of_another_study_is_refused_untouched(self, tiny_study):
-        shutil.copytree(tiny_study, self.out)
-        before = files_in(self.out)
-        other = self.write_study(lambda document: document.update(title="Another"))
-        for command, *options in (("study", "--resume"), ("study", "--collect"), ("batch", "--slurm")):
-            printed = self.run_study(other, *options, "-o", self.out, expect=2, command=command)
-            assert f"{self.out} has the results of another study, 'A tiny study'; choose another folder" in printed
-        assert files_in(self.out) == before
-
     @pytest.mark.usefixtures("needs_mount")
     def test_node_without_packages_lacks_the_page_alone(self):
         study, bare = self.write_study(), self.folder / "bare"
