@@ -26,8 +26,7 @@ def options_of(*command):
 
 @pytest.fixture(scope="module")
 def commands():
-    commands = re.findall(r"^  ([a-z]+) ", run(LATCON, "--help").split("Subcommands:")[1], re.M)
-    return commands
+    return re.findall(r"^  ([a-z]+) ", run(LATCON, "--help").split("Subcommands:")[1], re.M)
 
 
 def test_manual_has_every_command_and_option(commands):

@@ -22,8 +22,7 @@ def command(folder, *more, entries=None, side="continuum"):
 
 
 def run_to_end(out, *more, **keywords):
-    run = latcon(*command(out, *more, **keywords))
-    return run
+    return latcon(*command(out, *more, **keywords))
 
 
 @pytest.fixture(scope="module")

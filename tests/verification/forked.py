@@ -71,6 +71,8 @@ def prepare(words):
     if {"continuum", "verify"} & set(words) or "fracture" in words and "--skip-verification" not in words:
         ctypes.PyDLL(None).load_elements()
     importlib.import_module("latcon.study.command" if words and words[0] in PYTHON else "latcon.folder")
+    if "compare" in words:
+        importlib.import_module("latcon.compare_frames")
     if {"fracture", "study", "report", "compare"} & set(words) and not {"--no-report", "--dry-run"} & set(words):
         for module in ("matplotlib.pyplot", "vtkmodules.util", "latcon.report.comparison", "latcon.report.study"):
             importlib.import_module(module)

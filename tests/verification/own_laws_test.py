@@ -145,8 +145,7 @@ def test_large_library(tmp_path):
     large = library(tmp_path, "large", text=(SOURCE / "examples/own-laws/gent_law.c").read_text() +
                          "\nconst char ballast[20 << 20] = {1};\n")
     assert large.stat().st_size > 20 << 20
-    latcon("fracture", CASES / "quick.prm", *TINY, "--dry-run",
-           *bonds(law="library", library=large, parameters=GENT))
+    latcon("fracture", CASES / "quick.prm", *TINY, "--dry-run", *bonds(law="library", library=large, parameters=GENT))
 
 
 @pytest.mark.parametrize("message, part, other, parameters", [

@@ -25,8 +25,8 @@ if "LATCON_VERDICTS" in os.environ:
     for part in ("latcon", "matplotlib"):
         shutil.copytree(pathlib.Path(os.environ["LATCON_VERDICTS"]) / part, pathlib.Path(CACHE.name) / part)
 os.environ["XDG_CACHE_HOME"] = CACHE.name
-# Tests run as root, and side by side.
-os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_mpi_yield_when_idle="1")
+# Tests run as root, side by side, and on one machine: ranks look for no network.
+os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_mpi_yield_when_idle="1", OMPI_MCA_pml="ob1")
 os.environ["MPLCONFIGDIR"] = f"{CACHE.name}/matplotlib"  # its list of fonts takes seconds to make, once is enough
 CASES = pathlib.Path(__file__).resolve().parents[2] / "verification" / "cases"
 

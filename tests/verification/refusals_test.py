@@ -58,6 +58,12 @@ def test_is_refused_with_its_place(out, tmp_path, command, name, entries, parts)
     assert (out / "case.prm").read_text() == "of an earlier run"
 
 
+def test_a_long_case_is_read_to_its_end(tmp_path):
+    comments = "# a comment\n" * 10000
+    (tmp_path / "a.prm").write_text(f"{comments}subsection Sheet\n  set length = -1\nend\n")
+    assert "a.prm:10002: Sheet/length = -1" in latcon("lattice", tmp_path / "a.prm", "--dry-run", expect=2).stderr
+
+
 @pytest.mark.parametrize("words, parts", [("", ["a command is required: verify, lattice, "]), *listed("words.txt")])
 def test_words_are_refused(tmp_path, words, parts):
     run = latcon(*shlex.split(words), cwd=tmp_path, expect=2)

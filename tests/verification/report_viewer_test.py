@@ -154,7 +154,7 @@ class TestViewer:
         assert np.median(away) < 0.6 * x[0] * SPACING * 1.8  # of a spacing, stretched
 
     @pytest.mark.parametrize("number, configuration, canvas", [
-        (FRAMES - 1, "deformed", "sheet"), (FRAMES - 1, "deformed", "near-tip"), (5, "undeformed", "sheet")])
+        (FRAMES - 1, "deformed", "sheet"), (FRAMES - 1, "deformed", "near-tip"), (5, "undeformed", "sheet"), (0, "deformed", "sheet")])
     def test_values_below_the_pointer_are_those_of_the_file(self, number, configuration, canvas):
         whole = File(self.runs / "torn" / "lattice-0001.vtp")
         self.choose("configuration", configuration)

@@ -41,8 +41,7 @@ def run_json(out):
 
 def run_to_end(out, *more, case=WAVES, ranks=1):
     arguments = command(case, out, *more)
-    run = latcon(*arguments) if ranks == 1 else latcon_on_ranks(ranks, *arguments)
-    return run
+    return latcon(*arguments) if ranks == 1 else latcon_on_ranks(ranks, *arguments)
 
 
 def stop(out, which):

@@ -31,8 +31,7 @@ def ended(module_path):
 
 
 def run_to_end(out, *more):
-    run = latcon(*STRIP, "--output-dir", out, *more, expect=(0, 3))
-    return run
+    return latcon(*STRIP, "--output-dir", out, *more, expect=(0, 3))
 
 
 def step_told(out):

@@ -74,8 +74,7 @@ def test_dry_run(tmp_path, start):
 
 
 def test_report_ends_with_its_script(start, out):
-    latcon("fracture", *TINY, "--set", "Time/end=0.01 ms", "--skip-verification", "--no-report",
-                            "--output-dir", out)
+    latcon("fracture", *TINY, "--set", "Time/end=0.01 ms", "--skip-verification", "--no-report", "--output-dir", out)
     process = start("report", out, start_new_session=True)
     assert wait_for(lambda: children(process.pid), process)
     script = children(process.pid)[0]
@@ -115,8 +114,7 @@ def is_ended_as_it_begins(start, *arguments):
 
 
 def test_ends_while_it_reads(out, tmp_path, start):
-    latcon("fracture", *TINY, "--set", "Time/end=0.01 ms", "--skip-verification", "--no-report",
-                            "--output-dir", out)
+    latcon("fracture", *TINY, "--set", "Time/end=0.01 ms", "--skip-verification", "--no-report", "--output-dir", out)
     film = out / "motion-0001.vtp"
     film.unlink()
     case, study = tmp_path / "case.prm", tmp_path / "study.json"
