@@ -2,16 +2,13 @@
 
 #include "continuum/errors.h"
 
-#include <cmath>
-
 using dealii::Tensor;
 
 namespace latcon::continuum
 {
 CauchyBorn::CauchyBorn(std::vector<FibreFamily> families) : families_(std::move(families))
 {
-  if (families_.empty())
-    throw InvalidMaterial("a fibre network needs at least one family");
+  require<InvalidMaterial>(!families_.empty(), "a fibre network needs at least one family");
   for (const FibreFamily &family : families_)
     check(family);
 }

@@ -87,9 +87,8 @@ NodalOrder::NodalOrder(const Sheet &sheet) : sheet_(sheet)
 
 std::vector<double> NodalOrder::gather(const Sheet::Vector &x) const
 {
-  std::vector<double> own;
-  for (const types::global_dof_index i : sheet_.owned())
-    own.push_back(x(i));
+  const Sheet::Vector owned = sheet_.without_ghosts(x);
+  const std::vector<double> own(owned.begin(), owned.end());
   // Each rank owns a contiguous range of unknowns.
   std::vector<double> values;
   auto position = position_.begin();

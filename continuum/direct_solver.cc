@@ -135,15 +135,4 @@ void DirectSolver::solve(double *x, const double *b)
   const Epetra_Vector root_x(View, factors.root_rows, factors.x.Values());
   Epetra_Vector(View, factors.own_rows, x).Export(root_x, factors.gather, Insert);
 }
-
-void DirectSolver::solve(Sheet::Vector &x, const Sheet::Vector &b)
-{
-  solve(x.trilinos_vector()[0], b.trilinos_vector()[0]);
-}
-
-void DirectSolver::solve(LinearAlgebra::distributed::Vector<double> &x,
-                         const LinearAlgebra::distributed::Vector<double> &b)
-{
-  solve(x.begin(), b.begin());
-}
 } // namespace latcon::continuum

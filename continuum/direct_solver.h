@@ -2,8 +2,6 @@
 
 #include "continuum/sheet.h"
 
-#include <deal.II/lac/la_parallel_vector.h>
-
 #include <memory>
 #include <optional>
 
@@ -37,9 +35,11 @@ public:
   void factorise(const Sheet::Matrix &K);
 
   /// Solves K x = b for the last factorised matrix; the vectors have no ghost entries.
-  void solve(Sheet::Vector &x, const Sheet::Vector &b);
-  void solve(dealii::LinearAlgebra::distributed::Vector<double> &x,
-             const dealii::LinearAlgebra::distributed::Vector<double> &b);
+  template <class Vector>
+  void solve(Vector &x, const Vector &b)
+  {
+    solve(x.begin(), b.begin());
+  }
 
 private:
   struct Factors;

@@ -1,7 +1,7 @@
 #include "continuum/dynamic_solver.h"
 
-#include "continuum/dynamic_step.h"
 #include "continuum/errors.h"
+#include "support/text_wrap.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <vector>
 
 using namespace dealii;
@@ -59,10 +58,7 @@ DynamicSolver::DynamicSolver(const Sheet::Mesh &mesh, const Constitution &consti
     smallest = std::min(smallest, cell->minimum_vertex_distance());
   smallest_cell_ = dealii::Utilities::MPI::min(smallest, sheet_.communicator());
 
-  displacement_ = sheet_.make_ghosted();
-  velocity_ = sheet_.make_ghosted();
-  acceleration_ = sheet_.make_ghosted();
-  multigrid_displacement_ = sheet_.make_ghosted();
+  state_.displacement = state_.velocity = state_.acceleration = sheet_.make_ghosted();
   elastic_diagonal_ = sheet_.make_owned();
   effective_diagonal_ = sheet_.make_owned();
   release_forces_ = sheet_.make_owned();
@@ -72,19 +68,10 @@ DynamicSolver::DynamicSolver(const Sheet::Mesh &mesh, const Constitution &consti
 void DynamicSolver::apply_conditions()
 {
   lift_ = sheet_.lift();
-  const DirichletBoundaries held = dirichlet_boundaries(sheet_.conditions());
-  homogeneous_.copy_from(homogeneous_constraints(sheet_, held));
-
   loads_ = sheet_.loads();
   // Viscosity at finite strain makes the matrix unsymmetric.
-  linear_solver_ =
-    std::make_unique<LinearSolver>(sheet_, homogeneous_, held, settings_.linear,
-                                   rate_forces_.is_present() ? Symmetry::unsymmetric : Symmetry::symmetric);
-}
-
-bool DynamicSolver::is_prescribed(const types::global_dof_index i) const
-{
-  return homogeneous_.is_constrained(i) && !sheet_.conformity_constraints().is_constrained(i);
+  linear_solver_ = std::make_unique<LinearSolver>(
+    sheet_, settings_.linear, rate_forces_.is_present() ? Symmetry::unsymmetric : Symmetry::symmetric);
 }
 
 void DynamicSolver::check_start(const Vector &u, const Vector &v) const
@@ -100,7 +87,7 @@ void DynamicSolver::check_start(const Vector &u, const Vector &v) const
   extent = dealii::Utilities::MPI::max(extent, sheet_.communicator());
   double off = 0.;
   for (const types::global_dof_index i : sheet_.owned())
-    if (is_prescribed(i))
+    if (sheet_.is_prescribed(i))
       off = std::max(off, std::abs(u(i) - lift_(i)));
   require(dealii::Utilities::MPI::max(off, sheet_.communicator()) <= 1e-8 * extent,
           "the initial displacement of a boundary differs from the prescribed one");
@@ -109,59 +96,49 @@ void DynamicSolver::check_start(const Vector &u, const Vector &v) const
 void DynamicSolver::start(const Vector &displacement, const Vector &velocity, const std::vector<Vector> &relaxed)
 {
   check_start(displacement, velocity);
-  Vector u = sheet_.make_owned();
-  Vector v = sheet_.make_owned();
-  u = displacement;
-  v = velocity;
+  Vector u = sheet_.without_ghosts(displacement);
+  Vector v = sheet_.without_ghosts(velocity);
   for (const types::global_dof_index i : sheet_.owned())
-    if (is_prescribed(i))
+    if (sheet_.is_prescribed(i))
       u(i) = lift_(i);
   u.compress(VectorOperation::insert);
-  homogeneous_.distribute(v);
+  sheet_.homogeneous_constraints().distribute(v);
 
   // Solve M a = L - internal and viscous forces; prescribed unknowns stand still.
-  const Vector u_ghosted = with_ghosts(u);
-  const Vector v_ghosted = with_ghosts(v);
+  const Vector u_ghosted = sheet_.with_ghosts(u);
+  const Vector v_ghosted = sheet_.with_ghosts(v);
   Vector forces = sheet_.make_owned();
   Vector magnitude = sheet_.make_owned();
   sheet_.residual(u_ghosted, forces, magnitude);
   std::vector<Vector> relaxed_ghosted;
   for (const Vector &at_rest : relaxed)
-    relaxed_ghosted.push_back(with_ghosts(at_rest));
+    relaxed_ghosted.push_back(sheet_.with_ghosts(at_rest));
   rate_forces_.start(u_ghosted, relaxed_ghosted);
   rate_forces_.add_forces(0., u_ghosted, v_ghosted, forces, nullptr);
   forces.sadd(-1., 1., loads_);
-  homogeneous_.set_zero(forces);
+  sheet_.homogeneous_constraints().set_zero(forces);
   Vector a = sheet_.make_owned();
   linear_solver_->invalidate();
-  const auto assemble_mass =
-    [this](const Sheet &level, const Vector &, const AffineConstraints<double> &constraints, auto &M)
+  const auto assemble_mass = [this](const Sheet &level, const Vector &, auto &M)
   {
     M = 0.;
-    level.add_mass(inertia_.density, inertia_.length, constraints, M);
+    level.add_mass(inertia_.density, inertia_.length, level.homogeneous_constraints(), M);
   };
   linear_solver_->update(u_ghosted, assemble_mass, assemble_mass);
   linear_solver_->solve(a, forces);
   linear_solver_->invalidate();
-  homogeneous_.distribute(a);
+  sheet_.homogeneous_constraints().distribute(a);
 
   // Diagonals for the round-off of the residual, needed before the first Newton step.
-  const unsigned int set_ups = linear_solver_->n_set_ups();
-  assemble(u_ghosted, v_ghosted);
-  record_multigrid_state(set_ups, u_ghosted);
+  linear_solver_->update(u_ghosted, assembler(v_ghosted), level_assembler());
 
-  displacement_ = u_ghosted;
-  velocity_ = v_ghosted;
-  acceleration_ = a;
-  time_ = 0.;
+  state_ = {0., u_ghosted, v_ghosted, sheet_.with_ghosts(a), {}, {}};
   n_steps_ = 0;
   n_divided_steps_ = 0;
-  ledger_ = EnergyLedger();
   report_ = SolverReport();
-  branch_energies_.clear();
-  rate_forces_.advanced(0., u_ghosted, branch_energies_);
-  update_energies(ledger_, u, v, branch_energies_);
-  initial_energy_ = ledger_.stored + ledger_.kinetic;
+  rate_forces_.advanced(0., u_ghosted, state_.branch_energies);
+  update_energies(state_, v);
+  initial_energy_ = state_.ledger.stored + state_.ledger.kinetic;
   has_started_ = true;
   has_released_ = false;
 }
@@ -179,13 +156,11 @@ DynamicSolver::Vector DynamicSolver::reactions() const
   Vector forces = sheet_.make_owned();
   Vector inertial = sheet_.make_owned();
   Vector magnitude = sheet_.make_owned();
-  Vector a = sheet_.make_owned();
-  a = acceleration_;
-  multiply_by_mass(full_mass_, a, inertial);
-  sheet_.residual(displacement_, forces, magnitude);
-  rate_forces_.add_forces(0., displacement_, velocity_, forces, nullptr);
+  multiply_by_mass(full_mass_, sheet_.without_ghosts(state_.acceleration), inertial);
+  sheet_.residual(state_.displacement, forces, magnitude);
+  rate_forces_.add_forces(0., state_.displacement, state_.velocity, forces, nullptr);
   forces += inertial;
-  forces.add(-1., loads_, -release_share(time_), release_forces_);
+  forces.add(-1., loads_, -release_share(state_.time), release_forces_);
   return forces;
 }
 
@@ -193,37 +168,32 @@ void DynamicSolver::release(const double duration)
 {
   require(has_started_, "release() needs a state: call start() first");
   require(duration >= 0. && std::isfinite(duration), "the duration of a release must be finite and >= 0");
-  require(release_share(time_) <= 1e-9,
+  require(release_share(state_.time) <= 1e-9,
           "release() while the reactions of an earlier release still act is not supported");
   require(linear_solver_->is_direct(), "release() is supported with the direct solver only");
   require(!rate_forces_.has_gradient_memory(), // whose history depends on the conditions of faces
           "release() with the gradient part of Maxwell branches is not supported");
   const Vector forces = reactions();
   AffineConstraints<double> before;
-  before.copy_from(homogeneous_);
+  before.copy_from(sheet_.homogeneous_constraints());
+  sheet_.apply_conditions();
   apply_conditions();
+  const AffineConstraints<double> &after = sheet_.homogeneous_constraints();
   bool holds_more = false;
   release_forces_ = 0.;
   for (const types::global_dof_index i : sheet_.owned())
     if (!sheet_.conformity_constraints().is_constrained(i))
     {
-      holds_more = holds_more || (homogeneous_.is_constrained(i) && !before.is_constrained(i));
-      if (before.is_constrained(i) && !homogeneous_.is_constrained(i))
+      holds_more = holds_more || (after.is_constrained(i) && !before.is_constrained(i));
+      if (before.is_constrained(i) && !after.is_constrained(i))
         release_forces_(i) = forces(i);
     }
   release_forces_.compress(VectorOperation::insert);
   require(dealii::Utilities::MPI::max(holds_more ? 1 : 0, sheet_.communicator()) == 0,
           "release() cannot prescribe the displacement of a free node");
   has_released_ = true;
-  release_time_ = time_;
+  release_time_ = state_.time;
   release_duration_ = duration;
-}
-
-DynamicSolver::Vector DynamicSolver::with_ghosts(const Vector &owned) const
-{
-  Vector x = sheet_.make_ghosted();
-  x = owned;
-  return x;
 }
 
 // Computes M x without the rows of constrained unknowns, whose entries AffineConstraints adds to keep the matrix
@@ -234,27 +204,14 @@ void DynamicSolver::multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Ve
   sheet_.conformity_constraints().set_zero(product);
 }
 
-void DynamicSolver::check_loaded() const
-{
-  require(std::abs(time_ - n_steps_ * settings_.time_step) <=
-            4. * std::numeric_limits<double>::epsilon() * std::abs(time_),
-          "the stored time does not match the number of stored steps");
-}
-
 void DynamicSolver::step()
 {
   require(has_started_, "step() needs a state: call start() first");
   const double target = (n_steps_ + 1) * settings_.time_step;
-  const auto restore = [this, time = time_, u = displacement_, v = velocity_, a = acceleration_, ledger = ledger_,
-                        history = rate_forces_.history(), branch_energies = branch_energies_]
+  const auto restore = [this, state = state_, history = rate_forces_.history()]
   {
-    time_ = time;
-    displacement_ = u;
-    velocity_ = v;
-    acceleration_ = a;
-    ledger_ = ledger;
+    state_ = state;
     rate_forces_.set_history(history);
-    branch_energies_ = branch_energies;
     linear_solver_->invalidate(); // multigrid may belong to a distant state
   };
   report_ = SolverReport();
@@ -280,69 +237,7 @@ void DynamicSolver::step()
     n_divided_steps_ += failure.empty() ? 1 : 0;
   }
   if (!failure.empty())
-  {
-    std::ostringstream message;
-    message.precision(std::numeric_limits<double>::max_digits10);
-    message << "the time step from " << time_ << " s failed: " << failure;
-    throw SolverFailed(message.str(), report_);
-  }
-}
-
-// Advances to `end`, dividing the step where necessary. Returns the reason of failure, empty on success.
-std::string DynamicSolver::advance_in_parts(const double duration, const double end, const unsigned int halvings)
-{
-  const double middle = end - 0.5 * duration;
-  std::string failure = advance(duration, end);
-  if (failure.empty() || halvings == 0)
-    return failure;
-  failure = advance_in_parts(0.5 * duration, middle, halvings - 1);
-  return failure.empty() ? advance_in_parts(0.5 * duration, end, halvings - 1) : failure;
-}
-
-// Advances to `end` in one step. Returns the reason of failure, empty on success; after a failure the state is
-// unchanged.
-std::string DynamicSolver::advance(const double duration, const double end)
-{
-  if (duration != duration_)
-    linear_solver_->invalidate();
-  duration_ = duration;
-  Step step{settings_.rule,       duration,          sheet_.make_owned(), sheet_.make_owned(), sheet_.make_owned(),
-            release_share(time_), release_share(end)};
-  step.u = displacement_;
-  step.v = velocity_;
-  step.a = acceleration_;
-  Vector u = sheet_.make_owned();
-  Vector v;
-  Vector a;
-  EnergyLedger ledger;
-  RateForces::History history;
-  std::vector<BranchEnergy> branch_energies = branch_energies_;
-  std::string failure = attempt(step, u);
-  if (failure.empty())
-    try
-    {
-      a = step.last_acceleration(u);
-      v = step.last_velocity(a);
-      history = rate_forces_.advanced(duration, with_ghosts(u), branch_energies);
-      ledger = ledger_after(step, u, v, branch_energies);
-      if (!std::isfinite(ledger.imbalance) || !std::isfinite(a.l2_norm()))
-        failure = "the energy or the acceleration is not finite";
-    }
-    catch (const NonPhysicalState &refusal) // the mean state may be physical although the state at the end is not
-    {
-      failure = refusal.what();
-    }
-  report_.load_steps.push_back({static_cast<unsigned int>(n_steps_ + 1), 1., failure.empty(), failure});
-  if (!failure.empty())
-    return failure;
-  displacement_ = u;
-  velocity_ = v;
-  acceleration_ = a;
-  time_ = end;
-  ledger_ = ledger;
-  rate_forces_.set_history(std::move(history));
-  branch_energies_ = branch_energies;
-  return "";
+    throw SolverFailed(support::formatted("the time step from %.17g s failed: ", state_.time) + failure, report_);
 }
 
 std::vector<Tensor<2, 2>> DynamicSolver::rate_stresses() const
@@ -351,7 +246,7 @@ std::vector<Tensor<2, 2>> DynamicSolver::rate_stresses() const
   if (!rate_forces_.is_present())
     return stresses;
   stresses.resize(sheet_.mesh().n_locally_owned_active_cells() * QGauss<2>(sheet_.degree() + 1).size());
-  rate_forces_.add_stresses(displacement_, velocity_, stresses);
+  rate_forces_.add_stresses(state_.displacement, state_.velocity, stresses);
   return stresses;
 }
 } // namespace latcon::continuum

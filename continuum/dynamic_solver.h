@@ -7,6 +7,8 @@
 #include "continuum/sheet.h"
 #include "continuum/solver_report.h"
 
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -142,12 +144,12 @@ public:
   template <class Archive>
   void archive(Archive &archive);
 
-  double time() const { return time_; } ///< [s]
+  double time() const { return state_.time; } ///< [s]
   /// Returns the number of time steps since start() that had to be divided.
   unsigned long n_divided_steps() const { return n_divided_steps_; }
-  const EnergyLedger &ledger() const { return ledger_; }
+  const EnergyLedger &ledger() const { return state_.ledger; }
   /// Returns the energies of each branch by its number [J/m], which ledger() includes.
-  const std::vector<BranchEnergy> &branch_energies() const { return branch_energies_; }
+  const std::vector<BranchEnergy> &branch_energies() const { return state_.branch_energies; }
 
   /// Returns the nodal reactions at unknowns with prescribed displacement, and the residual of the equation of motion
   /// at free ones [N/m], per unit reference thickness.
@@ -158,11 +160,11 @@ public:
   std::vector<dealii::Tensor<2, 2>> rate_stresses() const;
 
   // Nodal vectors with ghost entries.
-  const Vector &displacement() const { return displacement_; } ///< [m]
-  const Vector &velocity() const { return velocity_; }         ///< [m/s]
+  const Vector &displacement() const { return state_.displacement; } ///< [m]
+  const Vector &velocity() const { return state_.velocity; }         ///< [m/s]
   /// Acceleration [m/s^2]. With generalised-alpha it approximates the acceleration at t + (alpha_m - alpha_f) *
   /// time_step, which differs to first order from that at t.
-  const Vector &acceleration() const { return acceleration_; }
+  const Vector &acceleration() const { return state_.acceleration; }
   const Sheet &sheet() const { return sheet_; }
   /// Returns the residual history of the last step with all attempts at it and its parts; empty after start() or
   /// loading.
@@ -172,30 +174,33 @@ private:
   struct Residual;
   struct Step;
 
-  void check_loaded() const;
+  // What a step changes, beside the history of branches.
+  struct State
+  {
+    double time = 0.;    // [s]
+    Vector displacement; // [m], this and the next with ghost entries
+    Vector velocity;     // [m/s]
+    Vector acceleration; // [m/s^2]
+    EnergyLedger ledger;
+    std::vector<BranchEnergy> branch_energies;
+  };
+
   void apply_conditions();
   double release_share(double time) const;
-  bool is_prescribed(dealii::types::global_dof_index i) const;
-  Vector with_ghosts(const Vector &owned) const;
   void multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Vector &product) const;
   Residual evaluate(const Step &step, const Vector &u) const;
   Residual best_residual(const Step &step, const Vector &first, const Vector &second, Vector &u) const;
   template <class AnyMatrix>
-  void weigh_and_add_mass(const Sheet &sheet, const dealii::AffineConstraints<double> &constraints, AnyMatrix &K) const;
+  void weigh_and_add_mass(const Sheet &sheet, AnyMatrix &K) const;
   Assembler level_assembler() const;
   Assembler assembler(const Vector &v);
-  void assemble(const Vector &u, const Vector &v);
-  void record_multigrid_state(unsigned int before, const Vector &u);
-  void restore_multigrid();
   std::string location_of_largest(const Vector &residual) const;
   double round_off(const Residual &state, const Vector &u) const;
-  std::string attempt(Step &step, Vector &u);
+  std::string attempt(const Step &step, Vector &u);
   std::string advance(double duration, double end);
   std::string advance_in_parts(double duration, double end, unsigned int halvings);
-  EnergyLedger ledger_after(const Step &step, const Vector &u, const Vector &v,
-                            const std::vector<BranchEnergy> &branches) const;
-  void update_energies(EnergyLedger &ledger, const Vector &u, const Vector &v,
-                       const std::vector<BranchEnergy> &branches) const;
+  void update_energies(State &state, const Vector &v) const;
+  void update_ledger(const Step &step, const Vector &u, const Vector &v, State &state) const;
   double mean_duration() const { return (1. - settings_.rule.alpha_f) * duration_; } // to the mean state [s]
 
   Sheet sheet_;
@@ -204,7 +209,6 @@ private:
   double duration_; // of the current step or part of a step [s]
   RateForces rate_forces_; // with the history at the present time
   std::unique_ptr<LinearSolver> linear_solver_;
-  dealii::AffineConstraints<double> homogeneous_;       // conformity constraints, and prescribed unknowns at zero
   Vector lift_;                                         // prescribed displacement, zero elsewhere
   Vector loads_;                                        // nodal dead loads
   double smallest_cell_ = 0.;                           // extent [m]
@@ -212,9 +216,6 @@ private:
   Sheet::Matrix plain_mass_;                            // full_mass_ without micro-inertia
   Vector elastic_diagonal_;                             // of the elastic tangent last assembled
   Vector effective_diagonal_;                           // of the matrix of the Newton step
-
-  // State at which the linear solver last set up multigrid, with ghost entries: a restart rebuilds multigrid from it.
-  Vector multigrid_displacement_;
 
   // Reactions at the last released nodes at the time of the release [N/m].
   Vector release_forces_;
@@ -226,45 +227,40 @@ private:
   double initial_energy_ = 0.;
   unsigned long n_steps_ = 0;
   unsigned long n_divided_steps_ = 0;
-  double time_ = 0.;
-  Vector displacement_;
-  Vector velocity_;
-  Vector acceleration_;
-  EnergyLedger ledger_;
-  std::vector<BranchEnergy> branch_energies_;
+  State state_;
   SolverReport report_;
 };
 
 template <class Archive>
 void DynamicSolver::archive(Archive &archive)
 {
-  if (has_released_)
-    throw InvalidInput("a checkpoint after a release of nodes is not supported");
+  require(!has_released_, "a checkpoint after a release of nodes is not supported");
   archive("initial_energy", initial_energy_);
   archive("steps", n_steps_);
   archive("divided_steps", n_divided_steps_);
-  archive("time", time_);
-  archive("ledger", ledger_);
-  if constexpr (Archive::loads)
-    check_loaded();
+  archive("time", state_.time);
+  archive("ledger", state_.ledger);
+  require(!Archive::loads || std::abs(state_.time - n_steps_ * settings_.time_step) <=
+                               4. * std::numeric_limits<double>::epsilon() * std::abs(state_.time),
+          "the stored time does not match the number of stored steps");
   const NodalOrder order(sheet_);
-  order.archive(archive, "displacement", displacement_);
-  order.archive(archive, "velocity", velocity_);
-  order.archive(archive, "acceleration", acceleration_);
+  order.archive(archive, "displacement", state_.displacement);
+  order.archive(archive, "velocity", state_.velocity);
+  order.archive(archive, "acceleration", state_.acceleration);
   if (rate_forces_.n_branches() > 0)
   {
-    rate_forces_.archive(archive, displacement_);
-    archive.records("branch_energies", branch_energies_);
-    if (branch_energies_.size() != rate_forces_.n_branches())
-      throw InvalidInput("the stored energies of branches are not those of the material");
+    rate_forces_.archive(archive, state_.displacement);
+    archive.records("branch_energies", state_.branch_energies);
+    require(state_.branch_energies.size() == rate_forces_.n_branches(),
+            "the stored energies of branches are not those of the material");
   }
   // A reused multigrid preconditioner affects the round-off of every iteration.
   archive("linear_solver", *linear_solver_);
   if (linear_solver_->keeps_multigrid())
   {
-    order.archive(archive, "multigrid_displacement", multigrid_displacement_);
-    if constexpr (Archive::loads)
-      restore_multigrid(); // overwrites the diagonals, which are loaded next
+    order.archive(archive, "multigrid_displacement", linear_solver_->multigrid_state());
+    if constexpr (Archive::loads) // overwrites the diagonals, which are loaded next
+      linear_solver_->restore(assembler(sheet_.make_ghosted()), level_assembler());
   }
   order.archive(archive, "elastic_diagonal", elastic_diagonal_);
   order.archive(archive, "effective_diagonal", effective_diagonal_);

@@ -7,6 +7,7 @@
 #include "continuum/shape_tables.h"
 #include "continuum/single_precision_matrix.h"
 #include "continuum/vector_kernels.h"
+#include "support/text_wrap.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 
 using namespace dealii;
 
@@ -342,9 +342,8 @@ void integrate(const Sheet &sheet, const Sheet::Vector &u, const PointForces &fo
       }
       catch (const NonPhysicalState &failure)
       {
-        std::ostringstream place;
-        place << ", in the cell about X = (" << cell->center()[0] << ", " << cell->center()[1] << ") m";
-        throw NonPhysicalState(failure.what() + place.str());
+        const Point<2> X = cell->center();
+        throw NonPhysicalState(support::text_of(failure.what(), ", in the cell about X = (", X[0], ", ", X[1], ") m"));
       }
 }
 

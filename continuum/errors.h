@@ -27,11 +27,12 @@ public:
   using std::invalid_argument::invalid_argument;
 };
 
-/// Throws InvalidInput with the text `rule` unless it `holds`.
-inline void require(const bool holds, const std::string &rule)
+/// Throws an exception with the text `rule` unless it `holds`.
+template <class Failure = InvalidInput>
+void require(const bool holds, const std::string &rule)
 {
   if (!holds)
-    throw InvalidInput(rule);
+    throw Failure(rule);
 }
 
 /// Linear system that could not be solved to its tolerance.

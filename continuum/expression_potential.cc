@@ -31,39 +31,14 @@ Jet jet(const support::Expression &expression, const double l)
   std::vector<Jet> all;
   all.reserve(expression.nodes().size());
   for (const auto &[operation, value, left, right] : expression.nodes())
-    switch (operation)
-    {
-    case Operation::variable:
+    if (operation == Operation::variable)
       all.push_back(boost::math::differentiation::make_fvar<double, 4>(l));
-      break;
-    case Operation::constant:
+    else if (operation == Operation::constant)
       all.push_back(value);
-      break;
-    case Operation::add:
-      all.push_back(all[left] + all[right]);
-      break;
-    case Operation::subtract:
-      all.push_back(all[left] - all[right]);
-      break;
-    case Operation::multiply:
-      all.push_back(all[left] * all[right]);
-      break;
-    case Operation::divide:
-      all.push_back(all[left] / all[right]);
-      break;
-    case Operation::power:
+    else if (operation == Operation::power)
       all.push_back(power(all[left], value));
-      break;
-    case Operation::square_root:
-      all.push_back(sqrt(all[left]));
-      break;
-    case Operation::exponential:
-      all.push_back(exp(all[left]));
-      break;
-    case Operation::logarithm:
-      all.push_back(log(all[left]));
-      break;
-    }
+    else
+      all.push_back(support::evaluate(operation, value, all[left], all[right]));
   return all[expression.result];
 }
 } // namespace

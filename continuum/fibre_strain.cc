@@ -36,11 +36,11 @@ std::array<StrainMeasure, 2> gradient_measures(const Tensor<1, 2> &N, const doub
                                                const double gradient_length)
 {
   const double along = squared_length_along(length, gradient_length);
-  if (!(length > 0. && std::isfinite(length)))
-    throw InvalidMaterial("fibres whose law has a gradient part need a positive and finite length");
-  if (!(along >= 0. && std::isfinite(gradient_length)))
-    throw InvalidMaterial("the micro-inertia length must be at least " + std::to_string(length / std::sqrt(12.)) +
-                          " m, the longest bond over sqrt(12), for the gradient part of a law to be positive");
+  require<InvalidMaterial>(length > 0. && std::isfinite(length),
+                           "fibres whose law has a gradient part need a positive and finite length");
+  require<InvalidMaterial>(along >= 0. && std::isfinite(gradient_length),
+                           "the micro-inertia length must be at least " + std::to_string(length / std::sqrt(12.)) +
+                             " m, the longest bond over sqrt(12), for the gradient part of a law to be positive");
   const auto measure = [&](const Tensor<1, 2> &M, const double squared_length)
   {
     return StrainMeasure{

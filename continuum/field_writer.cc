@@ -9,6 +9,7 @@
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/fe/fe_dgq.h>
 #include <deal.II/fe/fe_tools.h>
 #include <deal.II/grid/filtered_iterator.h>
@@ -18,6 +19,7 @@
 #include <boost/iostreams/device/back_inserter.hpp>
 #include <boost/iostreams/stream.hpp>
 
+#include <algorithm>
 #include <initializer_list>
 #include <limits>
 #include <sstream>
@@ -54,35 +56,25 @@ public:
     const std::size_t first_stress = first_stress_[inputs.get_cell<2>()->active_cell_index()];
     for (unsigned int p = 0; p < computed.size(); ++p)
     {
-      Tensor<2, 2> F;
+      Tensor<2, 2> F(unit_symmetric_tensor<2>());
       Tensor<3, 2> G;
       for (unsigned int i = 0; i < 2; ++i)
       {
-        for (unsigned int J = 0; J < 2; ++J)
-          F[i][J] = (i == J ? 1. : 0.) + inputs.solution_gradients[p][i][J];
+        F[i] += inputs.solution_gradients[p][i];
         G[i] = inputs.solution_hessians[p][i];
       }
       const GradientResponse W = laws_.evaluate(inputs.evaluation_points[p], F, G);
       Tensor<2, 2> P = W.first_piola;
       for (unsigned int k = 0; k < interpolation_.n() && !stresses_.empty(); ++k)
         P += interpolation_(p, k) * stresses_[first_stress + k];
-      const Tensor<2, 2> sigma = cauchy_stress(P, F);
-      for (unsigned int i = 0; i < 2; ++i)
-        for (unsigned int J = 0; J < 2; ++J)
-        {
-          computed[p][2 * i + J] = F[i][J];
-          computed[p][4 + 2 * i + J] = P[i][J];
-          computed[p][8 + 2 * i + J] = sigma[i][J];
-        }
-      computed[p][12] = W.energy;
-      const Tensor<3, 2> &Q = W.double_stress;
-      for (unsigned int i = 0; i < 2; ++i)
-        for (unsigned int J = 0; J < 2; ++J)
-          for (unsigned int K = 0; K < 2; ++K)
-          {
-            computed[p][13 + 4 * i + 2 * J + K] = G[i][J][K];
-            computed[p][21 + 4 * i + 2 * J + K] = Q[i][J][K];
-          }
+      auto next = computed[p].begin();
+      const auto append = [&next](const auto &tensor) { next = std::copy(tensor.begin_raw(), tensor.end_raw(), next); };
+      append(F);
+      append(P);
+      append(cauchy_stress(P, F));
+      *next++ = W.energy;
+      append(G);
+      append(W.double_stress);
     }
   }
 
@@ -170,11 +162,6 @@ FieldWriter::FieldWriter(const MPI_Comm communicator, std::filesystem::path dire
                    });
 }
 
-void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::Vector &u)
-{
-  add_frame(time, sheet, u, nullptr, {});
-}
-
 void FieldWriter::add_frame(const DynamicSolver &solver)
 {
   add_frame(solver.time(), solver.sheet(), solver.displacement(), &solver.velocity(), solver.rate_stresses());
@@ -237,13 +224,6 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
                        replace(directory_ / file_of(frames_.size() - 1), {without_comment(text.str())});
                      });
   write_collection();
-}
-
-void FieldWriter::check_loaded() const
-{
-  for (std::size_t frame = 0; frame < frames_.size(); ++frame)
-    require(frames_[frame].n_pieces > 0 && (frame == 0 || frames_[frame].time > frames_[frame - 1].time),
-            "the stored times of frames do not increase, or a frame has no pieces");
 }
 
 std::string FieldWriter::frame_name(const std::size_t frame) const

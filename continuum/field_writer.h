@@ -29,7 +29,9 @@ public:
   /// Writes a frame with the state `u` (nodal displacement [m], with ghost entries) at the load factor `time` [-]. It
   /// must increase from frame to frame. Collective. Throws on every rank: OutputFailed, NonPhysicalState as the law
   /// does, InvalidInput if the time does not increase.
-  void add_frame(double time, const Sheet &sheet, const Sheet::Vector &u);
+  /// `v` is the nodal velocity [m/s] (nullptr: none), and `rate_stresses` are those of DynamicSolver (empty: none).
+  void add_frame(double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v = nullptr,
+                 const std::vector<dealii::Tensor<2, 2>> &rate_stresses = {});
 
   /// Writes a frame with the present state of a motion, at its time [s]. Otherwise as above.
   void add_frame(const DynamicSolver &solver);
@@ -40,8 +42,9 @@ public:
   void archive(Archive &archive)
   {
     archive.records("frames", frames_);
-    if constexpr (Archive::loads)
-      check_loaded();
+    for (std::size_t frame = 0; frame < frames_.size(); ++frame)
+      require(frames_[frame].n_pieces > 0 && (frame == 0 || frames_[frame].time > frames_[frame - 1].time),
+              "the stored times of frames do not increase, or a frame has no pieces");
   }
 
   /// Rewrites the .pvd with the frames in the list, in case the file refers to later frames as well. Collective. Throws
@@ -70,9 +73,6 @@ private:
     }
   };
 
-  void check_loaded() const;
-  void add_frame(double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v,
-                 const std::vector<dealii::Tensor<2, 2>> &rate_stresses);
   std::string frame_name(std::size_t frame) const;
   std::string file_of(std::size_t frame) const;
 

@@ -3,6 +3,7 @@
 #include "continuum/collective.h"
 #include "continuum/errors.h"
 #include "continuum/meshes.h"
+#include "support/text_wrap.h"
 
 #include <deal.II/grid/grid_tools.h>
 
@@ -13,7 +14,6 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -45,9 +45,7 @@ struct GmshMesh
 template <class... Parts>
 [[noreturn]] void refuse(const Parts &...parts)
 {
-  std::ostringstream text;
-  (text << ... << parts);
-  throw InvalidInput(text.str()); // to be preceded by the name of the file
+  throw InvalidInput(support::text_of(parts...)); // to be preceded by the name of the file
 }
 
 struct Element
@@ -296,18 +294,17 @@ private:
   static void orient(CellData<2> &cell, const std::size_t number, const std::vector<Point<2>> &points)
   {
     auto &v = cell.vertices;
-    int left_turns = 0, right_turns = 0;
+    int turns = 0; // left ones less right ones
     for (unsigned int k = 0; k < 4; ++k)
     {
       const Tensor<1, 2> before = points[v[k]] - points[v[(k + 3) % 4]], after = points[v[(k + 1) % 4]] - points[v[k]];
       const double turn = before[0] * after[1] - before[1] * after[0];
-      left_turns += turn > 0.;
-      right_turns += turn < 0.;
+      turns += (turn > 0.) - (turn < 0.);
     }
-    if (left_turns != 4 && right_turns != 4)
+    if (std::abs(turns) != 4)
       refuse("has a cell that is not convex, element ", number, " with a corner at (", points[v[0]][0], ", ",
              points[v[0]][1], ") m: its Jacobian vanishes or changes sign");
-    if (right_turns == 4)
+    if (turns < 0)
       std::swap(v[1], v[3]);
     std::swap(v[2], v[3]);
   }
@@ -320,18 +317,24 @@ private:
     if (numbers.size() > 1)
       refuse("has ", where, " on several physical curves", expected_curves);
     const int number = *numbers.begin();
-    const auto name = names_.find(number);
-    if (names_.empty() && number >= 0 && number < static_cast<int>(edge_names.size()))
-      return number;
-    const auto *const found =
-      name == names_.end() ? edge_names.end() : std::find(edge_names.begin(), edge_names.end(), name->second);
-    if (found == edge_names.end())
+    const int id = names_.empty() ? number : edge_named(number);
+    if (id < 0 || id >= static_cast<int>(edge_names.size()))
       refuse("has ", where, " on the physical curve ", number,
-             name != names_.end() ? " named \"" + name->second + "\""
-             : names_.empty()     ? ""
-                                  : " without a name, among others with one",
+             names_.count(number) > 0 ? " named \"" + names_.at(number) + "\""
+             : names_.empty()         ? ""
+                                      : " without a name, among others with one",
              expected_curves);
-    return found - edge_names.begin();
+    return id;
+  }
+
+  // Returns the boundary id that the name of a curve gives it, -1 for none.
+  int edge_named(const int curve) const
+  {
+    const auto name = names_.find(curve);
+    for (std::size_t id = 0; id < edge_names.size(); ++id)
+      if (name != names_.end() && name->second == edge_names[id])
+        return static_cast<int>(id);
+    return -1;
   }
 
   void add_lines(GmshMesh &mesh, const std::map<std::size_t, unsigned int> &index) const
@@ -355,18 +358,15 @@ private:
     const auto line_between = [&mesh](const unsigned int first, const unsigned int second)
     {
       const Point<2> &from = mesh.points[first], &to = mesh.points[second];
-      std::ostringstream text;
-      text << " from (" << from[0] << ", " << from[1] << ") to (" << to[0] << ", " << to[1] << ") m";
-      return text.str();
+      return support::text_of(" from (", from[0], ", ", from[1], ") to (", to[0], ", ", to[1], ") m");
     };
     // A load on such a line would be left out.
     for (const auto &[ends, curves] : numbers)
       if (sides.count(ends) == sides.count({ends.second, ends.first}))
         for (const int curve : curves)
-          if (const auto name = names_.find(curve);
-              name != names_.end() && std::find(edge_names.begin(), edge_names.end(), name->second) != edge_names.end())
+          if (edge_named(curve) >= 0)
             refuse("has a line", line_between(ends.first, ends.second), ", not on the boundary, on the physical curve ",
-                   curve, " named \"", name->second, "\", which is the name of an edge");
+                   curve, " named \"", names_.at(curve), "\", which is the name of an edge");
     for (const auto &[first, second] : sides)
     {
       if (sides.count({second, first}) > 0)
@@ -393,9 +393,8 @@ GmshMesh read_gmsh_file(const std::filesystem::path &file)
   const std::string name = "the mesh file " + file.string();
   std::error_code error;
   // Others, such as devices, may be endless.
-  const bool is_file = std::filesystem::is_regular_file(file, error);
-  if ((is_file || std::filesystem::exists(file, error)) &&
-      !(is_file && std::filesystem::file_size(file, error) <= largest_file))
+  if (std::filesystem::exists(file, error) &&
+      !(std::filesystem::is_regular_file(file, error) && std::filesystem::file_size(file, error) <= largest_file))
     throw InvalidInput(name + " is not a regular file of at most 256 MiB");
   std::ifstream stream(file);
   if (!stream)

@@ -4,14 +4,11 @@
 
 namespace latcon::continuum
 {
-/// Energy of a gradient law at a point and its derivatives by F and G up to an order; those beyond it are zero. Third
-/// and higher tensors are symmetric in the two indices of each G.
-struct GradientResponse
+/// Energy W_g of a gradient law at a point and its derivatives by F and G up to an order; those beyond it are zero.
+/// Third and higher tensors are symmetric in the two indices of each G.
+struct GradientResponse : Response
 {
-  double energy = 0.;                      ///< W_g [Pa = J/m^3]
-  dealii::Tensor<2, 2> first_piola;        ///< dW_g/dF_iJ [Pa]: its contribution to the first Piola stress
   dealii::Tensor<3, 2> double_stress;      ///< Q_iJK = dW_g/dG_iJK [Pa m]
-  dealii::Tensor<4, 2> tangent;            ///< d2W_g/dF_iJ dF_kL [Pa], index order [i][J][k][L]
   dealii::Tensor<5, 2> double_stress_by_F; ///< dQ_iJK/dF_lM [Pa m], index order [i][J][K][l][M]
   dealii::Tensor<6, 2> double_stress_by_G; ///< dQ_iJK/dG_lMN [Pa m^2], index order [i][J][K][l][M][N]
 };

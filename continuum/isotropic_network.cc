@@ -9,14 +9,6 @@ namespace latcon::continuum
 {
 namespace
 {
-template <class... Functions>
-struct Overloaded : Functions...
-{
-  using Functions::operator()...;
-};
-template <class... Functions>
-Overloaded(Functions...) -> Overloaded<Functions...>;
-
 // Adds fibres of a family in all directions; those of equal potentials are one family.
 void add_in_all_directions(std::vector<FibreFamily> &fibres, const FibreFamily &family)
 {
@@ -34,21 +26,21 @@ void add_in_all_directions(std::vector<FibreFamily> &fibres, const FibreFamily &
 
 IsotropicNetwork::IsotropicNetwork(const std::vector<FibreFamily> &families)
 {
-  if (families.empty())
-    throw InvalidMaterial("a fibre network needs at least one family");
+  require<InvalidMaterial>(!families.empty(), "a fibre network needs at least one family");
   std::vector<FibreFamily> sampled;
   for (const FibreFamily &family : families)
   {
     check(family);
     const double c = family.weight;
-    std::visit(Overloaded{[&](const RodPotential &rod)
-                          {
-                            a_ += c * rod.a;
-                            b_ += c * rod.b;
-                          },
-                          [&](const LinearPotential &spring) { e_ += c * spring.e; },
-                          [&](const CustomPotential &) { add_in_all_directions(sampled, family); }},
-               family.potential);
+    if (const auto *rod = std::get_if<RodPotential>(&family.potential))
+    {
+      a_ += c * rod->a;
+      b_ += c * rod->b;
+    }
+    else if (const auto *spring = std::get_if<LinearPotential>(&family.potential))
+      e_ += c * spring->e;
+    else
+      add_in_all_directions(sampled, family);
   }
   if (!sampled.empty())
     sampled_.emplace(std::move(sampled));
@@ -60,12 +52,12 @@ Response IsotropicNetwork::evaluate(const Tensor<2, 2> &F, const Order order) co
   const double I = F.norm_square();
   const StretchMeans mean = stretch_means(I, J);
   const double r = 1. / J; // mean of l^-2; the mean of l^2 is I/2
-  InvariantFunction W{};
-  add(W, a_, {0.25 * I - 1.5, 0.25, 0., 0., 0., 0.});
-  add(W, a_, mean.inverse);
-  add(W, b_, {0.5 * r - 1.5, 0., -0.5 * r * r, 0., 0., r * r * r});
-  add(W, b_ - e_, mean.stretch);
-  add(W, e_, {0.25 * I + 0.5, 0.25, 0., 0., 0., 0.});
+  InvariantFunction W;
+  W += a_ * InvariantFunction({0.25 * I - 1.5, 0.25, 0., 0., 0., 0.});
+  W += a_ * mean.inverse;
+  W += b_ * InvariantFunction({0.5 * r - 1.5, 0., -0.5 * r * r, 0., 0., r * r * r});
+  W += (b_ - e_) * mean.stretch;
+  W += e_ * InvariantFunction({0.25 * I + 0.5, 0.25, 0., 0., 0., 0.});
   Response result = response(W, F, order);
   if (sampled_)
   {

@@ -55,22 +55,6 @@ BondStiffness stiffness(const FibrePotential &potential, const double l)
           {chi_2 + r2 * away, chi_3 + r2 * (away_1 - 2. * r2 * away),
            chi_4 + r2 * (away_2 - 4. * r2 * (away_1 - 2. * r2 * away))}};
 }
-
-// Derivative by f of (1/2) dh(a, a)/da.
-Tensor<2, 2> by_fa(const BondStiffness &h, const Tensor<1, 2> &f, const Tensor<1, 2> &a)
-{
-  const double fa = f * a;
-  return h.across[1] * outer_product(a, f) + h.coupling[0] * (outer_product(f, a) + fa * identity) +
-         h.coupling[1] * fa * outer_product(f, f);
-}
-
-Tensor<1, 2> selected(const GradientLaw::Gradient &G, const Tensor<2, 2> &selector)
-{
-  Tensor<1, 2> a;
-  for (unsigned int i = 0; i < 2; ++i)
-    a[i] = scalar_product(G[i], selector);
-  return a;
-}
 } // namespace
 
 void check(const BondFamily &family)
@@ -90,10 +74,9 @@ double LatticeGradient::smallest_length(const std::vector<BondFamily> &families)
 
 LatticeGradient::LatticeGradient(const std::vector<BondFamily> &families, const double length)
 {
-  if (families.empty())
-    throw InvalidMaterial("a lattice gradient energy needs at least one family of bonds");
-  if (!std::isfinite(length))
-    throw InvalidMaterial("the micro-inertia length of a lattice gradient energy must be finite");
+  require<InvalidMaterial>(!families.empty(), "a lattice gradient energy needs at least one family of bonds");
+  require<InvalidMaterial>(std::isfinite(length),
+                           "the micro-inertia length of a lattice gradient energy must be finite");
   for (const BondFamily &family : families)
   {
     check(family);
@@ -126,7 +109,7 @@ GradientResponse LatticeGradient::evaluate(const Tensor<2, 2> &F, const Gradient
     {
       const double factor = family.factor[term];
       const Tensor<2, 2> &selector = family.selector[term];
-      const Tensor<1, 2> a = selected(G, selector);
+      const Tensor<1, 2> a({scalar_product(G[0], selector), scalar_product(G[1], selector)});
       const double aa = a * a, fa = f * a;
       W.energy += 0.5 * factor * (h.across[0] * aa + h.coupling[0] * fa * fa);
       if (order == Order::value)
@@ -139,7 +122,9 @@ GradientResponse LatticeGradient::evaluate(const Tensor<2, 2> &F, const Gradient
       by_ff += factor * (0.5 * (h.across[2] * aa + h.coupling[2] * fa * fa) * outer_product(f, f) +
                          h.coupling[1] * fa * (outer_product(f, a) + outer_product(a, f)) +
                          h.coupling[0] * outer_product(a, a) + by_s * identity);
-      const Tensor<2, 2> of_F = factor * by_fa(h, f, a);
+      const Tensor<2, 2> of_F =
+        factor * (h.across[1] * outer_product(a, f) + h.coupling[0] * (outer_product(f, a) + fa * identity) +
+                  h.coupling[1] * fa * outer_product(f, f));
       const Tensor<2, 2> of_G = factor * by_aa;
       for (unsigned int i = 0; i < 2; ++i)
         for (unsigned int J = 0; J < 2; ++J)

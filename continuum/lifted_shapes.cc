@@ -13,11 +13,6 @@ using namespace dealii;
 
 namespace latcon::continuum
 {
-namespace
-{
-constexpr unsigned int whole = numbers::invalid_unsigned_int;
-} // namespace
-
 std::vector<LiftedFace> lifted_faces(const Sheet &sheet, const LiftedFace::Cell &cell)
 {
   std::vector<LiftedFace> faces;
@@ -64,7 +59,7 @@ LiftedShapes::LiftedShapes(const unsigned int degree)
       const Quadrature<2> points =
         part == 0 ? QProjector<2>::project_to_face(ReferenceCells::Quadrilateral, quadrature, face)
                   : QProjector<2>::project_to_subface(ReferenceCells::Quadrilateral, quadrature, face, part - 1);
-      FullMatrix<double> &values = polynomials_[face][part];
+      FullMatrix<double> &values = faces_[face][part].polynomial;
       values.reinit(cell.size(), points.size());
       for (unsigned int q = 0; q < values.m(); ++q)
         for (unsigned int f = 0; f < values.n(); ++f)
@@ -75,7 +70,7 @@ LiftedShapes::LiftedShapes(const unsigned int degree)
 
 ComponentDerivatives LiftedShapes::weights(const unsigned int q, const unsigned int f) const
 {
-  const double weight = -now_->factor * now_->face->JxW[f] / now_->cell->JxW[q] * (*now_->polynomial)(q, f);
+  const double weight = -now_->factor * now_->face->JxW[f] / now_->cell->JxW[q] * now_->polynomial(q, f);
   const Tensor<1, 2> &N = now_->face->normals[f];
   return {0., 0., weight * N[0] * N[0], weight * N[1] * N[1], weight * N[0] * N[1]};
 }
@@ -92,7 +87,6 @@ void LiftedShapes::reinit(const ShapeTable &cell, const ShapeTable &cell_face, c
   if (is_kept && std::tie(now.cell, now.face, now.neighbor_face, now.factor, now.neighbor_nodes, now.stride) ==
                    std::make_tuple(&cell, &cell_face, neighbor_face, factor, std::cref(neighbor_nodes), stride))
     return;
-  now.polynomial = &polynomials_[at.face][part];
   now.cell = &cell;
   now.face = &cell_face;
   now.neighbor_face = neighbor_face;
@@ -122,7 +116,7 @@ void LiftedShapes::reinit(const ShapeTable &cell, const ShapeTable &cell_face, c
     {
       // On straight faces most polynomials vanish at most points.
       constexpr double rounding = 1e-13;
-      if (std::abs((*now.polynomial)(q, f)) < rounding)
+      if (std::abs(now.polynomial(q, f)) < rounding)
         continue;
       const ComponentDerivatives weight = weights(q, f);
       for (unsigned int c = n_first; c < n_derivatives; ++c)

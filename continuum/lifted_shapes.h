@@ -54,7 +54,7 @@ private:
   // Derivatives for a face, and what they depend on.
   struct Face
   {
-    const dealii::FullMatrix<double> *polynomial = nullptr;
+    dealii::FullMatrix<double> polynomial; // (point of cell, point of face)
     const ShapeTable *cell = nullptr;
     const ShapeTable *face = nullptr;
     const ShapeTable *neighbor_face = nullptr;
@@ -68,8 +68,7 @@ private:
   // Share of the second derivatives at point q that a unit jump at point f of the face adds.
   ComponentDerivatives weights(unsigned int q, unsigned int f) const;
 
-  dealii::FullMatrix<double> polynomials_[4][3]; // [face][all, first half, second half](point of cell, point of face)
-  Face faces_[4][3];                             // likewise
+  Face faces_[4][3]; // [face][all, first half, second half]
   const Face *now_ = nullptr;
 };
 } // namespace latcon::continuum

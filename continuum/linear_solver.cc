@@ -12,11 +12,10 @@ using namespace dealii;
 
 namespace latcon::continuum
 {
-LinearSolver::LinearSolver(const Sheet &sheet, const AffineConstraints<double> &constraints, DirichletBoundaries held,
-                           const LinearSettings &settings, const Symmetry symmetry)
-  : sheet_(sheet), constraints_(constraints), held_(std::move(held)), settings_(settings),
+LinearSolver::LinearSolver(const Sheet &sheet, const LinearSettings &settings, const Symmetry symmetry)
+  : sheet_(sheet), settings_(settings),
     is_direct_(sheet.dof_handler().n_dofs() <= settings.direct_limit || !sheet.conditions().periodic.empty()),
-    symmetry_(symmetry)
+    symmetry_(symmetry), multigrid_state_(sheet.make_ghosted())
 {
   if (!(settings.relative_tolerance > 0. && settings.relative_tolerance < 1.))
     throw InvalidInput("the relative tolerance of the linear solver must be in (0, 1)");
@@ -32,18 +31,18 @@ void LinearSolver::update(const Sheet::Vector &u, const Assembler &assemble, con
     if (!matrix_)
     {
       matrix_ = std::make_unique<Sheet::Matrix>();
-      sheet_.make_matrix(constraints_, *matrix_);
+      sheet_.make_matrix(sheet_.homogeneous_constraints(), *matrix_);
       direct_ = std::make_unique<DirectSolver>();
     }
-    assemble(sheet_, u, constraints_, *matrix_);
+    assemble(sheet_, u, *matrix_);
     return;
   }
   if (!single_matrix_)
   {
     single_matrix_ = std::make_unique<SinglePrecisionMatrix>();
-    single_matrix_->reinit(sheet_, constraints_);
+    single_matrix_->reinit(sheet_, sheet_.homogeneous_constraints());
   }
-  assemble(sheet_, u, constraints_, *single_matrix_);
+  assemble(sheet_, u, *single_matrix_);
   if (symmetry_ == Symmetry::symmetric)
     single_matrix_->make_symmetric();
   state_.reinit(u);
@@ -58,22 +57,23 @@ void LinearSolver::update(const Sheet::Vector &u, const Assembler &assemble, con
 void LinearSolver::set_up()
 {
   if (!multigrid_)
-    multigrid_ = std::make_unique<Multigrid>(sheet_, held_, settings_.coarsest_size);
+    multigrid_ = std::make_unique<Multigrid>(sheet_, settings_.coarsest_size);
   is_stale_ = true; // also if the update throws
   multigrid_->set_finest(*single_matrix_);
   multigrid_->update(state_, assemble_coarser_);
+  multigrid_state_ = state_;
   is_stale_ = false;
   is_fresh_ = true;
   baseline_iterations_ = 0.;
   ++n_set_ups_;
 }
 
-void LinearSolver::restore(const Sheet::Vector &u, const Assembler &assemble, const Assembler &assemble_coarser)
+void LinearSolver::restore(const Assembler &assemble, const Assembler &assemble_coarser)
 {
   const double baseline_iterations = baseline_iterations_;
   const unsigned int n_set_ups = n_set_ups_;
   invalidate();
-  update(u, assemble, assemble_coarser);
+  update(multigrid_state_, assemble, assemble_coarser);
   baseline_iterations_ = baseline_iterations;
   n_set_ups_ = n_set_ups;
 }

@@ -40,10 +40,9 @@ enum class Symmetry
 class LinearSolver
 {
 public:
-  /// Creates a solver for the tangents of `sheet`, with the components `held` at boundaries; `constraints` are its
-  /// homogeneous_constraints() with these. Both must outlive it. Throws InvalidInput for settings out of range.
-  LinearSolver(const Sheet &sheet, const dealii::AffineConstraints<double> &constraints, DirichletBoundaries held,
-               const LinearSettings &settings, Symmetry symmetry = Symmetry::symmetric);
+  /// Creates a solver for the tangents of `sheet`, condensed by its homogeneous_constraints(), which must outlive it.
+  /// Throws InvalidInput for settings out of range.
+  LinearSolver(const Sheet &sheet, const LinearSettings &settings, Symmetry symmetry = Symmetry::symmetric);
 
   /// Assembles K at the state `u` [m] (with ghost entries) by `assemble`, and sets up multigrid unless the existing one
   /// can be reused. `assemble_coarser` assembles the symmetric tangents of coarser meshes; solve() may call it as well.
@@ -77,9 +76,12 @@ public:
   /// Returns true if the next update() will reuse multigrid.
   bool keeps_multigrid() const { return !is_direct_ && !is_stale_; }
 
-  /// Rebuilds the multigrid that an archived solver used, from the state `u` [m] at which it was set up, with the
-  /// archived iteration counts. Collective. Throws as update() does.
-  void restore(const Sheet::Vector &u, const Assembler &assemble, const Assembler &assemble_coarser);
+  /// Nodal vector [m], with ghost entries, at which multigrid was set up last, to be archived as well.
+  Sheet::Vector &multigrid_state() { return multigrid_state_; }
+
+  /// Rebuilds the multigrid that an archived solver used, with the archived iteration counts. Collective. Throws as
+  /// update() does.
+  void restore(const Assembler &assemble, const Assembler &assemble_coarser);
 
   /// Returns how many times multigrid has been set up.
   unsigned int n_set_ups() const { return n_set_ups_; }
@@ -90,8 +92,6 @@ private:
   unsigned int iterate(Sheet::Vector &x, const Sheet::Vector &b, double relative_tolerance);
 
   const Sheet &sheet_;
-  const dealii::AffineConstraints<double> &constraints_;
-  DirichletBoundaries held_;
   LinearSettings settings_;
   bool is_direct_;
   Symmetry symmetry_;
@@ -101,7 +101,8 @@ private:
   std::unique_ptr<DirectSolver> direct_;
   std::unique_ptr<Multigrid> multigrid_; // created on first use
   unsigned int n_set_ups_ = 0;
-  Sheet::Vector state_;
+  Sheet::Vector state_;           // of the last update
+  Sheet::Vector multigrid_state_; // of the last set-up
   Assembler assemble_coarser_;
   bool is_fresh_ = false;           // set up, or factorised, since the last update
   bool is_stale_ = true;            // to be rebuilt in the next update

@@ -2,26 +2,25 @@
 
 #include "continuum/errors.h"
 #include "support/fits.h"
+#include "support/text_wrap.h"
 
 #include <cmath>
-#include <sstream>
 
 using dealii::Tensor;
 
 namespace latcon::continuum
 {
+std::string text_of(const Tensor<2, 2> &F)
+{
+  return support::formatted("F = [%.17g %.17g; %.17g %.17g]", F[0][0], F[0][1], F[1][0], F[1][1]);
+}
+
 double checked_determinant(const Tensor<2, 2> &F)
 {
   const double J = F[0][0] * F[1][1] - F[0][1] * F[1][0];
   // In this form a NaN fails as well.
   if (!(J > 0. && std::isfinite(J)))
-  {
-    std::ostringstream message;
-    message.precision(17);
-    message << "det F = " << J << " is not positive and finite: F = [" << F[0][0] << " " << F[0][1] << "; " << F[1][0]
-            << " " << F[1][1] << "]";
-    throw NonPhysicalState(message.str());
-  }
+    throw NonPhysicalState(support::formatted("det F = %.17g is not positive and finite: ", J) + text_of(F));
   return J;
 }
 

@@ -3,6 +3,8 @@
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
 
+#include <string>
+
 namespace latcon::continuum
 {
 /// Highest derivative to compute.
@@ -47,6 +49,9 @@ public:
   }
   dealii::Tensor<4, 2> tangent(const dealii::Tensor<2, 2> &F) const { return evaluate(F, Order::second).tangent; }
 };
+
+/// Returns F in words for messages, "F = [1 0; 0 1]", with all digits.
+std::string text_of(const dealii::Tensor<2, 2> &F);
 
 /// Returns det F [-] of the in-plane deformation gradient. Throws NonPhysicalState unless it is finite and > 0. To be
 /// called before any logarithm or power of the state.

@@ -4,7 +4,6 @@
 #include "continuum/plane_invariants.h"
 
 #include <cmath>
-#include <sstream>
 
 using dealii::Tensor;
 
@@ -22,15 +21,6 @@ struct Invariants
   double B;
 };
 
-[[noreturn]] void throw_no_thickness(const Tensor<2, 2> &F)
-{
-  std::ostringstream message;
-  message.precision(17);
-  message << "no stable equilibrium thickness exists: F = [" << F[0][0] << " " << F[0][1] << "; " << F[1][0] << " "
-          << F[1][1] << "]";
-  throw NonPhysicalState(message.str());
-}
-
 // Closed-form root of the quadratic thickness equation. For A > 0 and B > 0 it is the only positive root and no digits
 // cancel. For B < 0 it is the larger of two, the local minimum of the energy.
 Invariants invariants(const MooneyRivlin::Constants &m, const Tensor<2, 2> &F)
@@ -42,7 +32,7 @@ Invariants invariants(const MooneyRivlin::Constants &m, const Tensor<2, 2> &F)
   s.B = 2. * m.c1 + 4. * m.c2;
   const double discriminant = m.kappa * s.j * m.kappa * s.j + 4. * s.A * s.B;
   if (!(s.A > 0. && discriminant > 0. && std::isfinite(discriminant)))
-    throw_no_thickness(F);
+    throw NonPhysicalState("no stable equilibrium thickness exists: " + text_of(F));
   s.t = (m.kappa * s.j + std::sqrt(discriminant)) / (2. * s.A);
   return s;
 }
@@ -51,24 +41,22 @@ Invariants invariants(const MooneyRivlin::Constants &m, const Tensor<2, 2> &F)
 MooneyRivlin::Constants MooneyRivlin::Constants::with_equal_lame_constants(const double shear_modulus,
                                                                            const double ratio)
 {
-  if (!(shear_modulus > 0. && ratio > -1. && ratio < 1.))
-    throw InvalidMaterial("equal Lame constants need a shear modulus > 0 and a ratio c2/(c1+c2) in (-1, 1)");
+  require<InvalidMaterial>(shear_modulus > 0. && ratio > -1. && ratio < 1.,
+                           "equal Lame constants need a shear modulus > 0 and a ratio c2/(c1+c2) in (-1, 1)");
   return {0.5 * (1. - ratio) * shear_modulus, 0.5 * ratio * shear_modulus, 2. * (1. - ratio) * shear_modulus};
 }
 
 MooneyRivlin::MooneyRivlin(const Constants &constants) : constants_(constants)
 {
   const auto &[c1, c2, kappa] = constants;
-  if (!(std::isfinite(c1) && std::isfinite(c2) && std::isfinite(kappa)))
-    throw InvalidMaterial("Mooney-Rivlin constants must be finite");
-  if (!(c1 + c2 > 0.))
-    throw InvalidMaterial("Mooney-Rivlin needs a positive shear modulus 2 (c1 + c2)");
-  if (!(kappa > 0.))
-    throw InvalidMaterial("Mooney-Rivlin needs kappa > 0");
+  require<InvalidMaterial>(std::isfinite(c1) && std::isfinite(c2) && std::isfinite(kappa),
+                           "Mooney-Rivlin constants must be finite");
+  require<InvalidMaterial>(c1 + c2 > 0., "Mooney-Rivlin needs a positive shear modulus 2 (c1 + c2)");
+  require<InvalidMaterial>(kappa > 0., "Mooney-Rivlin needs kappa > 0");
   // d2W/dF33^2 at F = I: the thickness of the unloaded sheet is stable if it is positive.
-  if (!(2. * (2. * c1 + 4. * c2) + kappa > 0.))
-    throw InvalidMaterial(
-      "Mooney-Rivlin needs 4 c1 + 8 c2 + kappa > 0 for the thickness of the unloaded sheet to be stable");
+  require<InvalidMaterial>(
+    2. * (2. * c1 + 4. * c2) + kappa > 0.,
+    "Mooney-Rivlin needs 4 c1 + 8 c2 + kappa > 0 for the thickness of the unloaded sheet to be stable");
 }
 
 Response MooneyRivlin::evaluate(const Tensor<2, 2> &F, const Order order) const
@@ -87,23 +75,12 @@ Response MooneyRivlin::evaluate(const Tensor<2, 2> &F, const Order order) const
   const double ft = 2. * c2 * s.t;
   const double jt = kappa * (2. * s.j * s.t - 1.);
   const double jj = s.B / (s.j * s.j) + 2. * c2 + kappa * s.t * s.t;
-  return response({energy, by_F_squared, by_j, -ft * ft / tt, -ft * jt / tt, jj - jt * jt / tt}, F, order);
+  return response(InvariantFunction({energy, by_F_squared, by_j, -ft * ft / tt, -ft * jt / tt, jj - jt * jt / tt}), F,
+                  order);
 }
 
 double MooneyRivlin::thickness_stretch(const Tensor<2, 2> &F) const
 {
   return invariants(constants_, F).t;
-}
-
-double MooneyRivlin::shear_modulus() const
-{
-  return 2. * (constants_.c1 + constants_.c2);
-}
-
-double MooneyRivlin::lame_lambda() const
-{
-  const double mu = shear_modulus();
-  const double lambda_3d = constants_.kappa + 4. * constants_.c2;
-  return 2. * mu * lambda_3d / (lambda_3d + 2. * mu);
 }
 } // namespace latcon::continuum

@@ -39,12 +39,6 @@ public:
 
   const Constants &constants() const { return constants_; }
 
-  /// Shear modulus mu [Pa] at F = I.
-  double shear_modulus() const;
-
-  /// First Lame constant lambda [Pa] of the plane-stress sheet at F = I (theory-continuum.md, eq. (C.9)).
-  double lame_lambda() const;
-
 private:
   Constants constants_;
 };

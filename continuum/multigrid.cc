@@ -9,8 +9,6 @@
 #include <deal.II/multigrid/mg_transfer_global_coarsening.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 using namespace dealii;
 
@@ -23,7 +21,6 @@ struct Multigrid::Level
   std::shared_ptr<const Triangulation<2>> mesh; // null on the finest level, as is own_sheet
   std::unique_ptr<Sheet> own_sheet;
   const Sheet *sheet = nullptr;
-  AffineConstraints<double> constraints;
   std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout;
   Sheet::Matrix coarsest_tangent;
   SinglePrecisionMatrix own_tangent;              // of levels between the finest and the coarsest
@@ -31,7 +28,6 @@ struct Multigrid::Level
   MGTwoLevelTransfer<2, Vector> to_coarser;
   std::shared_ptr<VertexPatches> patches;
   Smoother smoother;
-  double state_factor = 1.;
   mutable Vector residual;
   mutable Vector coarse_residual; // and the next: vectors of the next coarser level
   mutable Vector coarse_correction;
@@ -44,7 +40,7 @@ constexpr double largest_eigenvalue = 6.;
 constexpr double smoothed_range = 6.; // largest over smallest eigenvalue that is smoothed
 } // namespace
 
-Multigrid::Multigrid(const Sheet &fine, const DirichletBoundaries &held, const types::global_dof_index coarsest_size)
+Multigrid::Multigrid(const Sheet &fine, const types::global_dof_index coarsest_size)
 {
   // From the finest level down to the first level that is small enough.
   const auto meshes = MGTransferGlobalCoarseningTools::create_geometric_coarsening_sequence(
@@ -61,18 +57,18 @@ Multigrid::Multigrid(const Sheet &fine, const DirichletBoundaries &held, const t
       level->sheet = level->own_sheet.get();
     }
     const Sheet &sheet = *level->sheet;
-    level->constraints = homogeneous_constraints(sheet, held);
     const bool is_coarsest = n == 0 || sheet.dof_handler().n_dofs() <= coarsest_size;
     if (is_coarsest)
-      sheet.make_matrix(level->constraints, level->coarsest_tangent);
-    else if (level->own_sheet)
-      level->own_tangent.reinit(sheet, level->constraints);
-    if (is_coarsest)
+    {
+      sheet.make_matrix(sheet.homogeneous_constraints(), level->coarsest_tangent);
       level->layout = std::make_shared<const dealii::Utilities::MPI::Partitioner>(sheet.owned(), sheet.relevant(),
                                                                                   sheet.communicator());
+    }
     else
     {
-      level->patches = std::make_shared<VertexPatches>(sheet, level->constraints);
+      if (level->own_sheet)
+        level->own_tangent.reinit(sheet, sheet.homogeneous_constraints());
+      level->patches = std::make_shared<VertexPatches>(sheet, sheet.homogeneous_constraints());
       level->layout = level->patches->layout();
     }
     levels_.push_back(std::move(level));
@@ -89,7 +85,8 @@ Multigrid::Multigrid(const Sheet &fine, const DirichletBoundaries &held, const t
     Level &level = *levels_[l];
     const Level &coarser = *levels_[l - 1];
     level.to_coarser.reinit_geometric_transfer(level.sheet->dof_handler(), coarser.sheet->dof_handler(),
-                                               level.constraints, coarser.constraints);
+                                               level.sheet->homogeneous_constraints(),
+                                               coarser.sheet->homogeneous_constraints());
     level.to_coarser.enable_inplace_operations_if_possible(coarser.layout, level.layout);
     level.residual.reinit(level.layout);
     level.coarse_residual.reinit(coarser.layout);
@@ -102,11 +99,7 @@ Multigrid::~Multigrid() = default;
 void Multigrid::update(const Sheet::Vector &u, const Assembler &assemble)
 {
   Vector state(levels_.back()->layout);
-  {
-    Sheet::Vector owned = levels_.back()->sheet->make_owned();
-    owned = u;
-    copy(owned, state);
-  }
+  copy(levels_.back()->sheet->without_ghosts(u), state);
   for (std::size_t l = levels_.size(); l-- > 0;)
   {
     Level &level = *levels_[l];
@@ -127,23 +120,23 @@ void Multigrid::update(const Sheet::Vector &u, const Assembler &assemble)
 
     Sheet::Vector ghosted = level.sheet->make_ghosted();
     constexpr double smallest_factor = 0.1;
-    for (level.state_factor = 1.;; level.state_factor *= 0.5)
+    for (double factor = 1.;; factor *= 0.5)
     {
-      if (level.state_factor < smallest_factor)
-        level.state_factor = 0.;
+      if (factor < smallest_factor)
+        factor = 0.;
       ghosted = owned;
-      ghosted *= level.state_factor;
+      ghosted *= factor;
       try
       {
         if (l == 0)
-          assemble(*level.sheet, ghosted, level.constraints, level.coarsest_tangent);
+          assemble(*level.sheet, ghosted, level.coarsest_tangent);
         else
-          assemble(*level.sheet, ghosted, level.constraints, level.own_tangent);
+          assemble(*level.sheet, ghosted, level.own_tangent);
         break;
       }
       catch (const NonPhysicalState &)
       {
-        if (level.state_factor == 0.)
+        if (factor == 0.)
           throw;
       }
     }
@@ -200,19 +193,5 @@ void Multigrid::vmult(Vector &z, const Vector &r) const
 void Multigrid::initialize(Vector &v) const
 {
   v.reinit(levels_.back()->layout);
-}
-
-const AffineConstraints<double> &Multigrid::constraints() const
-{
-  return levels_.back()->constraints;
-}
-
-std::vector<Multigrid::LevelFacts> Multigrid::levels() const
-{
-  std::vector<LevelFacts> facts;
-  for (const auto &level : levels_)
-    facts.push_back(
-      {level->sheet->dof_handler().n_dofs(), level->state_factor, level->patches ? level->patches->n_replaced() : 0});
-  return facts;
 }
 } // namespace latcon::continuum

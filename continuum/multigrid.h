@@ -1,6 +1,5 @@
 #pragma once
 
-#include "continuum/homogeneous_constraints.h"
 #include "continuum/sheet.h"
 #include "continuum/single_precision_matrix.h"
 
@@ -15,35 +14,23 @@ namespace latcon::continuum
 {
 class DirectSolver;
 
-/// Assembles a tangent [N/m^2] of a sheet at the nodal vector `u` [m] (with ghost entries), condensed by `constraints`,
-/// into K, which may be in either precision. Throws NonPhysicalState on every rank if the state is non-physical.
-class Assembler
+/// Assembles a tangent [N/m^2] of a sheet at the nodal vector `u` [m] (with ghost entries), condensed by its
+/// homogeneous_constraints(), into K. Throws NonPhysicalState on every rank if the state is non-physical.
+template <class AnyMatrix>
+using AssemblerOf = std::function<void(const Sheet &sheet, const Sheet::Vector &u, AnyMatrix &K)>;
+
+/// Does so for K in either precision.
+struct Assembler : AssemblerOf<Sheet::Matrix>, AssemblerOf<SinglePrecisionMatrix>
 {
-public:
   Assembler() = default;
   /// From a function with a generic parameter for K.
   template <class Function>
-  Assembler(const Function &function) : double_(function), single_(function)
+  Assembler(const Function &function)
+    : AssemblerOf<Sheet::Matrix>(function), AssemblerOf<SinglePrecisionMatrix>(function)
   {
   }
-  void operator()(const Sheet &sheet, const Sheet::Vector &u, const dealii::AffineConstraints<double> &constraints,
-                  Sheet::Matrix &K) const
-  {
-    double_(sheet, u, constraints, K);
-  }
-  void operator()(const Sheet &sheet, const Sheet::Vector &u, const dealii::AffineConstraints<double> &constraints,
-                  SinglePrecisionMatrix &K) const
-  {
-    single_(sheet, u, constraints, K);
-  }
-
-private:
-  template <class AnyMatrix>
-  using Function =
-    std::function<void(const Sheet &, const Sheet::Vector &, const dealii::AffineConstraints<double> &, AnyMatrix &)>;
-
-  Function<Sheet::Matrix> double_;
-  Function<SinglePrecisionMatrix> single_;
+  using AssemblerOf<Sheet::Matrix>::operator();
+  using AssemblerOf<SinglePrecisionMatrix>::operator();
 };
 
 /// Preconditioner for the tangent of a sheet: one V-cycle of geometric multigrid with global coarsening. Each level has
@@ -61,9 +48,9 @@ class Multigrid
 public:
   using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
   /// Builds the parts that depend only on the mesh: levels, transfers, sparsity, patches. `fine` must outlive the
-  /// multigrid, and its mesh must not change. `held` are the components with prescribed displacement. A level of at
-  /// most `coarsest_size` unknowns is solved directly, as is a mesh that cannot be coarsened further.
-  Multigrid(const Sheet &fine, const DirichletBoundaries &held, dealii::types::global_dof_index coarsest_size);
+  /// multigrid, and its mesh must not change. A level of at most `coarsest_size` unknowns is solved directly, as is a
+  /// mesh that cannot be coarsened further.
+  Multigrid(const Sheet &fine, dealii::types::global_dof_index coarsest_size);
   ~Multigrid();
   Multigrid(const Multigrid &) = delete;
   Multigrid &operator=(const Multigrid &) = delete;
@@ -74,8 +61,8 @@ public:
   /// LinearSolverFailed if the coarsest tangent is singular.
   void update(const Sheet::Vector &u, const Assembler &assemble);
 
-  /// Sets the tangent of the finest level, condensed by constraints(), which must outlive its use. Has no effect where
-  /// the finest level is the coarsest.
+  /// Sets the tangent of the finest level, which must outlive its use. Has no effect where the finest level is the
+  /// coarsest.
   void set_finest(const SinglePrecisionMatrix &K);
 
   /// Applies the preconditioner: computes z [m] from r [N/m], both with the layout set by initialize().
@@ -89,19 +76,6 @@ public:
   {
     std::copy(from.begin(), from.end(), to.begin());
   }
-
-  /// Returns the constraints of the finest mesh: hanging nodes, and prescribed degrees of freedom at zero.
-  const dealii::AffineConstraints<double> &constraints() const;
-
-  /// Statistics of a level, for reports and tests.
-  struct LevelFacts
-  {
-    dealii::types::global_dof_index n_unknowns;
-    double state_factor;             ///< fraction of the interpolated state at which the tangent was assembled [-]
-    unsigned int n_replaced_patches; ///< patches whose block was not positive definite
-  };
-  /// Returns the statistics of the last update() and set_finest(), from the coarsest to the finest level.
-  std::vector<LevelFacts> levels() const;
 
 private:
   struct Level;

@@ -34,13 +34,13 @@ struct NewtonStep
   double slope; ///< directional derivative of the energy along the step [J/m]; used only if energy_noise is given
 };
 
-/// Returns the square root of the sum of `square(i)` over the unknowns i that `constraints` leave free. Collective.
+/// Returns the square root of the sum of `square(i)` over the free unknowns i. Collective.
 template <class Square>
-double norm_over_free(const Sheet &sheet, const dealii::AffineConstraints<double> &constraints, const Square &square)
+double norm_over_free(const Sheet &sheet, const Square &square)
 {
   double sum = 0.;
   for (const dealii::types::global_dof_index i : sheet.owned())
-    if (!constraints.is_constrained(i))
+    if (!sheet.homogeneous_constraints().is_constrained(i))
       sum += square(i);
   return std::sqrt(dealii::Utilities::MPI::sum(sum, sheet.communicator()));
 }
@@ -83,17 +83,41 @@ public:
     std::function<std::string(const State &state)> describe;
   };
 
-  NewtonSolver(const NewtonSettings &settings, Equations equations)
-    : settings_(settings), equations_(std::move(equations))
-  {
-  }
+  NewtonSettings settings;
+  Equations equations;
 
   /// Iterates from u, with residual `state`, and overwrites both with those of the solution. Appends every evaluation
   /// to `history` with the `number` and `load_factor` of the step; the first gets the `linear_iterations` of the
   /// predictor.
   /// @return reason of failure, empty if converged; after a failure u is the last accepted iterate
-  std::string solve(Vector &u, State &state, unsigned int number, double load_factor, unsigned int linear_iterations,
-                    std::vector<NewtonIteration> &history) const;
+  std::string solve(Vector &u, State &state, const unsigned int number, const double load_factor,
+                    unsigned int linear_iterations, std::vector<NewtonIteration> &history) const
+  {
+    Vector step(u);
+    double length = 1.;
+    double last_free = state.free;
+    for (unsigned int iteration = 0;; ++iteration)
+    {
+      const double tolerance = std::max(settings.relative_tolerance * state.reference, equations.round_off(state, u));
+      history.push_back(
+        {number, iteration, load_factor, state.free, tolerance, state.energy, length, linear_iterations});
+      if (state.free <= tolerance)
+        return "";
+      if (iteration == settings.max_iterations)
+        return "no convergence in " + std::to_string(iteration) + " Newton iterations" +
+               (equations.describe ? equations.describe(state) : "");
+
+      const double reduction = state.free / last_free;
+      last_free = state.free;
+      const double forcing = next_forcing(reduction, tolerance / state.free);
+      const NewtonStep solved = equations.solve(state, u, forcing, reduction <= fast_reduction, step);
+      linear_iterations = solved.linear_iterations;
+      if (equations.energy_noise && !(solved.slope < 0.))
+        return "the tangent is not positive definite along the Newton step";
+      if (const std::string failure = search(step, solved.slope, tolerance, u, state, length); !failure.empty())
+        return failure;
+    }
+  }
 
 private:
   /// Ratio of residuals below which the tangent has hardly changed, and the energy decreases by less than its
@@ -102,93 +126,56 @@ private:
 
   /// Halves the step until its end is accepted: always if its residual is below `tolerance` [N/m], or has fallen fast.
   /// Returns the reason of failure, empty on success.
-  std::string search(const Vector &step, double slope, double tolerance, Vector &u, State &state, double &length) const;
-  double next_forcing(double reduction, double tolerance) const;
-
-  NewtonSettings settings_;
-  Equations equations_;
-};
-
-template <class State>
-std::string NewtonSolver<State>::solve(Vector &u, State &state, const unsigned int number, const double load_factor,
-                                       unsigned int linear_iterations, std::vector<NewtonIteration> &history) const
-{
-  Vector step(u);
-  double length = 1.;
-  double last_free = state.free;
-  for (unsigned int iteration = 0;; ++iteration)
+  std::string search(const Vector &step, const double slope, const double tolerance, Vector &u, State &state,
+                     double &length) const
   {
-    const double tolerance = std::max(settings_.relative_tolerance * state.reference, equations_.round_off(state, u));
-    history.push_back({number, iteration, load_factor, state.free, tolerance, state.energy, length, linear_iterations});
-    if (state.free <= tolerance)
-      return "";
-    if (iteration == settings_.max_iterations)
-      return "no convergence in " + std::to_string(iteration) + " Newton iterations" +
-             (equations_.describe ? equations_.describe(state) : "");
-
-    const double reduction = state.free / last_free;
-    last_free = state.free;
-    const double forcing = next_forcing(reduction, tolerance / state.free);
-    const NewtonStep solved = equations_.solve(state, u, forcing, reduction <= fast_reduction, step);
-    linear_iterations = solved.linear_iterations;
-    if (equations_.energy_noise && !(solved.slope < 0.))
-      return "the tangent is not positive definite along the Newton step";
-    if (const std::string failure = search(step, solved.slope, tolerance, u, state, length); !failure.empty())
-      return failure;
-  }
-}
-
-template <class State>
-std::string NewtonSolver<State>::search(const Vector &step, const double slope, const double tolerance, Vector &u,
-                                        State &state, double &length) const
-{
-  constexpr double sufficient = 1e-4; // Armijo constant
-  const double start = state.energy;
-  const double noise = equations_.energy_noise ? equations_.energy_noise(state) : 0.;
-  const auto is_accepted = [&](const State &candidate)
-  {
-    if (candidate.free <= std::max(fast_reduction * state.free, tolerance))
-      return true;
-    if (equations_.energy_noise)
-      return candidate.energy <= start + sufficient * length * slope + noise;
-    // Along an exact Newton step the residual falls as 1 - length.
-    return candidate.free <= (1. - sufficient * length) * state.free;
-  };
-  length = 1.;
-  std::string reason;
-  for (unsigned int halvings = 0; halvings <= settings_.max_halvings; ++halvings, length *= 0.5)
-    try
+    constexpr double sufficient = 1e-4; // Armijo constant
+    const double start = state.energy;
+    const double noise = equations.energy_noise ? equations.energy_noise(state) : 0.;
+    const auto is_accepted = [&](const State &candidate)
     {
-      Vector trial = u;
-      trial.add(length, step);
-      State candidate = equations_.evaluate(trial);
-      if (is_accepted(candidate))
+      if (candidate.free <= std::max(fast_reduction * state.free, tolerance))
+        return true;
+      if (equations.energy_noise)
+        return candidate.energy <= start + sufficient * length * slope + noise;
+      // Along an exact Newton step the residual falls as 1 - length.
+      return candidate.free <= (1. - sufficient * length) * state.free;
+    };
+    length = 1.;
+    std::string reason;
+    for (unsigned int halvings = 0; halvings <= settings.max_halvings; ++halvings, length *= 0.5)
+      try
       {
-        state = std::move(candidate);
-        u = trial;
-        return "";
+        Vector trial = u;
+        trial.add(length, step);
+        State candidate = equations.evaluate(trial);
+        if (is_accepted(candidate))
+        {
+          state = std::move(candidate);
+          u = trial;
+          return "";
+        }
       }
-    }
-    catch (const NonPhysicalState &failure)
-    {
-      reason = failure.what();
-    }
-  return std::string("the line search found no decrease of ") + (equations_.energy_noise ? "energy" : "the residual") +
-         (reason.empty() ? "" : "; last refused state: " + reason);
-}
+      catch (const NonPhysicalState &failure)
+      {
+        reason = failure.what();
+      }
+    return std::string("the line search found no decrease of ") + (equations.energy_noise ? "energy" : "the residual") +
+           (reason.empty() ? "" : "; last refused state: " + reason);
+  }
 
-/// Returns the forcing term of the next Newton step after Eisenstat and Walker (1996), choice 2: proportional to the
-/// square of the last reduction of the residual. `tolerance` is the tolerance of the residual
-/// relative to its value. A step that would almost reach the tolerance is solved accurately enough to reach it; no step
-/// is solved much more accurately.
-template <class State>
-double NewtonSolver<State>::next_forcing(const double reduction, const double tolerance) const
-{
-  constexpr double share = 0.9;
-  double forcing = share * reduction * reduction;
-  const double last_step = 0.1 * tolerance;
-  if (forcing < 1e3 * last_step)
-    forcing = last_step;
-  return std::min(settings_.largest_forcing, forcing);
-}
+  /// Returns the forcing term of the next Newton step after Eisenstat and Walker (1996), choice 2: proportional to the
+  /// square of the last reduction of the residual. `tolerance` is the tolerance of the residual
+  /// relative to its value. A step that would almost reach the tolerance is solved accurately enough to reach it; no
+  /// step is solved much more accurately.
+  double next_forcing(const double reduction, const double tolerance) const
+  {
+    constexpr double share = 0.9;
+    double forcing = share * reduction * reduction;
+    const double last_step = 0.1 * tolerance;
+    if (forcing < 1e3 * last_step)
+      forcing = last_step;
+    return std::min(settings.largest_forcing, forcing);
+  }
+};
 } // namespace latcon::continuum

@@ -1,5 +1,6 @@
 #include "continuum/plane_invariants.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -9,15 +10,10 @@ namespace latcon::continuum
 {
 namespace
 {
-// Legendre function P_{-1/2}(x) and the two quotients of (C.51), from which all means follow without cancellation.
-struct LegendreQuotients
-{
-  double p, D, d;
-};
-
-// Computes the arithmetic-geometric mean of sqrt((x + 1)/2) and 1. The squares c_n^2 of its halved differences are
-// divided by (x - 1)^2, which avoids cancellation where the principal stretches are equal.
-LegendreQuotients legendre_quotients(const double x)
+// Returns the Legendre function P_{-1/2}(x) and the two quotients of (C.51), from which all means follow without
+// cancellation. Computes the arithmetic-geometric mean of sqrt((x + 1)/2) and 1. The squares c_n^2 of its halved
+// differences are divided by (x - 1)^2, which avoids cancellation where the principal stretches are equal.
+std::array<double, 3> legendre_quotients(const double x)
 {
   const double y = x - 1.;
   double a = 0.5 * (std::sqrt(0.5 * (x + 1.)) + 1.);
@@ -39,24 +35,15 @@ LegendreQuotients legendre_quotients(const double x)
 }
 } // namespace
 
-void add(InvariantFunction &sum, const double factor, const InvariantFunction &term)
-{
-  sum.value += factor * term.value;
-  sum.by_I += factor * term.by_I;
-  sum.by_J += factor * term.by_J;
-  sum.by_II += factor * term.by_II;
-  sum.by_IJ += factor * term.by_IJ;
-  sum.by_JJ += factor * term.by_JJ;
-}
-
 Response response(const InvariantFunction &W, const Tensor<2, 2> &F, const Order order)
 {
+  const auto [value, by_I, by_J, by_II, by_IJ, by_JJ] = std::array{W[0], W[1], W[2], W[3], W[4], W[5]};
   Response result;
-  result.energy = W.value;
+  result.energy = value;
   if (order == Order::value)
     return result;
   const Tensor<2, 2> cof({{F[1][1], -F[1][0]}, {-F[0][1], F[0][0]}}); // d det F / dF
-  result.first_piola = 2. * W.by_I * F + W.by_J * cof;
+  result.first_piola = 2. * by_I * F + by_J * cof;
   if (order == Order::first)
     return result;
   for (unsigned int i = 0; i < 2; ++i)
@@ -67,8 +54,8 @@ Response response(const InvariantFunction &W, const Tensor<2, 2> &F, const Order
           // The cofactor is linear in F: d cof_iJ / dF_kL = eps_ik eps_JL.
           const double permutation = i == k || J == L ? 0. : (i == J ? 1. : -1.);
           result.tangent[i][J][k][L] =
-            (i == k && J == L ? 2. * W.by_I : 0.) + W.by_J * permutation + 4. * W.by_II * F[i][J] * F[k][L] +
-            2. * W.by_IJ * (F[i][J] * cof[k][L] + cof[i][J] * F[k][L]) + W.by_JJ * cof[i][J] * cof[k][L];
+            (i == k && J == L ? 2. * by_I : 0.) + by_J * permutation + 4. * by_II * F[i][J] * F[k][L] +
+            2. * by_IJ * (F[i][J] * cof[k][L] + cof[i][J] * F[k][L]) + by_JJ * cof[i][J] * cof[k][L];
         }
   return result;
 }
@@ -90,19 +77,9 @@ StretchMeans stretch_means(const double I, const double J)
   const double root = std::sqrt(J);
   const double root3 = J * root;
   const double root5 = J * root3;
-  StretchMeans means;
-  means.stretch.value = root * q;
-  means.stretch.by_I = 0.5 * q1 / root;
-  means.stretch.by_J = -p1 / root;
-  means.stretch.by_II = 0.25 * q2 / root3;
-  means.stretch.by_IJ = -0.5 * p2 / root3;
-  means.stretch.by_JJ = twice * ((x - 1.) * (2. - 3. * D + 6. * d) + 4. * d) / root3;
-  means.inverse.value = p / root;
-  means.inverse.by_I = 0.5 * p1 / root3;
-  means.inverse.by_J = -q1 / root3;
-  means.inverse.by_II = 0.25 * p2 / root5;
-  means.inverse.by_IJ = -0.5 * q2 / root5;
-  means.inverse.by_JJ = twice * (3. + 2. * x * (3. * D + x * (D + 2. * d))) / root5;
-  return means;
+  return {InvariantFunction({root * q, 0.5 * q1 / root, -p1 / root, 0.25 * q2 / root3, -0.5 * p2 / root3,
+                             twice * ((x - 1.) * (2. - 3. * D + 6. * d) + 4. * d) / root3}),
+          InvariantFunction({p / root, 0.5 * p1 / root3, -q1 / root3, 0.25 * p2 / root5, -0.5 * q2 / root5,
+                             twice * (3. + 2. * x * (3. * D + x * (D + 2. * d))) / root5})};
 }
 } // namespace latcon::continuum

@@ -5,16 +5,8 @@
 namespace latcon::continuum
 {
 /// Value of a function of the invariants I = |F|^2 and J = det F of an in-plane deformation, with its partial
-/// derivatives.
-struct InvariantFunction
-{
-  double value;
-  double by_I, by_J;
-  double by_II, by_IJ, by_JJ;
-};
-
-/// Adds factor * term to `sum`.
-void add(InvariantFunction &sum, double factor, const InvariantFunction &term);
+/// derivatives by I, J, twice by I, by both, and twice by J.
+using InvariantFunction = dealii::Tensor<1, 6>;
 
 /// Returns an energy W(I, J) [Pa] at F with its derivatives by F up to `order` (theory-continuum.md, eqs. (C.55),
 /// (C.56)).

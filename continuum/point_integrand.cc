@@ -20,20 +20,21 @@ Tensor<3, 2> second_gradient(const FieldDerivatives &u)
   return G;
 }
 
-void add_stress(PointIntegrand &d, const Tensor<2, 2> &P)
+void add(const Response &W, const Order order, PointIntegrand &d)
 {
+  d.value += W.energy;
+  if (order == Order::value)
+    return;
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int J = 0; J < 2; ++J)
-      d.first[i][J] += P[i][J];
-}
-
-void add_tangent(PointIntegrand &d, const Tensor<4, 2> &T)
-{
+      d.first[i][J] += W.first_piola[i][J];
+  if (order == Order::first)
+    return;
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int J = 0; J < 2; ++J)
       for (unsigned int k = 0; k < 2; ++k)
         for (unsigned int L = 0; L < 2; ++L)
-          d.second[i][k][J][L] += T[i][J][k][L];
+          d.second[i][k][J][L] += W.tangent[i][J][k][L];
 }
 
 // Component c of the second derivatives represents the entries (J, K) and (K, J).
@@ -72,28 +73,20 @@ FieldDerivatives field_derivatives(const Tensor<2, 2> &F, const Tensor<3, 2> &G)
 
 void add_energy(const Material &law, const FieldDerivatives &u, const Order order, PointIntegrand &d)
 {
-  const Response W = law.evaluate(deformation_gradient(u), order);
-  d.value += W.energy;
-  if (order == Order::value)
-    return;
-  add_stress(d, W.first_piola);
-  if (order == Order::second)
-    add_tangent(d, W.tangent);
+  add(law.evaluate(deformation_gradient(u), order), order, d);
 }
 
 void add_energy(const GradientLaw &law, const FieldDerivatives &u, const Order order, PointIntegrand &d)
 {
   const GradientResponse W = law.evaluate(deformation_gradient(u), second_gradient(u), order);
-  d.value += W.energy;
+  add(W, order, d);
   if (order == Order::value)
     return;
-  add_stress(d, W.first_piola);
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int c = n_first; c < n_derivatives; ++c)
       d.first[i][c] += multiplicity[c] * W.double_stress[i][first_index[c]][second_index[c]];
   if (order == Order::first)
     return;
-  add_tangent(d, W.tangent);
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int c = n_first; c < n_derivatives; ++c)
       for (unsigned int l = 0; l < 2; ++l)

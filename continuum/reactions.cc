@@ -16,14 +16,23 @@ namespace
 {
 struct HeldBoundary
 {
-  types::boundary_id id;
   IndexSet dofs;           // held unknowns on the boundary
   Sheet::Vector tractions; // integral of its traction against each shape function [N/m]
-  Tensor<1, 2> force;      // contribution of this rank, then the sum [N/m]
+  Tensor<1, 2> force;      // contribution of this rank [N/m]
 };
+} // namespace
 
-void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector<HeldBoundary> &boundaries)
+std::map<types::boundary_id, Tensor<1, 2>> boundary_reactions(const Sheet &sheet, const Sheet::Vector &u,
+                                                              const Sheet::Vector &residual)
 {
+  std::map<types::boundary_id, HeldBoundary> boundaries;
+  for (const BoundaryField &condition : sheet.conditions().displacements)
+  {
+    const IndexSet held =
+      DoFTools::extract_boundary_dofs(sheet.dof_handler(), condition.components, {condition.boundary});
+    const HeldBoundary none{IndexSet(held.size()), sheet.make_owned(), {}};
+    boundaries.try_emplace(condition.boundary, none).first->second.dofs.add_indices(held);
+  }
   const DeferredException guarded(
     [&]
     {
@@ -36,7 +45,7 @@ void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector
       std::vector<Tensor<3, 2>> G(values.n_quadrature_points);
       std::vector<types::global_dof_index> dofs(element.n_dofs_per_cell());
       Vector<double> forces(element.n_dofs_per_cell());
-      const auto add = [&](const auto &cell, const unsigned int face, HeldBoundary &boundary)
+      const auto add = [&](const auto &cell, const unsigned int face, Sheet::Vector &tractions)
       {
         values.reinit(cell, face);
         values[displacement].get_function_gradients(u, F);
@@ -53,30 +62,16 @@ void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector
             forces[a] += traction[element.system_to_component_index(a).first] * values.shape_value(a, q);
         }
         cell->get_dof_indices(dofs);
-        sheet.conformity_constraints().distribute_local_to_global(forces, dofs, boundary.tractions);
+        sheet.conformity_constraints().distribute_local_to_global(forces, dofs, tractions);
       };
       for (const auto &cell : sheet.dof_handler().active_cell_iterators() | IteratorFilters::LocallyOwnedCell())
         for (const unsigned int face : cell->face_indices())
-          if (cell->at_boundary(face))
-            for (HeldBoundary &boundary : boundaries)
-              if (cell->face(face)->boundary_id() == boundary.id)
-                add(cell, face, boundary);
+          if (const auto held = boundaries.find(cell->face(face)->boundary_id()); held != boundaries.end())
+            add(cell, face, held->second.tractions);
     });
-  for (HeldBoundary &boundary : boundaries)
+  for (auto &[id, boundary] : boundaries)
     boundary.tractions.compress(VectorOperation::add);
   guarded.rethrow_collectively(sheet.communicator());
-}
-} // namespace
-
-std::map<types::boundary_id, Tensor<1, 2>> boundary_reactions(const Sheet &sheet, const Sheet::Vector &u,
-                                                              const Sheet::Vector &residual,
-                                                              const std::map<types::boundary_id, ComponentMask> &held)
-{
-  std::vector<HeldBoundary> boundaries;
-  for (const auto &[id, components] : held)
-    boundaries.push_back(
-      {id, DoFTools::extract_boundary_dofs(sheet.dof_handler(), components, {id}), sheet.make_owned(), {}});
-  integrate_tractions(sheet, u, boundaries);
 
   const std::vector<IndexSet> owned = DoFTools::locally_owned_dofs_per_component(sheet.dof_handler());
   for (unsigned int component = 0; component < 2; ++component)
@@ -84,20 +79,20 @@ std::map<types::boundary_id, Tensor<1, 2>> boundary_reactions(const Sheet &sheet
     {
       double rest = residual(i);
       unsigned int n = 0;
-      for (const HeldBoundary &boundary : boundaries)
+      for (const auto &[id, boundary] : boundaries)
         if (boundary.dofs.is_element(i))
         {
           rest -= boundary.tractions(i);
           ++n;
         }
-      for (HeldBoundary &boundary : boundaries)
+      for (auto &[id, boundary] : boundaries)
         if (boundary.dofs.is_element(i))
           boundary.force[component] += boundary.tractions(i) + rest / n;
     }
 
   std::map<types::boundary_id, Tensor<1, 2>> forces;
-  for (const HeldBoundary &boundary : boundaries)
-    forces[boundary.id] = dealii::Utilities::MPI::sum(boundary.force, sheet.communicator());
+  for (const auto &[id, boundary] : boundaries)
+    forces[id] = dealii::Utilities::MPI::sum(boundary.force, sheet.communicator());
   return forces;
 }
 } // namespace latcon::continuum

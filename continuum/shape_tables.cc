@@ -4,8 +4,6 @@
 
 #include <deal.II/base/quadrature_lib.h>
 
-#include <iterator>
-
 using namespace dealii;
 
 namespace latcon::continuum
@@ -84,42 +82,36 @@ void ShapeTables::fill(const FEValuesBase<2> &values, const bool is_face, ShapeT
 
 const ShapeTable &ShapeTables::cell(const Cell &cell)
 {
-  Shape *shape = shape_of(cell);
-  ShapeTable &table = shape ? shape->table : own_table_;
-  if (!shape || table.n_points == 0)
-  {
-    cell_values_.reinit(cell);
-    fill(cell_values_, false, table);
-  }
-  table.is_kept = shape != nullptr;
-  return table;
-}
-
-void ShapeTables::fill_face(const Cell &cell, const unsigned int face, const unsigned int subface, ShapeTable &table)
-{
-  if (subface == numbers::invalid_unsigned_int)
-  {
-    face_values_->reinit(cell, face);
-    fill(*face_values_, true, table);
-  }
-  else
-  {
-    subface_values_->reinit(cell, face, subface);
-    fill(*subface_values_, true, table);
-  }
+  return kept_or_filled(cell, {whole, whole}, own_tables_[2]);
 }
 
 const ShapeTable &ShapeTables::face(const Cell &cell, const unsigned int face, const unsigned int subface,
                                     const unsigned int side)
 {
+  return kept_or_filled(cell, {face, subface}, own_tables_[side]);
+}
+
+const ShapeTable &ShapeTables::kept_or_filled(const Cell &cell, const Part &part, ShapeTable &own)
+{
   Shape *shape = shape_of(cell);
-  ShapeTable *table = &own_faces_[side];
-  if (shape)
-    table = &shape->faces[{face, subface}];
-  if (!shape || table->n_points == 0)
-    fill_face(cell, face, subface, *table);
-  table->is_kept = shape != nullptr;
-  return *table;
+  ShapeTable &table = shape ? shape->tables[part] : own;
+  table.is_kept = shape != nullptr;
+  if (shape && table.n_points > 0)
+    return table;
+  const auto &[face, subface] = part;
+  if (face == whole)
+  {
+    cell_values_.reinit(cell);
+    fill(cell_values_, false, table);
+  }
+  else if (subface == whole)
+    fill(face_values(cell, face), true, table);
+  else
+  {
+    subface_values_->reinit(cell, face, subface);
+    fill(*subface_values_, true, table);
+  }
+  return table;
 }
 
 const FEFaceValues<2> &ShapeTables::face_values(const Cell &cell, const unsigned int face)

@@ -15,6 +15,8 @@
 
 namespace latcon::continuum
 {
+constexpr unsigned int whole = dealii::numbers::invalid_unsigned_int; ///< in place of a face of a cell, or of its half
+
 /// Derivatives of the scalar shape functions of a cell at the Gauss points of the cell or of one of its faces.
 struct ShapeTable
 {
@@ -43,7 +45,7 @@ public:
   /// Returns the table of a cell, valid until the next call of cell().
   const ShapeTable &cell(const Cell &cell);
 
-  /// Returns the table of a face or, if `subface` is not numbers::invalid_unsigned_int, of one half of the face; valid
+  /// Returns the table of a face or, if `subface` is not `whole`, of one half of the face; valid
   /// until the next call of face() for the same `side`, 0 or 1.
   const ShapeTable &face(const Cell &cell, unsigned int face, unsigned int subface, unsigned int side);
 
@@ -51,16 +53,17 @@ public:
   const dealii::FEFaceValues<2> &face_values(const Cell &cell, unsigned int face);
 
 private:
+  using Part = std::pair<unsigned int, unsigned int>; // face, or invalid for the cell, and half of the face, or invalid
+
   struct Shape
   {
     dealii::Tensor<1, 2> edges[2];
-    ShapeTable table;
-    std::map<std::pair<unsigned int, unsigned int>, ShapeTable> faces;
+    std::map<Part, ShapeTable> tables;
   };
 
   Shape *shape_of(const Cell &cell);
   void fill(const dealii::FEValuesBase<2> &values, bool is_face, ShapeTable &table) const;
-  void fill_face(const Cell &cell, unsigned int face, unsigned int subface, ShapeTable &table);
+  const ShapeTable &kept_or_filled(const Cell &cell, const Part &part, ShapeTable &own);
 
   bool has_gradient_;
   bool is_straight_;
@@ -69,7 +72,6 @@ private:
   std::unique_ptr<dealii::FEFaceValues<2>> face_values_;
   std::unique_ptr<dealii::FESubfaceValues<2>> subface_values_;
   std::list<Shape> shapes_; // most recently used first
-  ShapeTable own_table_;    // of a cell whose shape is not shared
-  std::array<ShapeTable, 2> own_faces_;
+  std::array<ShapeTable, 3> own_tables_; // where a shape is not shared: of a face of either side, and of a cell
 };
 } // namespace latcon::continuum

@@ -1,20 +1,24 @@
 #include "continuum/sheet.h"
 
 #include "continuum/collective.h"
+#include "continuum/element_integrals.h"
 #include "continuum/errors.h"
-#include "continuum/homogeneous_constraints.h"
-#include "continuum/point_location.h"
+#include "continuum/single_precision_matrix.h"
+#include "support/text_wrap.h"
 
+#include <deal.II/base/geometry_info.h>
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
+#include <deal.II/grid/grid_tools_cache.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
 #include <deal.II/numerics/vector_tools_boundary.h>
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <limits>
+#include <map>
 
 using namespace dealii;
 
@@ -24,8 +28,7 @@ namespace
 {
 unsigned int checked_degree(const unsigned int degree)
 {
-  if (degree == 0)
-    throw InvalidInput("the degree of elements must be at least 1");
+  require(degree > 0, "the degree of elements must be at least 1");
   return degree;
 }
 
@@ -36,6 +39,71 @@ unsigned int mapping_degree(const Sheet::Mesh &mesh, const unsigned int degree)
     if (id != numbers::flat_manifold_id)
       return degree;
   return 1;
+}
+
+// Points in one cell: numbers in a list, and positions on the reference cell.
+struct PointsInCell
+{
+  std::vector<std::size_t> indices;
+  std::vector<Point<2>> unit_points;
+};
+using Cell = Triangulation<2>::active_cell_iterator;
+
+// Returns the locally owned cells that contain any of the points [m], to 1e-8 of a cell: a point on a cell boundary is
+// found in all adjacent cells. Points outside the mesh, or with a coordinate that is not finite, are in none.
+std::map<Cell, PointsInCell> locate(const Sheet &sheet, const std::vector<Point<2>> &points)
+{
+  constexpr double slack = 1e-8; // of a cell
+  std::map<Cell, PointsInCell> located;
+  const GridTools::Cache<2> cache(sheet.mesh(), sheet.mapping());
+  const auto &tree = cache.get_locally_owned_cell_bounding_boxes_rtree();
+  const auto bounds = tree.bounds();
+  const double margin = tree.empty() ? 0. : slack * boost::geometry::distance(bounds.min_corner(), bounds.max_corner());
+  for (std::size_t p = 0; p < points.size(); ++p)
+  {
+    if (!std::isfinite(points[p].square())) // deal.II finds such points in cells
+      continue;
+    BoundingBox<2> box({points[p], points[p]});
+    box.extend(margin);
+    for (auto near = tree.qbegin(boost::geometry::index::intersects(box)); near != tree.qend(); ++near)
+      try
+      {
+        const Point<2> unit = sheet.mapping().transform_real_to_unit_cell(near->second, points[p]);
+        if (GeometryInfo<2>::distance_to_unit_cell(unit) > slack)
+          continue;
+        located[near->second].indices.push_back(p);
+        located[near->second].unit_points.push_back(unit);
+      }
+      catch (const Mapping<2>::ExcTransformationFailed &)
+      {
+        // The point is in the bounding box but far outside the distorted cell.
+      }
+  }
+  return located;
+}
+
+// Returns the constraints of every relevant unknown as known to its owner. Those `known` to this rank lack those on the
+// far side of its ghost cells, to which operators with face terms couple.
+AffineConstraints<double> shared_constraints(const AffineConstraints<double> &known, const Sheet &sheet)
+{
+  // A rank may know the constraints of an unknown of another rank in part.
+  AffineConstraints<double> shared(sheet.relevant());
+  for (const auto &line : known.get_lines())
+    if (sheet.owned().is_element(line.index))
+    {
+      shared.add_line(line.index);
+      shared.add_entries(line.index, line.entries);
+    }
+  shared.make_consistent_in_parallel(sheet.owned(), sheet.relevant(), sheet.communicator());
+  IndexSet storable = sheet.relevant();
+  for (const auto &line : shared.get_lines())
+    for (const auto &entry : line.entries)
+      if (!sheet.relevant().is_element(entry.first))
+        storable.add_index(entry.first);
+  AffineConstraints<double> constraints(storable);
+  constraints.merge(shared, AffineConstraints<double>::no_conflicts_allowed, true);
+  constraints.close();
+  return constraints;
 }
 } // namespace
 
@@ -109,7 +177,18 @@ void Sheet::distribute()
   for (const PeriodicPair &pair : conditions_.periodic)
     DoFTools::make_periodicity_constraints(dof_handler_, pair.first, pair.second, pair.direction, known);
   known.close();
-  conformity_constraints_.copy_from(shared_constraints(known, owned_, relevant_, communicator()));
+  conformity_constraints_.copy_from(shared_constraints(known, *this));
+  apply_conditions();
+}
+
+void Sheet::apply_conditions()
+{
+  AffineConstraints<double> known(relevant_);
+  known.merge(conformity_constraints_, AffineConstraints<double>::no_conflicts_allowed, true);
+  for (const BoundaryField &condition : conditions_.displacements)
+    DoFTools::make_zero_boundary_constraints(dof_handler_, condition.boundary, known, condition.components);
+  known.close(); // before sending: the receiver may not have the constraints of intermediate degrees of freedom
+  homogeneous_constraints_.copy_from(shared_constraints(known, *this));
 }
 
 double Sheet::penalty(const double extent) const
@@ -150,7 +229,7 @@ std::vector<PointState> Sheet::gradients(const Vector &u, const std::vector<Poin
       std::vector<Tensor<1, 2>> values;
       std::vector<Tensor<2, 2>> gradients;
       std::vector<Tensor<3, 2>> hessians;
-      for (const auto &[cell, located] : locate(mesh_, mapping_, points))
+      for (const auto &[cell, located] : locate(*this, points))
       {
         FEValues<2> there(mapping_, element_, Quadrature<2>(located.unit_points),
                           update_values | update_gradients | update_hessians);
@@ -164,17 +243,12 @@ std::vector<PointState> Sheet::gradients(const Vector &u, const std::vector<Poin
         for (std::size_t n = 0; n < located.indices.size(); ++n)
         {
           double *sum = &sums[n_sums * located.indices[n]];
-          for (unsigned int i = 0; i < 2; ++i)
-          {
-            sum[i] += values[n][i];
-            for (unsigned int J = 0; J < 2; ++J)
-            {
-              sum[2 + 2 * i + J] += gradients[n][i][J];
-              for (unsigned int K = 0; K < 2; ++K)
-                sum[6 + 4 * i + 2 * J + K] += hessians[n][i][J][K];
-            }
-          }
-          sum[n_sums - 1] += 1.;
+          const auto add = [&sum](const auto &tensor)
+          { std::for_each(tensor.begin_raw(), tensor.end_raw(), [&sum](const double x) { *sum++ += x; }); };
+          add(values[n]);
+          add(gradients[n]);
+          add(hessians[n]);
+          *sum += 1.;
         }
       }
     });
@@ -185,24 +259,18 @@ std::vector<PointState> Sheet::gradients(const Vector &u, const std::vector<Poin
   {
     const double *sum = &sums[n_sums * p];
     const double count = sum[n_sums - 1];
+    // The sums are the same on every rank, so all throw.
     if (count == 0.)
-    {
-      std::ostringstream message;
-      message << "the point (" << points[p] << ") m is outside the sheet";
-      throw InvalidInput(message.str()); // the sums are the same on every rank, so all throw
-    }
+      throw InvalidInput(support::text_of("the point (", points[p], ") m is outside the sheet"));
     PointState &state = states[p];
     state.X = points[p];
+    const auto take = [&](auto &tensor)
+    { std::generate(tensor.begin_raw(), tensor.end_raw(), [&] { return *sum++ / count; }); };
+    take(state.displacement);
+    take(state.F);
+    take(state.G);
     for (unsigned int i = 0; i < 2; ++i)
-    {
-      state.displacement[i] = sum[i] / count;
-      for (unsigned int J = 0; J < 2; ++J)
-      {
-        state.F[i][J] = (i == J ? 1. : 0.) + sum[2 + 2 * i + J] / count;
-        for (unsigned int K = 0; K < 2; ++K)
-          state.G[i][J][K] = sum[6 + 4 * i + 2 * J + K] / count;
-      }
-    }
+      state.F[i][i] += 1.;
   }
   return states;
 }
@@ -235,13 +303,72 @@ void Sheet::for_each_owned_dof(
     }
 }
 
-Sheet::Vector Sheet::make_owned() const
+Sheet::Vector Sheet::with_ghosts(const Vector &x) const
 {
-  return Vector(owned_, communicator());
+  Vector copy = make_ghosted();
+  copy = x;
+  return copy;
 }
 
-Sheet::Vector Sheet::make_ghosted() const
+Sheet::Vector Sheet::without_ghosts(const Vector &x) const
 {
-  return Vector(owned_, relevant_, communicator());
+  Vector copy = make_owned();
+  copy = x;
+  return copy;
+}
+
+double Sheet::energy(const Vector &u, const double load_factor) const
+{
+  return integral(*this, u, energy_densities(*this, load_factor, Order::value));
+}
+
+double Sheet::residual(const Vector &u, Vector &r, Vector &magnitude, const double load_factor) const
+{
+  r = 0.;
+  magnitude = 0.;
+  return add_forces(*this, u, energy_densities(*this, load_factor, Order::first), r, &magnitude);
+}
+
+template <class AnyMatrix>
+void Sheet::tangent(const Vector &u, const AffineConstraints<double> &constraints, AnyMatrix &K,
+                    const double load_factor, const Vector *lift, Vector *stiffness_times_lift) const
+{
+  K = 0.;
+  if (lift != nullptr)
+    *stiffness_times_lift = 0.;
+  add_tangent(*this, u, energy_densities(*this, load_factor, Order::second), constraints, K, lift,
+              stiffness_times_lift);
+}
+
+template void Sheet::tangent(const Vector &, const AffineConstraints<double> &, Matrix &, double, const Vector *,
+                             Vector *) const;
+template void Sheet::tangent(const Vector &, const AffineConstraints<double> &, SinglePrecisionMatrix &, double,
+                             const Vector *, Vector *) const;
+
+void Sheet::make_matrix(const AffineConstraints<double> &constraints, Matrix &matrix, const bool is_mass) const
+{
+  TrilinosWrappers::SparsityPattern pattern(owned_, owned_, constraints.get_local_lines(), communicator());
+  const types::subdomain_id own = dealii::Utilities::MPI::this_mpi_process(communicator());
+  if (has_gradient() && !is_mass)
+    DoFTools::make_flux_sparsity_pattern(dof_handler_, pattern, constraints, false, own);
+  else
+    DoFTools::make_sparsity_pattern(dof_handler_, pattern, constraints, false, own);
+  pattern.compress();
+  matrix.reinit(pattern);
+}
+
+DeterminantRange Sheet::determinant_range(const Vector &u) const
+{
+  double smallest = std::numeric_limits<double>::infinity();
+  double largest = -smallest;
+  PointForces at_points;
+  at_points.local = [&](const CellPoint &point, PointIntegrand &)
+  {
+    const double J = determinant(deformation_gradient(point.u));
+    smallest = std::min(smallest, J);
+    largest = std::max(largest, J);
+  };
+  integrate(*this, u, at_points, Order::value, [](const Contribution &) {});
+  return {dealii::Utilities::MPI::min(smallest, communicator()), dealii::Utilities::MPI::max(largest, communicator())};
 }
 } // namespace latcon::continuum

@@ -67,6 +67,9 @@ public:
   /// Renumbers the unknowns after a change of the mesh. Existing vectors become invalid.
   void distribute();
 
+  /// Prescribes displacements anew after faces of the mesh got other boundary ids.
+  void apply_conditions();
+
   /// Returns E [J/m], summed over all ranks, without the potential of dead loads.
   double energy(const Vector &u, double load_factor = 1.) const;
 
@@ -116,8 +119,12 @@ public:
   void for_each_owned_dof(
     const std::function<void(dealii::types::global_dof_index, unsigned int, const dealii::Point<2> &)> &visit) const;
 
-  Vector make_owned() const;   ///< returns a zero vector without ghost entries, to write to
-  Vector make_ghosted() const; ///< returns a zero vector with ghost entries, to read from
+  /// Returns a zero vector without ghost entries, to write to.
+  Vector make_owned() const { return Vector(owned_, communicator()); }
+  /// Returns a zero vector with ghost entries, to read from.
+  Vector make_ghosted() const { return Vector(owned_, relevant_, communicator()); }
+  Vector with_ghosts(const Vector &x) const;    ///< returns a copy with ghost entries
+  Vector without_ghosts(const Vector &x) const; ///< returns a copy without ghost entries
 
   const Mesh &mesh() const { return mesh_; }
   const Constitution &constitution() const { return constitution_; }
@@ -125,8 +132,16 @@ public:
   const dealii::FESystem<2> &element() const { return element_; }
   const dealii::DoFHandler<2> &dof_handler() const { return dof_handler_; }
   const dealii::MappingQ<2> &mapping() const { return mapping_; }
-  /// Constraints at hanging nodes and periodic edges (see shared_constraints).
+  /// Closed constraints of every relevant unknown at hanging nodes and periodic edges, as known to the owner of the
+  /// unknown. A relevant unknown may depend on one that is not relevant, so each rank must be able to write to all rows
+  /// of get_local_lines() of a condensed matrix.
   const dealii::AffineConstraints<double> &conformity_constraints() const { return conformity_constraints_; }
+  /// The same together with zero for unknowns whose displacement is prescribed.
+  const dealii::AffineConstraints<double> &homogeneous_constraints() const { return homogeneous_constraints_; }
+  bool is_prescribed(const dealii::types::global_dof_index i) const
+  {
+    return homogeneous_constraints_.is_constrained(i) && !conformity_constraints_.is_constrained(i);
+  }
   /// Returns true if there is a gradient energy, and hence face terms.
   bool has_gradient() const { return constitution_.has_gradient(); }
   /// Returns the penalty [Pa m] gamma p (p + 1) / h times the normal stiffness of the gradient law on a face of a cell
@@ -151,5 +166,6 @@ private:
   dealii::IndexSet owned_;
   dealii::IndexSet relevant_;
   dealii::AffineConstraints<double> conformity_constraints_;
+  dealii::AffineConstraints<double> homogeneous_constraints_;
 };
 } // namespace latcon::continuum

@@ -1,33 +1,24 @@
 #include "continuum/solver_report.h"
 
-#include <iomanip>
-#include <sstream>
+#include "support/text_wrap.h"
 
 namespace latcon::continuum
 {
-SolverTimes &SolverTimes::operator+=(const SolverTimes &other)
-{
-  assembly += other.assembly;
-  preconditioner += other.preconditioner;
-  linear_solve += other.linear_solve;
-  return *this;
-}
-
 std::string SolverReport::text() const
 {
-  std::ostringstream out;
-  out << std::scientific << std::setprecision(4);
+  std::string text;
   for (const LoadStep &step : load_steps)
   {
-    out << "load step " << step.number << " to " << step.load_factor << ": "
-        << (step.accepted ? "converged" : "rejected, " + step.reason) << "\n";
+    text += support::formatted("load step %u to %.4e: ", step.number, step.load_factor) +
+            (step.accepted ? "converged" : "rejected, " + step.reason) + "\n";
     for (const NewtonIteration &it : iterations)
       if (it.load_step == step.number)
-        out << "  iteration " << std::setw(2) << it.iteration << "  residual " << it.residual << " N/m  (tolerance "
-            << it.tolerance << ")  energy " << std::setprecision(10) << it.energy << std::setprecision(4)
-            << " J/m  step length " << it.step_length << "  linear iterations " << it.linear_iterations << "\n";
+        text +=
+          support::formatted("  iteration %2u  residual %.4e N/m  (tolerance %.4e)  energy %.10e J/m  step length "
+                             "%.4e  linear iterations %u\n",
+                             it.iteration, it.residual, it.tolerance, it.energy, it.step_length, it.linear_iterations);
   }
-  return out.str();
+  return text;
 }
 
 SolverFailed::SolverFailed(const std::string &reason, SolverReport report)

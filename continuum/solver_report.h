@@ -35,9 +35,6 @@ struct SolverTimes
   double assembly = 0.;       ///< of energies, residuals and tangents
   double preconditioner = 0.; ///< set-up for a tangent: coarser tangents and patches
   double linear_solve = 0.;   ///< factorisation and substitution, or Krylov iterations
-
-  /// Adds the times of another solve, phase by phase.
-  SolverTimes &operator+=(const SolverTimes &other);
 };
 
 /// Full record of a solve.

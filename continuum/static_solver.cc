@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 using namespace dealii;
 
@@ -53,21 +52,15 @@ StaticSolver::StaticSolver(const Sheet::Mesh &mesh, const Constitution &constitu
 // Sets up everything that depends on the mesh.
 void StaticSolver::set_up()
 {
-  full_lift_ = sheet_.make_ghosted();
-  full_lift_ = sheet_.lift();
-
-  homogeneous_.copy_from(homogeneous_constraints(sheet_, dirichlet_boundaries(sheet_.conditions())));
-
+  full_lift_ = sheet_.with_ghosts(sheet_.lift());
   loads_ = sheet_.loads();
   displacement_ = sheet_.make_ghosted();
-  linear_solver_ =
-    std::make_unique<LinearSolver>(sheet_, homogeneous_, dirichlet_boundaries(sheet_.conditions()), settings_.linear);
+  linear_solver_ = std::make_unique<LinearSolver>(sheet_, settings_.linear);
 }
 
 StaticSolver::Evaluation StaticSolver::evaluate(const Vector &u, const double load_factor) const
 {
-  Evaluation state{sheet_.make_ghosted(), 0., 0., 0., 0., sheet_.make_owned(), sheet_.make_owned()};
-  state.displacement = u;
+  Evaluation state{sheet_.with_ghosts(u), 0., 0., 0., 0., sheet_.make_owned(), sheet_.make_owned()};
   state.stored = sheet_.residual(state.displacement, state.residual, state.magnitude, load_factor);
   state.energy = state.stored - load_factor * (loads_ * u);
   state.residual.add(-load_factor, loads_);
@@ -75,7 +68,7 @@ StaticSolver::Evaluation StaticSolver::evaluate(const Vector &u, const double lo
   double given = 0.; // acting forces: reactions and dead loads
   for (const types::global_dof_index i : sheet_.owned())
   {
-    (homogeneous_.is_constrained(i) ? given : free) += state.residual(i) * state.residual(i);
+    (sheet_.homogeneous_constraints().is_constrained(i) ? given : free) += state.residual(i) * state.residual(i);
     given += std::pow(load_factor * loads_(i), 2);
   }
   state.free = std::sqrt(dealii::Utilities::MPI::sum(free, sheet_.communicator()));
@@ -88,7 +81,7 @@ double StaticSolver::round_off(const Evaluation &state, const Vector &u) const
 {
   const auto square = [&](const types::global_dof_index i)
   { return std::pow(state.magnitude(i), 2) + std::pow(linear_solver_->diag_element(i) * u(i), 2); };
-  return residual_round_off * norm_over_free(sheet_, homogeneous_, square);
+  return residual_round_off * norm_over_free(sheet_, square);
 }
 
 std::string StaticSolver::attempt(const double target, SolverReport &report)
@@ -103,14 +96,14 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     double assembly = 0.; // [s]
     linear_solver_->update(
       at,
-      [&](const Sheet &, const Vector &there, const AffineConstraints<double> &constraints, auto &K)
+      [&](const Sheet &, const Vector &there, auto &K)
       {
         const Timer of_assembly;
-        sheet_.tangent(there, constraints, K, target, rise, &lift_forces);
+        sheet_.tangent(there, sheet_.homogeneous_constraints(), K, target, rise, &lift_forces);
         assembly = of_assembly.wall_time();
       },
-      [target](const Sheet &level, const Vector &there, const AffineConstraints<double> &constraints, auto &K)
-      { level.tangent(there, constraints, K, target); });
+      [target](const Sheet &level, const Vector &there, auto &K)
+      { level.tangent(there, level.homogeneous_constraints(), K, target); });
     report.times.assembly += assembly;
     report.times.preconditioner += timer.wall_time() - assembly;
   };
@@ -120,12 +113,12 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     if (rise != nullptr)
       rhs += lift_forces;
     rhs *= -1.;
-    homogeneous_.set_zero(rhs);
+    sheet_.homogeneous_constraints().set_zero(rhs);
     const Timer timer;
     const unsigned int iterations = linear_solver_->solve(step, rhs, forcing);
     report.times.linear_solve += timer.wall_time();
     const double slope = -(rhs * step); // rhs is minus the residual, zero at constrained unknowns
-    homogeneous_.distribute(step);
+    sheet_.homogeneous_constraints().distribute(step);
     return NewtonStep{iterations, slope};
   };
   const auto evaluate_at = [&](const Vector &at)
@@ -142,7 +135,7 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
       static_cast<double>(sheet_.mesh().n_global_active_cells()) * dealii::Utilities::pow(sheet_.degree() + 1, 2);
     return 4. * std::numeric_limits<double>::epsilon() * std::sqrt(n_points) * std::abs(state.energy);
   };
-  const NewtonSolver<Evaluation> newton(
+  const NewtonSolver<Evaluation> newton{
     {settings_.relative_tolerance, settings_.max_newton_iterations, settings_.max_halvings, settings_.largest_forcing},
     {evaluate_at, [this](const Evaluation &state, const Vector &u) { return round_off(state, u); },
      [&](const Evaluation &state, const Vector &, const double forcing, const bool keeps_tangent, Vector &step)
@@ -151,18 +144,16 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
          assemble(state.displacement, nullptr);
        return solve(state, nullptr, forcing, step);
      },
-     energy_noise, nullptr});
+     energy_noise, nullptr}};
 
-  Vector u = sheet_.make_owned();
+  Vector u = sheet_.without_ghosts(displacement_);
   try
   {
     // Predictor: linear response to the increment of load and prescribed displacement. Solved to round-off, because the
     // cells along held edges make its right-hand side large.
-    Vector lift = sheet_.make_ghosted();
-    lift = full_lift_;
+    Vector lift = full_lift_;
     lift *= target - load_factor_;
     Vector step = sheet_.make_owned();
-    u = displacement_;
     unsigned int linear_iterations = 0;
     // Without an increment the response is a Newton step, which needs the line search.
     if (target != load_factor_)
@@ -198,7 +189,7 @@ void StaticSolver::start_from(Vector &u, const double load_factor)
 {
   // Set boundary values from the prescribed function, which interpolation on the coarser edge may have missed.
   for (const types::global_dof_index i : sheet_.owned())
-    if (homogeneous_.is_constrained(i) && !sheet_.conformity_constraints().is_constrained(i))
+    if (sheet_.is_prescribed(i))
       u(i) = load_factor * full_lift_(i);
   u.compress(VectorOperation::insert);
   sheet_.conformity_constraints().distribute(u);
@@ -223,14 +214,12 @@ bool StaticSolver::solve_from_coarser_mesh(SolverReport &report)
     // Interpolation leaves a residual of the order of the reference force.
     settings.relative_tolerance = std::max(settings.relative_tolerance, 1e-3);
     StaticSolver coarser(mesh, sheet_.constitution(), sheet_.conditions(), settings);
-    report.times += coarser.solve().times;
+    report.times = coarser.solve().times; // the first of this solve
 
     using NodalVector = LinearAlgebra::distributed::Vector<double>;
     NodalVector from(coarser.sheet_.owned(), coarser.sheet_.relevant(), sheet_.communicator());
     NodalVector to(sheet_.owned(), sheet_.relevant(), sheet_.communicator());
-    Vector owned = coarser.sheet_.make_owned();
-    owned = coarser.displacement_;
-    Multigrid::copy(owned, from);
+    Multigrid::copy(coarser.sheet_.without_ghosts(coarser.displacement_), from);
     MGTwoLevelTransfer<2, NodalVector> transfer;
     transfer.reinit_geometric_transfer(sheet_.dof_handler(), coarser.sheet_.dof_handler(),
                                        sheet_.conformity_constraints(), coarser.sheet_.conformity_constraints());
@@ -325,11 +314,7 @@ SolverReport StaticSolver::equilibrate()
 const StaticSolver::Evaluation &StaticSolver::current() const
 {
   if (!current_)
-  {
-    Vector u = sheet_.make_owned();
-    u = displacement_;
-    current_ = std::make_shared<const Evaluation>(evaluate(u, load_factor_));
-  }
+    current_ = std::make_shared<const Evaluation>(evaluate(sheet_.without_ghosts(displacement_), load_factor_));
   return *current_;
 }
 
@@ -340,6 +325,6 @@ double StaticSolver::total_energy() const
 
 std::map<types::boundary_id, Tensor<1, 2>> StaticSolver::reactions() const
 {
-  return boundary_reactions(sheet_, displacement_, current().residual, dirichlet_boundaries(sheet_.conditions()));
+  return boundary_reactions(sheet_, displacement_, current().residual);
 }
 } // namespace latcon::continuum

@@ -8,7 +8,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <vector>
 
 namespace latcon::continuum
 {
@@ -98,7 +97,6 @@ private:
   Sheet sheet_;
   StaticSettings settings_;
   std::unique_ptr<LinearSolver> linear_solver_;
-  dealii::AffineConstraints<double> homogeneous_; // hanging nodes, and prescribed unknowns at zero
   Vector full_lift_;                              // prescribed displacement at load factor 1, zero elsewhere
   Vector loads_;                                  // nodal dead loads at load factor 1
   Vector displacement_;

@@ -8,8 +8,12 @@
 
 #include <Eigen/Dense>
 
+#include <boost/serialization/utility.hpp>
+#include <boost/serialization/vector.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <unordered_map>
 
@@ -28,8 +32,8 @@ std::size_t packed_size(const std::size_t n)
   return n_blocks * (n_blocks + 1) / 2 * n_lanes * n_lanes;
 }
 
-// Writes the packed inverse of `block`. Returns false if the block had to be replaced.
-bool invert(Eigen::MatrixXd &block, Eigen::LLT<Eigen::MatrixXd> &cholesky, float *packed)
+// Writes the packed inverse of `block`, or of its replacement.
+void invert(Eigen::MatrixXd &block, Eigen::LLT<Eigen::MatrixXd> &cholesky, float *packed)
 {
   // Pivot relative to its diagonal entry, below which round-off determines the sign.
   constexpr double smallest_pivot = 1e-12;
@@ -59,7 +63,6 @@ bool invert(Eigen::MatrixXd &block, Eigen::LLT<Eigen::MatrixXd> &cholesky, float
       for (Eigen::Index j = J; j < J + n_lanes; ++j)
         for (Eigen::Index i = I; i < I + n_lanes; ++i)
           *packed++ = i < n && j < n ? static_cast<float>(block(std::max(i, j), std::min(i, j))) : 0.f;
-  return is_safe;
 }
 
 // Computes y = A x for a symmetric matrix of n rows, a multiple of 4. `packed` contains, for each four columns, the
@@ -117,42 +120,6 @@ LATCON_CLONES void add_patches(const std::size_t n_patches, const std::size_t *f
 
 using Dofs = std::vector<types::global_dof_index>;
 
-// Free degrees of freedom of one cell, by vertex, line and interior.
-class CellDofs
-{
-public:
-  CellDofs(const Sheet &sheet, const AffineConstraints<double> &constraints)
-    : element_(sheet.element()), constraints_(constraints), dofs_(element_.n_dofs_per_cell())
-  {
-  }
-  void reinit(const DoFHandler<2>::active_cell_iterator &cell) { cell->get_dof_indices(dofs_); }
-
-  // Returns the first degree of freedom of a vertex, which identifies the vertex on all ranks.
-  types::global_dof_index name(const unsigned int vertex) const { return dofs_[vertex * element_.n_dofs_per_vertex()]; }
-
-  void add_vertex(const unsigned int vertex, Dofs &to) const
-  {
-    add(vertex * element_.n_dofs_per_vertex(), element_.n_dofs_per_vertex(), to);
-  }
-  void add_line(const unsigned int line, Dofs &to) const
-  {
-    add(element_.get_first_line_index() + line * element_.n_dofs_per_line(), element_.n_dofs_per_line(), to);
-  }
-  void add_interior(Dofs &to) const { add(element_.get_first_quad_index(), element_.n_dofs_per_quad(), to); }
-
-private:
-  void add(const unsigned int first, const unsigned int n, Dofs &to) const
-  {
-    for (unsigned int a = first; a < first + n; ++a)
-      if (!constraints_.is_constrained(dofs_[a]))
-        to.push_back(dofs_[a]);
-  }
-
-  const FESystem<2> &element_;
-  const AffineConstraints<double> &constraints_;
-  Dofs dofs_;
-};
-
 // Returns the free degrees of freedom of each patch of this rank.
 std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<double> &constraints)
 {
@@ -172,26 +139,37 @@ std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<doubl
   std::vector<Dofs> patch_of(mesh.n_vertices());
   std::unordered_map<types::global_dof_index, unsigned int>
     vertex_of;                           // by name, for vertices of this rank at halved lines
-  std::map<unsigned int, Dofs> messages; // by rank: sequence of name, number, list
-  CellDofs dofs(sheet, constraints);
-  CellDofs smaller_dofs(sheet, constraints);
-  Dofs beyond;
+  std::map<unsigned int, std::vector<std::pair<types::global_dof_index, Dofs>>> messages; // by rank: name, list
+  const FESystem<2> &element = sheet.element();
+  Dofs dofs(element.n_dofs_per_cell()), smaller_dofs(dofs), beyond;
+  // Returns the first degree of freedom of a vertex, which identifies the vertex on all ranks.
+  const auto name = [&](const unsigned int vertex) { return dofs[vertex * element.n_dofs_per_vertex()]; };
+  // Add the free degrees of freedom of a part of a cell.
+  const auto add = [&](const Dofs &of_cell, const unsigned int first, const unsigned int n, Dofs &to)
+  {
+    std::copy_if(of_cell.begin() + first, of_cell.begin() + first + n, std::back_inserter(to),
+                 [&](const types::global_dof_index dof) { return !constraints.is_constrained(dof); });
+  };
+  const auto add_line = [&](const Dofs &of_cell, const unsigned int line, Dofs &to)
+  { add(of_cell, element.get_first_line_index() + line * element.n_dofs_per_line(), element.n_dofs_per_line(), to); };
+  const auto add_interior = [&](const Dofs &of_cell, Dofs &to)
+  { add(of_cell, element.get_first_quad_index(), element.n_dofs_per_quad(), to); };
   for (const auto &cell : sheet.dof_handler().active_cell_iterators())
   {
     if (cell->is_artificial())
       continue;
-    dofs.reinit(cell);
+    cell->get_dof_indices(dofs);
     for (unsigned int v = 0; v < n_vertices; ++v)
-      if (owner[cell->vertex_index(v)] == own_rank && !sheet.conformity_constraints().is_constrained(dofs.name(v)))
+      if (owner[cell->vertex_index(v)] == own_rank && !sheet.conformity_constraints().is_constrained(name(v)))
       {
         Dofs &patch = patch_of[cell->vertex_index(v)];
-        dofs.add_vertex(v, patch);
+        add(dofs, v * element.n_dofs_per_vertex(), element.n_dofs_per_vertex(), patch);
         for (unsigned int line = 0; line < n_lines; ++line)
           for (unsigned int end = 0; end < 2; ++end)
             if (GeometryInfo<2>::face_to_cell_vertices(line, end) == v)
-              dofs.add_line(line, patch);
-        dofs.add_interior(patch);
-        vertex_of.emplace(dofs.name(v), cell->vertex_index(v));
+              add_line(dofs, line, patch);
+        add_interior(dofs, patch);
+        vertex_of.emplace(name(v), cell->vertex_index(v));
       }
 
     // The owner of a vertex may not have the smaller cells beyond a halved line; the owner of the larger cell does.
@@ -206,22 +184,18 @@ std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<doubl
         for (unsigned int half = 0; half < 2; ++half)
         {
           const auto smaller = cell->neighbor_child_on_subface(line, half);
-          smaller_dofs.reinit(smaller);
-          smaller_dofs.add_interior(beyond);
+          smaller->get_dof_indices(smaller_dofs);
+          add_interior(smaller_dofs, beyond);
           for (unsigned int l = 0; l < n_lines; ++l)
             if (smaller->face(l) != side->child(half) &&
                 (smaller->face(l)->vertex_index(0) == middle || smaller->face(l)->vertex_index(1) == middle))
-              smaller_dofs.add_line(l, beyond);
+              add_line(smaller_dofs, l, beyond);
         }
         for (unsigned int end = 0; end < 2; ++end)
         {
           const unsigned int v = GeometryInfo<2>::face_to_cell_vertices(line, end);
-          if (sheet.conformity_constraints().is_constrained(dofs.name(v)))
-            continue;
-          Dofs &message = messages[owner[cell->vertex_index(v)]];
-          message.push_back(dofs.name(v));
-          message.push_back(beyond.size());
-          message.insert(message.end(), beyond.begin(), beyond.end());
+          if (!sheet.conformity_constraints().is_constrained(name(v)))
+            messages[owner[cell->vertex_index(v)]].emplace_back(name(v), beyond);
         }
       }
   }
@@ -230,12 +204,10 @@ std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<doubl
                    [&]
                    {
                      for (const auto &received : all_received)
-                       for (auto at = received.second.begin(); at != received.second.end();)
+                       for (const auto &[vertex, list] : received.second)
                        {
-                         Dofs &patch = patch_of[vertex_of.at(*at++)];
-                         const auto n = static_cast<std::ptrdiff_t>(*at++);
-                         patch.insert(patch.end(), at, at + n);
-                         at += n;
+                         Dofs &patch = patch_of[vertex_of.at(vertex)];
+                         patch.insert(patch.end(), list.begin(), list.end());
                        }
                    });
 
@@ -252,13 +224,11 @@ VertexPatches::VertexPatches(const Sheet &sheet, const AffineConstraints<double>
   const std::vector<Dofs> patches = list_patches(sheet, constraints);
 
   IndexSet ghosts = sheet.relevant();
-  Dofs foreign;
+  Dofs all;
   for (const Dofs &patch : patches)
-    for (const types::global_dof_index dof : patch)
-      if (!sheet.owned().is_element(dof))
-        foreign.push_back(dof);
-  sort_without_repetition(foreign);
-  ghosts.add_indices(foreign.begin(), foreign.end());
+    all.insert(all.end(), patch.begin(), patch.end());
+  sort_without_repetition(all);
+  ghosts.add_indices(all.begin(), all.end());
   layout_ = std::make_shared<const Layout>(sheet.owned(), ghosts, sheet.communicator());
 
   first_dof_.assign(1, 0);
@@ -277,7 +247,6 @@ VertexPatches::VertexPatches(const Sheet &sheet, const AffineConstraints<double>
 void VertexPatches::factorise(const SinglePrecisionMatrix &K)
 {
   const std::vector<SinglePrecisionMatrix::Entry> foreign_entries = K.entries_of(*layout_);
-  own_replaced_ = 0;
   const unsigned int n_owned = layout_->locally_owned_size();
   const auto position_of = [&](const types::global_dof_index index)
   {
@@ -322,8 +291,7 @@ void VertexPatches::factorise(const SinglePrecisionMatrix &K)
                e < foreign_entries.size() && foreign_entries[e].row == row; ++e)
             take(position_of(foreign_entries[e].column), foreign_entries[e].value);
         }
-        if (!invert(block, cholesky, &inverses_[first_entry_[p]]))
-          ++own_replaced_;
+        invert(block, cholesky, &inverses_[first_entry_[p]]);
         for (unsigned int i = 0; i < n; ++i)
           at[dofs[i]] = nowhere;
       }
@@ -339,10 +307,5 @@ void VertexPatches::vmult(Vector &z, const Vector &r) const
               work.data(), r.begin(), z.begin());
   r.zero_out_ghost_values();
   z.compress(VectorOperation::add);
-}
-
-unsigned int VertexPatches::n_replaced() const
-{
-  return dealii::Utilities::MPI::sum(own_replaced_, layout_->get_mpi_communicator());
 }
 } // namespace latcon::continuum

@@ -39,9 +39,6 @@ public:
   /// Computes z [m] from r [N/m]. Collective.
   void vmult(Vector &z, const Vector &r) const;
 
-  /// Returns the number of blocks on all ranks that the last factorise() replaced by their row sums. Collective.
-  unsigned int n_replaced() const;
-
   /// Layout of vectors: the owned degrees of freedom of the sheet and, as ghosts, the relevant ones and those of the
   /// patches of this rank.
   const std::shared_ptr<const Layout> &layout() const { return layout_; }
@@ -53,6 +50,5 @@ private:
   std::vector<std::size_t> first_entry_; // of each patch in inverses_, and the end
   std::size_t largest_patch_ = 0;
   std::vector<float> inverses_; // of all patches: lower triangle of blocks of 4 by 4, see multiply
-  unsigned int own_replaced_ = 0;
 };
 } // namespace latcon::continuum

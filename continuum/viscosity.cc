@@ -11,8 +11,7 @@ namespace latcon::continuum
 FibreViscosity::FibreViscosity(std::vector<FibreDashpot> dashpots, const double gradient_length)
   : dashpots_(std::move(dashpots))
 {
-  if (dashpots_.empty())
-    throw InvalidMaterial("fibre viscosity needs at least one dashpot");
+  require<InvalidMaterial>(!dashpots_.empty(), "fibre viscosity needs at least one dashpot");
   std::vector<StrainMeasure> gradients;
   for (const FibreDashpot &dashpot : dashpots_)
   {

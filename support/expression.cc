@@ -19,34 +19,6 @@ bool is_binary(Expression::Operation operation)
 
 } // namespace
 
-double evaluate(Expression::Operation operation, double value, double left, double right)
-{
-  switch (operation)
-  {
-  case Expression::Operation::variable:
-    return left;
-  case Expression::Operation::constant:
-    return value;
-  case Expression::Operation::add:
-    return left + right;
-  case Expression::Operation::subtract:
-    return left - right;
-  case Expression::Operation::multiply:
-    return left * right;
-  case Expression::Operation::divide:
-    return left / right;
-  case Expression::Operation::power:
-    return std::pow(left, value);
-  case Expression::Operation::square_root:
-    return std::sqrt(left);
-  case Expression::Operation::exponential:
-    return std::exp(left);
-  case Expression::Operation::logarithm:
-    return std::log(left);
-  }
-  throw std::logic_error("an operation without a rule");
-}
-
 std::size_t Expression::add(const Node &node)
 {
   const auto same = std::find_if(nodes_.begin(), nodes_.end(),

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
+#include <stdexcept>
 #include <vector>
 
 namespace latcon::support
@@ -57,6 +59,34 @@ private:
 };
 
 /// An operation on two numbers, of which unary ones ignore the second; `value` is the exponent of a power.
-double evaluate(Expression::Operation operation, double value, double left, double right);
+template <class Number>
+Number evaluate(Expression::Operation operation, double value, const Number &left, const Number &right)
+{
+  using std::exp, std::log, std::pow, std::sqrt;
+  switch (operation)
+  {
+  case Expression::Operation::variable:
+    return left;
+  case Expression::Operation::constant:
+    return value;
+  case Expression::Operation::add:
+    return left + right;
+  case Expression::Operation::subtract:
+    return left - right;
+  case Expression::Operation::multiply:
+    return left * right;
+  case Expression::Operation::divide:
+    return left / right;
+  case Expression::Operation::power:
+    return pow(left, value);
+  case Expression::Operation::square_root:
+    return sqrt(left);
+  case Expression::Operation::exponential:
+    return exp(left);
+  case Expression::Operation::logarithm:
+    return log(left);
+  }
+  throw std::logic_error("an operation without a rule");
+}
 
 } // namespace latcon::support

@@ -152,9 +152,8 @@ TEST(Assembly, AddsInSinglePrecision)
     {
       Mesh mesh(MPI_COMM_WORLD);
       make_adaptive(mesh);
-      const Sheet sheet(mesh, continuum::Constitution(law, gradient), degree);
-      const auto constraints = continuum::homogeneous_constraints(
-        sheet, {{continuum::edge::left, dealii::ComponentMask(std::vector<bool>{true, false})}});
+      const Sheet sheet(mesh, continuum::Constitution(law, gradient), degree, left_held_across());
+      const AffineConstraints<double> &constraints = sheet.homogeneous_constraints();
       Sheet::Matrix K;
       continuum::SinglePrecisionMatrix single;
       sheet.make_matrix(constraints, K);

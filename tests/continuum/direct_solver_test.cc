@@ -19,14 +19,15 @@ struct Tangents
   explicit Tangents(const unsigned int cells) : mesh(MPI_COMM_SELF)
   {
     continuum::make_rectangle(mesh, rectangle(cells, cells));
-    sheet = std::make_unique<Sheet>(mesh, continuum::Constitution(law), 3);
-    constraints.copy_from(continuum::homogeneous_constraints(
-      *sheet, {{continuum::edge::left, dealii::ComponentMask()}, {continuum::edge::right, dealii::ComponentMask()}}));
+    const auto rest = affine(matrix(1., 0., 0., 1.));
+    sheet = std::make_unique<Sheet>(
+      mesh, continuum::Constitution(law), 3,
+      continuum::BoundaryConditions{{continuum::edge::left, rest}, {continuum::edge::right, rest}});
     b = sheet->make_owned();
     sheet->for_each_owned_dof(
       [&](const auto dof, const unsigned int i, const Point<2> &X)
       {
-        if (!constraints.is_constrained(dof))
+        if (!sheet->homogeneous_constraints().is_constrained(dof))
           b(dof) = std::sin(40. * X[0] + 90. * X[1] + i);
       });
   }
@@ -34,6 +35,7 @@ struct Tangents
   Sheet::Matrix at(const double stretch) const
   {
     Sheet::Matrix K;
+    const auto &constraints = sheet->homogeneous_constraints();
     sheet->make_matrix(constraints, K);
     sheet->tangent(nodal(*sheet, [&](const Point<2> &X) { return (stretch - 1.) * Tensor<1, 2>(X); }), constraints, K);
     for (auto entry = K.begin(); entry != K.end(); ++entry)
@@ -57,7 +59,6 @@ struct Tangents
   const continuum::CauchyBorn law = rubber_network();
   Mesh mesh;
   std::unique_ptr<Sheet> sheet;
-  dealii::AffineConstraints<double> constraints;
   Sheet::Vector b;
 };
 

@@ -101,7 +101,7 @@ TEST(NewtonSolver, ReducesTheResidualWithoutAnEnergy)
   const auto evaluate = [](const Vector &at) { return State{std::abs(std::atan(at(0))), 1., 0.}; };
   std::vector<bool> keeps;
   double tangent_at = 0.;
-  const NewtonSolver<State> newton({1e-12, 20, 10},
+  const NewtonSolver<State> newton{{1e-12, 20, 10},
                                    {evaluate, [](const State &, const Vector &) { return 0.; },
                                     [&](const State &, const Vector &at, double, const bool keeps_tangent, Vector &step)
                                     {
@@ -112,7 +112,7 @@ TEST(NewtonSolver, ReducesTheResidualWithoutAnEnergy)
                                       step.compress(dealii::VectorOperation::insert);
                                       return NewtonStep{0, 0.};
                                     },
-                                    nullptr, nullptr});
+                                    nullptr, nullptr}};
   std::vector<NewtonIteration> history;
   State state = evaluate(u);
   EXPECT_EQ(newton.solve(u, state, 1, 1., 0, history), "");
@@ -140,14 +140,15 @@ TEST(NewtonSolver, AcceptsStepsAndAsksForForcingByItsRules)
   auto next = given.begin();
   std::vector<double> forcings, lengths;
   double slope = -1.;
-  const NewtonSolver<State> newton(
-    {1e-6, 20, 10, 0.6}, {[&](const Vector &) { return *next++; }, [](const State &, const Vector &) { return 0.; },
-                          [&](const State &, const Vector &, const double forcing, bool, Vector &)
-                          {
-                            forcings.push_back(forcing);
-                            return NewtonStep{0, slope};
-                          },
-                          [](const State &) { return 0.1; }, nullptr});
+  const NewtonSolver<State> newton{{1e-6, 20, 10, 0.6},
+                                   {[&](const Vector &) { return *next++; },
+                                    [](const State &, const Vector &) { return 0.; },
+                                    [&](const State &, const Vector &, const double forcing, bool, Vector &)
+                                    {
+                                      forcings.push_back(forcing);
+                                      return NewtonStep{0, slope};
+                                    },
+                                    [](const State &) { return 0.1; }, nullptr}};
   std::vector<NewtonIteration> history;
   Vector u = one_unknown(0.);
   State state{1., 1., 0.};

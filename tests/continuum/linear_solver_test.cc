@@ -21,14 +21,12 @@ struct Problem
   explicit Problem(LinearSettings settings, const Symmetry given_symmetry = Symmetry::symmetric)
     : mesh(rectangle(12, 8)), symmetry(given_symmetry)
   {
-    sheet = std::make_unique<Sheet>(mesh, continuum::Constitution(law, gradient), 2);
-    constraints = std::make_unique<AffineConstraints<double>>();
-    constraints->copy_from(continuum::homogeneous_constraints(*sheet, all_held()));
+    sheet = std::make_unique<Sheet>(mesh, continuum::Constitution(law, gradient), 2, all_held());
     settings.direct_limit = 0;
     settings.coarsest_size = 100;
-    solver = std::make_unique<LinearSolver>(*sheet, *constraints, all_held(), settings, symmetry);
+    solver = std::make_unique<LinearSolver>(*sheet, settings, symmetry);
     b = sheet->make_owned();
-    body_force(*sheet, *constraints, b);
+    body_force(*sheet, b);
   }
 
   // Solves with the tangent for this length, compares with a direct solver, and returns the number of iterations.
@@ -40,7 +38,7 @@ struct Problem
     const unsigned int iterations = solver->solve(x, b);
     LinearSettings settings;
     settings.direct_limit = 1000000;
-    LinearSolver direct(*sheet, *constraints, all_held(), settings);
+    LinearSolver direct(*sheet, settings);
     direct.update(sheet->make_ghosted(), assembler(), {});
     Sheet::Vector exact = sheet->make_owned();
     direct.solve(exact, b);
@@ -62,7 +60,7 @@ struct Problem
         scale(dof) =
           1. + (symmetry == Symmetry::unsymmetric ? 0.3 : 0.) * std::sin(4. * X[0] / length + 3. * X[1] / height);
       });
-    return [this, scale](const Sheet &, const Sheet::Vector &u, const AffineConstraints<double> &held, auto &K)
+    return [this, scale](const Sheet &, const Sheet::Vector &u, auto &K)
     {
       K = 0.;
       continuum::integrate(*sheet, u, continuum::energy_densities(*sheet, 1., continuum::Order::second),
@@ -73,7 +71,7 @@ struct Problem
                              for (unsigned int a = 0; a < local.m(); ++a)
                                for (unsigned int b = 0; b < local.n(); ++b)
                                  local(a, b) *= scale(contribution.dofs[b]);
-                             held.distribute_local_to_global(local, contribution.dofs, K);
+                             sheet->homogeneous_constraints().distribute_local_to_global(local, contribution.dofs, K);
                            });
       K.compress(dealii::VectorOperation::add);
     };
@@ -83,7 +81,6 @@ struct Problem
   continuum::IsotropicGradient gradient{5e5, 0.01};
   RectangleMesh mesh;
   std::unique_ptr<Sheet> sheet;
-  std::unique_ptr<AffineConstraints<double>> constraints;
   std::unique_ptr<LinearSolver> solver;
   Symmetry symmetry;
   Sheet::Vector b;
@@ -161,13 +158,13 @@ TEST(LinearSolver, FactorisesAfterAnUpdate)
   const Problem problem{LinearSettings()};
   LinearSettings settings;
   settings.direct_limit = 1000000;
-  LinearSolver direct(*problem.sheet, *problem.constraints, all_held(), settings);
+  LinearSolver direct(*problem.sheet, settings);
   const auto updated = [&](const double factor)
   {
     direct.update(problem.sheet->make_ghosted(),
-                  [&](const Sheet &sheet, const Sheet::Vector &u, const auto &constraints, auto &K)
+                  [&](const Sheet &sheet, const Sheet::Vector &u, auto &K)
                   {
-                    assemble_at_rest(sheet, u, constraints, K);
+                    assemble_at_rest(sheet, u, K);
                     K *= factor;
                   },
                   {});

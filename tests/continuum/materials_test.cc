@@ -124,8 +124,6 @@ TEST(MooneyRivlin, HasPlaneStressModuliAtIdentity)
   const double lambda = 2. * mu * lambda_3d / (lambda_3d + 2. * mu);
   const MooneyRivlin law({2e5, 0.7e5, 3e6});
   expect_isotropic_moduli(law, lambda, mu);
-  EXPECT_NEAR(law.shear_modulus(), mu, 4. * epsilon * mu);
-  EXPECT_NEAR(law.lame_lambda(), lambda, 4. * epsilon * lambda);
 }
 
 // theory-continuum.md, eq. (C.10).
@@ -179,7 +177,7 @@ TEST(StretchMeans, AreLegendreFunctions)
   const continuum::StretchMeans mean = continuum::stretch_means(1e12, 1.);
   const auto expect = [](const continuum::InvariantFunction &f, const std::array<double, 6> &digits)
   {
-    const std::array<double, 6> values = {f.value, f.by_I, f.by_J, f.by_II, f.by_IJ, f.by_JJ};
+    const std::array<double, 6> values = {f[0], f[1], f[2], f[3], f[4], f[5]};
     // About ten operations on an arithmetic-geometric mean that has several rounding errors itself.
     for (unsigned int k = 0; k < 6; ++k)
       EXPECT_NEAR(values[k] / digits[k], 1., 16. * epsilon) << "derivative " << k;

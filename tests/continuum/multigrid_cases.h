@@ -18,16 +18,18 @@ using latcon::continuum::Sheet;
 using latcon::continuum::SinglePrecisionMatrix;
 
 /// Assembles the tangent of a sheet at rest, whatever its state.
-inline const auto assemble_at_rest =
-  [](const Sheet &sheet, const Sheet::Vector &, const AffineConstraints<double> &constraints, auto &K)
-{ sheet.tangent(sheet.make_ghosted(), constraints, K); };
+inline const auto assemble_at_rest = [](const Sheet &sheet, const Sheet::Vector &, auto &K)
+{ sheet.tangent(sheet.make_ghosted(), sheet.homogeneous_constraints(), K); };
 
-inline latcon::continuum::DirichletBoundaries all_held()
+inline latcon::continuum::BoundaryConditions all_held()
 {
-  return {{latcon::continuum::edge::left, {}},
-          {latcon::continuum::edge::right, {}},
-          {latcon::continuum::edge::bottom, {}},
-          {latcon::continuum::edge::top, {}}};
+  return on_all_edges(affine(matrix(1., 0., 0., 1.)));
+}
+
+/// Prescribes no displacement across the left edge.
+inline latcon::continuum::BoundaryConditions left_held_across()
+{
+  return {{latcon::continuum::edge::left, affine(matrix(1., 0., 0., 1.)), std::vector<bool>{true, false}}};
 }
 
 /// Refines `times` times around `tip`, each time within half of the previous radius [m].
@@ -43,7 +45,7 @@ inline void refine_towards(Mesh &mesh, const Point<2> &tip, const unsigned int t
 }
 
 /// Returns the nodal forces of a body force with different components, zero at constrained unknowns.
-inline void body_force(const Sheet &sheet, const AffineConstraints<double> &constraints, Sheet::Vector &b)
+inline void body_force(const Sheet &sheet, Sheet::Vector &b)
 {
   b = 0.;
   dealii::FEValues<2> values(sheet.mapping(), sheet.element(), dealii::QGauss<2>(sheet.degree() + 1),
@@ -61,7 +63,7 @@ inline void body_force(const Sheet &sheet, const AffineConstraints<double> &cons
           cell_b(a) += (sheet.element().system_to_component_index(a).first == 0 ? 1. : -0.6) *
                        values.shape_value(a, q) * values.JxW(q);
       cell->get_dof_indices(dofs);
-      constraints.distribute_local_to_global(cell_b, dofs, b);
+      sheet.homogeneous_constraints().distribute_local_to_global(cell_b, dofs, b);
     }
   b.compress(dealii::VectorOperation::add);
 }
@@ -92,10 +94,10 @@ struct HeldSheet
   {
     latcon::continuum::make_rectangle(mesh, shape);
     refine_towards(mesh, Point<2>(0.4 * length, 0.003), times, length / 3.);
-    sheet = std::make_unique<Sheet>(mesh, latcon::continuum::Constitution(law, gradient), degree);
-    multigrid = std::make_unique<Multigrid>(*sheet, all_held(), coarsest_size);
-    K.reinit(*sheet, multigrid->constraints());
-    assemble_at_rest(*sheet, {}, multigrid->constraints(), K);
+    sheet = std::make_unique<Sheet>(mesh, latcon::continuum::Constitution(law, gradient), degree, all_held());
+    multigrid = std::make_unique<Multigrid>(*sheet, coarsest_size);
+    K.reinit(*sheet, sheet->homogeneous_constraints());
+    assemble_at_rest(*sheet, {}, K);
     K.make_symmetric();
     multigrid->set_finest(K);
     multigrid->update(sheet->make_ghosted(), assemble_at_rest);

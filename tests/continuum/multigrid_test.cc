@@ -26,7 +26,7 @@ struct LinearProblem : HeldSheet
   {
     Sheet::Vector x = sheet->make_owned();
     Sheet::Vector b = sheet->make_owned();
-    body_force(*sheet, multigrid->constraints(), b);
+    body_force(*sheet, b);
     return solve(*multigrid, K, x, b);
   }
 
@@ -38,7 +38,7 @@ struct LinearProblem : HeldSheet
     Multigrid::Vector v;
     multigrid->initialize(v);
     for (const auto i : sheet->owned())
-      v(i) = multigrid->constraints().is_constrained(i) ? 0. : number(generator);
+      v(i) = sheet->homogeneous_constraints().is_constrained(i) ? 0. : number(generator);
     return v;
   }
 };
@@ -51,7 +51,6 @@ TEST(Multigrid, IsSymmetricAndPositive)
       if (degree == 1 && internal_length > 0.)
         continue;
       const LinearProblem problem(internal_length, degree, 2, 3);
-      ASSERT_GE(problem.multigrid->levels().size(), 3u);
       const auto a = problem.random(1);
       const auto b = problem.random(2);
       auto Ba = a;
@@ -89,9 +88,8 @@ TEST(Multigrid, NeedsAboutAsManyIterationsOnEveryMesh)
 // Rayleigh quotient of K after some steps of the power method with patches times K.
 double largest_eigenvalue(const LinearProblem &problem)
 {
-  continuum::VertexPatches patches(*problem.sheet, problem.multigrid->constraints());
+  continuum::VertexPatches patches(*problem.sheet, problem.sheet->homogeneous_constraints());
   patches.factorise(problem.K);
-  EXPECT_EQ(patches.n_replaced(), 0u);
   Multigrid::Vector v = problem.random(1), Kv(v), next(v);
   double eigenvalue = 0.;
   for (unsigned int step = 0; step < 60; ++step)
@@ -134,9 +132,8 @@ TEST(Multigrid, HasAPatchForEveryFreeDegreeOfFreedom)
           cell->set_refine_flag();
       mesh.execute_coarsening_and_refinement();
     }
-    const Sheet sheet(mesh, law, degree);
-    const auto constraints = continuum::homogeneous_constraints(
-      sheet, {{continuum::edge::left, dealii::ComponentMask(std::vector<bool>{true, false})}});
+    const Sheet sheet(mesh, law, degree, left_held_across());
+    const AffineConstraints<double> &constraints = sheet.homogeneous_constraints();
     // A diagonal matrix.
     SinglePrecisionMatrix K;
     K.reinit(sheet, constraints);
@@ -170,7 +167,6 @@ TEST(Multigrid, HasAPatchForEveryFreeDegreeOfFreedom)
 TEST(Multigrid, IsADirectSolverOnAMeshThatIsCoarseEnough)
 {
   const LinearProblem problem(0.01 * length, 2, 2, 1, 1000000);
-  EXPECT_EQ(problem.multigrid->levels().size(), 1u);
   EXPECT_LE(problem.iterations(), 2u);
 }
 
@@ -187,16 +183,15 @@ TEST(Multigrid, TakesTheStateToEveryLevel)
     const LinearProblem problem(0., degree, 2, 3);
     unsigned int n_levels = 1;
     problem.multigrid->update(nodal(*problem.sheet, quadratic),
-                              [&](const Sheet &level, const Sheet::Vector &u, const auto &constraints, auto &K)
+                              [&](const Sheet &level, const Sheet::Vector &u, auto &K)
                               {
                                 Sheet::Vector difference = owned(level, u);
                                 const Sheet::Vector exact = owned(level, nodal(level, quadratic));
                                 difference -= exact;
                                 EXPECT_LT(difference.linfty_norm(), 1e-13 * exact.linfty_norm()) << "degree " << degree;
-                                assemble_at_rest(level, u, constraints, K);
+                                assemble_at_rest(level, u, K);
                                 ++n_levels;
                               });
-    EXPECT_EQ(n_levels, problem.multigrid->levels().size());
     EXPECT_GE(n_levels, 4u);
   }
 }
@@ -205,22 +200,23 @@ TEST(Multigrid, TakesAPartOfAStateThatACoarserLevelCannotHave)
 {
   const LinearProblem problem(0., 2, 3, 0);
   const Sheet::Vector u = nodal(*problem.sheet, quadratic);
+  double taken = 1.; // on the coarsest level
   const auto update = [&](const double refused)
   {
     problem.multigrid->update(u,
-                              [&](const Sheet &level, const Sheet::Vector &state, const auto &constraints, auto &K)
+                              [&](const Sheet &level, const Sheet::Vector &state, auto &K)
                               {
-                                if (state.linfty_norm() >= refused * u.linfty_norm())
+                                taken = state.linfty_norm() / u.linfty_norm();
+                                if (taken >= refused)
                                   throw continuum::NonPhysicalState("too large");
-                                assemble_at_rest(level, state, constraints, K);
+                                assemble_at_rest(level, state, K);
                               });
   };
   update(0.3);
-  EXPECT_EQ(problem.multigrid->levels().front().state_factor, 0.25);
-  EXPECT_EQ(problem.multigrid->levels().back().state_factor, 1.);
+  EXPECT_DOUBLE_EQ(taken, 0.25);
   EXPECT_LE(problem.iterations(), 8u);
   update(1e-3);
-  EXPECT_EQ(problem.multigrid->levels().front().state_factor, 0.);
+  EXPECT_EQ(taken, 0.);
   EXPECT_LE(problem.iterations(), 8u);
   EXPECT_THROW(update(0.), continuum::NonPhysicalState);
 }
@@ -230,9 +226,19 @@ TEST(Multigrid, StaysFiniteForATangentThatIsNotPositiveDefinite)
   LinearProblem problem(0., 2, 3, 1);
   problem.K *= -1.;
   problem.multigrid->set_finest(problem.K);
-  EXPECT_GT(problem.multigrid->levels().back().n_replaced_patches, 0u);
+  // Blocks are replaced by a diagonal.
+  const AffineConstraints<double> &constraints = problem.sheet->homogeneous_constraints();
+  continuum::VertexPatches patches(*problem.sheet, constraints);
+  patches.factorise(problem.K);
+  const auto &owned = problem.sheet->owned();
+  const auto free =
+    *std::find_if_not(owned.begin(), owned.end(), [&](auto i) { return constraints.is_constrained(i); });
+  Multigrid::Vector one(patches.layout()), z(one);
+  one(free) = 1.;
+  patches.vmult(z, one);
+  EXPECT_GT(z(free), 0.);
+  EXPECT_EQ(z.l1_norm(), z(free));
   const auto r = problem.random(4);
-  auto z = r;
   problem.multigrid->vmult(z, r);
   EXPECT_TRUE(std::isfinite(z.l2_norm()));
 }

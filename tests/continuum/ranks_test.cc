@@ -92,7 +92,6 @@ struct LinearAnswer
 {
   unsigned int iterations;
   std::vector<continuum::PointState> states;
-  std::size_t n_levels;
 };
 
 // Tangent of a gradient law on an adaptive mesh, solved by conjugate gradients with multigrid. The matrix has single
@@ -104,14 +103,13 @@ LinearAnswer linear_answer(const MPI_Comm communicator, const unsigned int degre
   const continuum::Sheet &sheet = *problem.sheet;
   continuum::Sheet::Vector b = sheet.make_owned();
   continuum::Sheet::Vector x = sheet.make_owned();
-  multigrid_cases::body_force(sheet, problem.multigrid->constraints(), b);
+  multigrid_cases::body_force(sheet, b);
   LinearAnswer answer;
   answer.iterations = multigrid_cases::solve(*problem.multigrid, problem.K, x, b, 1e-12);
-  problem.multigrid->constraints().distribute(x);
+  sheet.homogeneous_constraints().distribute(x);
   // Scaled to a displacement within the domain of the law.
   x *= 1e-3 * length / x.linfty_norm();
   answer.states = sheet.evaluate(ghosted(sheet, x), scattered_points(7, 5));
-  answer.n_levels = problem.multigrid->levels().size();
   return answer;
 }
 
@@ -138,8 +136,6 @@ TEST(Ranks, NeedTheSameMultigridIterationsForTheSameAnswer)
     EXPECT_NEAR(together.iterations, alone.iterations, 1.);
     for (std::size_t p = 0; p < alone.states.size(); ++p)
       EXPECT_NEAR((together.states[p].displacement - alone.states[p].displacement).norm(), 0., 1e-5 * 1e-3 * length);
-    ASSERT_EQ(together.n_levels, alone.n_levels);
-    ASSERT_GE(alone.n_levels, 4u);
   }
 }
 
