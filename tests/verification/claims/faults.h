@@ -28,10 +28,8 @@ public:
   {
     const auto a = first_->evaluate(F, G, order), b = second_->evaluate(F, G, order);
     const auto of = [&, f = factor(F)](const auto &x, const auto &y) { return f * (a_ * x + b_ * y); };
-    return {of(a.energy, b.energy),
-            of(a.first_piola, b.first_piola),
+    return {{of(a.energy, b.energy), of(a.first_piola, b.first_piola), of(a.tangent, b.tangent)},
             of(a.double_stress, b.double_stress),
-            of(a.tangent, b.tangent),
             of(a.double_stress_by_F, b.double_stress_by_F),
             of(a.double_stress_by_G, b.double_stress_by_G)};
   }
