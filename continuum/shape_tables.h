@@ -45,8 +45,8 @@ public:
   /// Returns the table of a cell, valid until the next call of cell().
   const ShapeTable &cell(const Cell &cell);
 
-  /// Returns the table of a face or, if `subface` is not `whole`, of one half of the face; valid
-  /// until the next call of face() for the same `side`, 0 or 1.
+  /// Returns the table of a face or, if `subface` is not `whole`, of one half of the face; valid until the next call of
+  /// face() for the same `side`, 0 or 1.
   const ShapeTable &face(const Cell &cell, unsigned int face, unsigned int subface, unsigned int side);
 
   /// Returns the FEFaceValues of a face, with quadrature points.

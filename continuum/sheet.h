@@ -138,6 +138,7 @@ public:
   const dealii::AffineConstraints<double> &conformity_constraints() const { return conformity_constraints_; }
   /// The same together with zero for unknowns whose displacement is prescribed.
   const dealii::AffineConstraints<double> &homogeneous_constraints() const { return homogeneous_constraints_; }
+  /// Returns whether the displacement of a relevant unknown is prescribed.
   bool is_prescribed(const dealii::types::global_dof_index i) const
   {
     return homogeneous_constraints_.is_constrained(i) && !conformity_constraints_.is_constrained(i);

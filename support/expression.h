@@ -59,6 +59,7 @@ private:
 };
 
 /// An operation on two numbers, of which unary ones ignore the second; `value` is the exponent of a power.
+/// @tparam Number double, or a type with its functions such as the jets of Boost
 template <class Number>
 Number evaluate(Expression::Operation operation, double value, const Number &left, const Number &right)
 {
