@@ -6,9 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "lattice/memory_kernels.h"
+#include "lattice/row_kernels.h"
 #include "lattice/state.h"
-#include "lattice/stencil_kernels.h"
 
 namespace latcon::lattice
 {
@@ -139,6 +138,13 @@ private:
     BondHistory *history = nullptr; // updated
   };
 
+  /// What one bond does.
+  struct SingleBond
+  {
+    kernels::BondForce force;                              // with the overstress of its memory
+    std::array<double, max_history_variables> dissipation; // of each mechanism, 0 beyond [W/m], or [J/m]
+  };
+
   /// Sums of the forces on the sites of the rows that bonds reach from one row, as far as they are known.
   class SiteSums
   {
@@ -166,42 +172,34 @@ private:
   {
     Scratch(const TriangularLattice &lattice, std::size_t n_kinds)
       : bonds(lattice.stride(), lattice.is_triangular() ? n_kinds : 0),
-        sums(lattice, lattice.is_triangular() ? 0 : lattice.reach() + 1), kinds(n_kinds), fx(lattice.stride(), 0.),
-        fy(lattice.stride(), 0.)
+        sums(lattice, lattice.is_triangular() ? 0 : lattice.reach() + 1), fx(lattice.stride(), 0.),
+        fy(lattice.stride(), 0.), lengths(4 * n_kinds_per_shell * lattice.stride())
     {
     }
     BondRows bonds; // of the triangular lattice
     SiteSums sums;  // of other stencils
-    std::vector<kernels::BondsOfKind> kinds;
+    std::vector<kernels::BondsOfKind> kinds = {};
     Field fx, fy;                             // forces on the sites of a row, or of the bonds of a kind
     std::vector<double> mechanism_power = {}; // of the bonds that start in a row
     std::vector<const double *> ahead = {};   // what is fetched during a row
-    Field lengths = {};                       // of the bonds of a row with a memory, and their inverse
+    Field lengths;                            // of the bonds of a row with a memory, and their inverse
   };
 
   void evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
                      const RowCallbacks &work);
-  void bonds_of_kinds(const State &state, std::size_t row, std::vector<kernels::BondsOfKind> &kinds) const;
-  kernels::RowOfBonds sites_of_row(const Motion &motion, std::size_t row) const;
   kernels::RowOfBonds row_of_bonds(const Motion &motion, std::size_t row,
                                    std::vector<kernels::BondsOfKind> &kinds) const;
   bool has_shell(std::size_t shell) const { return has_shell_[shell]; }
-  void bonds_from_below(const Motion &motion, std::ptrdiff_t row, std::ptrdiff_t begin, Scratch &scratch) const;
-  kernels::RowSums scatter_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, std::ptrdiff_t begin,
-                               Scratch &scratch) const;
-  kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, Scratch &scratch) const;
+  kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, std::ptrdiff_t begin,
+                                Scratch &scratch) const;
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
   void add_overstress(const Motion &motion, std::size_t from, const kernels::RowOfBonds &row,
                       const kernels::BondsOfKind &bonds, std::size_t kind, std::vector<double> &mechanism_power) const;
-  void update_memory(const Motion &motion, std::size_t row, Scratch &scratch) const;
-  void add_mechanisms(const std::vector<double> &mechanisms, double &power) const;
-  kernels::Overstress overstress(const State &state, const Bond &bond, double stretch) const;
-  Eigen::Vector2d on_site_of_stencil(const Motion &motion, std::size_t place) const;
-  kernels::BondForce single_bond(const Motion &motion, const Bond &bond) const;
+  SingleBond single_bond(const Motion &motion, const Bond &bond) const;
 
   RowPartition band_;
   const TriangularLattice &lattice_;
-  kernels::BondLaws laws_;
+  std::vector<BondLaw> laws_; // of the shells; those that the sheet lacks are unused
   std::array<BondMemory, n_shells> memories_;
   std::array<MemoryStep, n_shells> memory_steps_;
   std::array<std::size_t, n_shells> first_mechanism_{}; // of each shell

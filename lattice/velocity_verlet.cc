@@ -33,8 +33,8 @@ void VelocityVerlet::initialise(State &state)
 void VelocityVerlet::drift(State &state, std::size_t row)
 {
   const std::size_t begin = lattice_.index(row, 0), n = lattice_.columns();
-  kernels::drift(time_step(), n, &state.ax[begin], &state.vx[begin], &state.x[begin], &predicted_vx_[begin]);
-  kernels::drift(time_step(), n, &state.ay[begin], &state.vy[begin], &state.y[begin], &predicted_vy_[begin]);
+  kernels::loops().drift(time_step(), n, &state.ax[begin], &state.vx[begin], &state.x[begin], &predicted_vx_[begin]);
+  kernels::loops().drift(time_step(), n, &state.ay[begin], &state.vy[begin], &state.y[begin], &predicted_vy_[begin]);
 }
 
 void VelocityVerlet::step(State &state)
@@ -57,7 +57,8 @@ void VelocityVerlet::step(State &state)
     };
     halo_.finish();
     touched_ = {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &predicted_vx_, &predicted_vy_};
-    forces_.evaluate(state, predicted_vx_, predicted_vy_, {std::ref(before), &touched_, std::ref(after), &state.history});
+    forces_.evaluate(state, predicted_vx_, predicted_vy_,
+                     {std::ref(before), &touched_, std::ref(after), &state.history});
   }
   else
   {

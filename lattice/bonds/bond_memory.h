@@ -1,20 +1,16 @@
-// The list of bond memories, for each type of number; see formulas.h.
-#include "lattice/bonds/custom_memory.h"
-#include "lattice/bonds/maxwell_memory.h"
-#include "lattice/bonds/plastic_memory.h"
-
-#ifndef LATCON_LATTICE_BOND_MEMORY
-#define LATCON_LATTICE_BOND_MEMORY
+#pragma once
 
 #include <variant>
+
+#include "lattice/bonds/formulas.h"
 
 /// @file
 /// Memories of bonds: overstresses q that depend on the past of a bond through a number of variables per bond,
 ///   sigma = psi'(lam) + eta lam' + q   (theory.md, eq. (L.27)).
 ///
 /// A memory declares its number of variables, the mechanisms by which it stores and dissipates energy, and a bound on
-/// its stiffness; its `Step` has what an update over one duration needs, and `advance` is its formula for any type of
-/// number. Variables are 0 at rest and are stored by BondHistory. `advance` gives the power that each mechanism
+/// its stiffness; its `Step` has what an update over one duration needs, and `advance` is its formula (formulas.inc).
+/// Variables are 0 at rest and are stored by BondHistory. `advance` gives the power that each mechanism
 /// dissipates at the end of an update, or, if `Step::dissipates_energy`, the energy that it dissipates in the update.
 namespace latcon::lattice
 {
@@ -71,4 +67,3 @@ inline MemoryStep memory_step(const BondMemory &memory, double duration)
 }
 
 } // namespace latcon::lattice
-#endif

@@ -231,7 +231,7 @@ TEST(Forces, FindRowsWithShortBonds)
 TEST(Forces, BitsDoNotDependOnTheInstructionSet)
 {
   const std::vector<std::string> sets = kernels::instruction_sets();
-  EXPECT_EQ(kernels::instruction_set(), sets.front());
+  EXPECT_EQ(kernels::loops().instruction_set, sets.front());
   // Without vectors; Highway has one for compilers that it trusts with its emulated ones.
   EXPECT_TRUE(sets.back() == "SCALAR" || sets.back() == "EMU128") << sets.back();
   EXPECT_THROW(kernels::use_instruction_set("none"), std::invalid_argument);
@@ -247,7 +247,7 @@ TEST(Forces, BitsDoNotDependOnTheInstructionSet)
     for (const std::string &set : sets)
     {
       kernels::use_instruction_set(set);
-      ASSERT_EQ(kernels::instruction_set(), set);
+      ASSERT_EQ(kernels::loops().instruction_set, set);
       other.evaluate(state, state.vx, state.vy);
       ASSERT_TRUE(same_bits(other.fx(), best.fx())) << set;
       ASSERT_TRUE(same_bits(other.fy(), best.fy())) << set;
@@ -312,7 +312,7 @@ void use_kernels()
   const State state = homogeneous_state(sheet, sheets::rubber(), sheets::stretched(1.2, 1.3), Edges::held);
   Forces forces(sheet, sheets::rubber());
   forces.evaluate(state, state.vx, state.vy);
-  std::fprintf(stderr, "uses %s, best of %zu\n", kernels::instruction_set().c_str(),
+  std::fprintf(stderr, "uses %s, best of %zu\n", kernels::loops().instruction_set,
                kernels::instruction_sets().size());
   std::exit(0);
 }
