@@ -1,6 +1,8 @@
 #include "lattice/forces.h"
 
 #include <algorithm>
+#include <cmath>
+#include <variant>
 
 #include <omp.h>
 
@@ -8,21 +10,13 @@ namespace latcon::lattice
 {
 
 Forces::Forces(const RowPartition &band, const Material &material)
-  : band_(band), lattice_(band.lattice()), laws_(n_shells, material.nearest.law), n_kinds_(material.n_kinds(lattice_)),
+  : band_(band), lattice_(band.lattice()), material_(material), n_kinds_(material.n_kinds(lattice_)),
     reach_(static_cast<std::ptrdiff_t>(lattice_.reach())),
     columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_viscous_power_(lattice_.rows(), 0.),
     row_mechanism_power_(material.n_mechanisms(), Field(lattice_.rows(), 0.)), row_events_(lattice_.rows(), 0),
     row_short_bonds_(lattice_.rows(), 0)
 {
-  kernels::limit_instruction_sets();
-  for (std::size_t number = 0; number < n_shells; ++number)
-    if (const Shell *shell = material.in_shell(number))
-    {
-      has_shell_[number] = true;
-      laws_[number] = shell->law;
-      memories_[number] = shell->memory;
-      first_mechanism_[number] = material.first_mechanism(number);
-    }
+  kernels::instruction_sets();
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {
     constants_.emplace_back();
@@ -34,15 +28,16 @@ Forces::Forces(const RowPartition &band, const Material &material)
   }
   set_elapsed(0.);
   for (std::size_t number = 0; number < n_shells; ++number)
-    if (has_shell(number))
-      mechanism_gives_energy_.insert(mechanism_gives_energy_.end(), n_mechanisms(memories_[number]),
-                                     lattice::dissipates_energy(memory_steps_[number]));
+    if (const Shell *shell = material.in_shell(number))
+      mechanism_gives_energy_.insert(mechanism_gives_energy_.end(), n_mechanisms(shell->memory),
+                                     dissipates_energy(memory_steps_[number]));
 }
 
 void Forces::set_elapsed(double duration)
 {
-  for (std::size_t shell = 0; shell < memories_.size(); ++shell)
-    memory_steps_[shell] = memory_step(memories_[shell], duration);
+  for (std::size_t number = 0; number < n_shells; ++number)
+    if (const Shell *shell = material_.in_shell(number))
+      memory_steps_[number] = memory_step(shell->memory, duration);
 }
 
 void Forces::update_memory(State &state)
@@ -76,7 +71,7 @@ void Forces::add_overstress(const Motion &motion, std::size_t from, const kernel
       remembered.new_variable[v] = &updated.variables[v][first];
   }
   kernels::loops().add_overstress(memory_steps_[shell], row, bonds, remembered,
-                                  &mechanism_power[first_mechanism_[shell]]);
+                                  &mechanism_power[material_.first_mechanism(shell)]);
 }
 
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy, const RowCallbacks &work)
@@ -116,15 +111,6 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy, cons
     set_elapsed(0.);
 }
 
-double Forces::viscous_power() const
-{
-  // Summed row after row, whatever thread did which.
-  double sum = 0.;
-  for (const double power : row_viscous_power_)
-    sum += power;
-  return sum;
-}
-
 void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
                            const RowCallbacks &work)
 {
@@ -136,10 +122,9 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
   for (std::ptrdiff_t row = begin - reach_; row < begin; ++row)
     if (const auto from = lattice_.row(row))
       bonds_of_row(motion, *from, row, begin, scratch);
-    else if (lattice_.is_triangular())
-      for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-        for (double *component : scratch.bonds.at(row, kind))
-          std::fill_n(component - TriangularLattice::row_alignment, lattice_.stride(), 0.);
+    else
+      for (LastRows &bonds : scratch.bonds)
+        bonds.clear(row);
   for (std::ptrdiff_t row = begin; row < end; ++row)
   {
     const auto index = static_cast<std::size_t>(row);
@@ -157,23 +142,21 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
       row_mechanism_power_[m][index] = scratch.mechanism_power[m];
     row_events_[index] = sums.has_events ? 1 : 0;
     row_short_bonds_[index] = sums.has_short_bonds ? 1 : 0;
-    if (lattice_.is_triangular())
-    {
-      gather_row(row, scratch);
-      work.post_force(index, scratch.fx.data(), scratch.fy.data());
-      continue;
-    }
+    const std::array<double *, 2> on_sites = scratch.sums.at(row);
     // What bonds across a periodic edge do to images of sites is done to the sites.
     const auto columns = static_cast<std::ptrdiff_t>(lattice_.columns());
-    if (columns_repeat_)
-      for (double *const sum : {scratch.sums.at(row, 0), scratch.sums.at(row, 1)})
+    if (lattice_.is_triangular())
+      gather_row(row, scratch);
+    else if (columns_repeat_)
+      for (double *const sum : on_sites)
         for (std::ptrdiff_t c = 0; c < static_cast<std::ptrdiff_t>(lattice_.column_reach()); ++c)
         {
           sum[c] += sum[columns + c];
           sum[columns - 1 - c] += sum[-1 - c];
         }
-    work.post_force(index, scratch.sums.at(row, 0), scratch.sums.at(row, 1));
-    scratch.sums.clear(row);
+    work.post_force(index, on_sites[0], on_sites[1]);
+    if (!lattice_.is_triangular())
+      scratch.sums.clear(row);
   }
 }
 
@@ -233,23 +216,24 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   kernels::RowSums sums;
   for (std::size_t first = 0; first < n_kinds_; first += bonds.n_kinds)
   {
-    const std::size_t shell = lattice_.shell(first);
+    const Shell *const shell = material_.shell(lattice_, first);
     // The first two shells of the lattice at once.
     bonds.n_kinds =
-      !gathers ? 1 : (first == 0 && has_shell(1) && !has_factors ? 2 * n_kinds_per_shell : n_kinds_per_shell);
+      !gathers ? 1 : (first == 0 && material_.next_nearest && !has_factors ? 2 * n_kinds_per_shell : n_kinds_per_shell);
     const std::ptrdiff_t rows = lattice_.rows_across(first);
-    if (!has_shell(shell) || (!gathers && row + rows < begin))
+    if (shell == nullptr || (!gathers && row + rows < begin))
       continue;
     bonds.kinds = &kinds[first];
     for (std::size_t kind = first; kind < first + bonds.n_kinds; ++kind)
     {
-      kinds[kind].force = gathers ? scratch.bonds.at(row, kind) : std::array{scratch.fx.data(), scratch.fy.data()};
+      kinds[kind].force = scratch.bonds[gathers ? kind : 0].at(row);
       double *const lengths = &scratch.lengths[2 * (kind - first) * lattice_.stride()];
       kinds[kind].lengths = {};
       if (!row_mechanism_power_.empty())
         kinds[kind].lengths = {lengths, lengths + lattice_.stride()};
     }
-    kernels::loops().bonds_of_row(&laws_[shell], bonds, sums);
+    kernels::loops().bonds_of_row(shell->law, material_.next_nearest ? material_.next_nearest->law : shell->law, bonds,
+                                  sums);
     bonds.n_ahead = 0;
     for (std::size_t kind = first; kind < first + bonds.n_kinds; ++kind)
     {
@@ -265,8 +249,8 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
     const std::ptrdiff_t to = kinds[first].shift - rows * static_cast<std::ptrdiff_t>(lattice_.stride());
     for (std::size_t component = 0; component < 2 && !gathers; ++component)
       kernels::loops().scatter(columns, kinds[first].force[component],
-                               row >= begin ? scratch.sums.at(row, component) : nullptr,
-                               scratch.sums.at(row + rows, component) + to);
+                               row >= begin ? scratch.sums.at(row)[component] : nullptr,
+                               scratch.sums.at(row + rows)[component] + to);
   }
   for (std::size_t m = 0; m < row_mechanism_power_.size(); ++m)
     if (!mechanism_gives_energy_[m])
@@ -283,15 +267,15 @@ void Forces::gather_row(std::ptrdiff_t row, Scratch &scratch) const
     // From the place of the same column where a bond starts to the one where it ends.
     const auto columns = static_cast<std::ptrdiff_t>(lattice_.shift(kind, static_cast<std::size_t>(row + rows)) -
                                                      static_cast<std::size_t>(rows) * lattice_.stride());
-    const std::array<double *, 2> starting = scratch.bonds.at(row, kind), ending = scratch.bonds.at(row - rows, kind);
+    const std::array<double *, 2> starting = scratch.bonds[kind].at(row), ending = scratch.bonds[kind].at(row - rows);
     for (std::size_t component = 0; component < 2; ++component)
     {
       start[component][kind] = starting[component];
       end[component][kind] = ending[component] - columns;
     }
   }
-  kernels::loops().gather_row(lattice_.columns(), n_kinds_, start[0], end[0], scratch.fx.data());
-  kernels::loops().gather_row(lattice_.columns(), n_kinds_, start[1], end[1], scratch.fy.data());
+  kernels::loops().gather_row(lattice_.columns(), n_kinds_, start[0], end[0], scratch.sums.at(row)[0]);
+  kernels::loops().gather_row(lattice_.columns(), n_kinds_, start[1], end[1], scratch.sums.at(row)[1]);
 }
 
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
@@ -304,6 +288,110 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
     std::copy_n(fy, lattice_.columns(), &fy_[lattice_.index(row, 0)]);
   };
   evaluate(state, vx, vy, {{}, nullptr, std::ref(keep)});
+}
+
+// Forces of a bond and on a site, by the operations of an evaluation of all, so that both have the same bits.
+
+kernels::BondForce kernels::bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx,
+                                       double dy, double dvx, double dvy, double length_ratio)
+{
+  dx *= length_ratio;
+  dy *= length_ratio;
+  const double distance = std::sqrt(dx * dx + dy * dy);
+  const double inverse = 1. / distance;
+  const double nx = length_ratio * (dx * inverse), ny = length_ratio * (dy * inverse);
+  const double rate = dvx * nx + dvy * ny;
+  const double stretch = (1. / bond.rest_length) * distance;
+  const double viscous = bond.damping * rate;
+  const double axial =
+    factor * (bond.cross_section * std::visit([&](const auto &of_kind)
+                                              { return formulas::force(of_kind, stretch, bond.rest_length * inverse); },
+                                              law) +
+              viscous);
+  return {axial * nx, axial * ny, nx, ny, stretch, factor * (viscous * rate)};
+}
+
+void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, const Bond &bond)
+{
+  if (!band_.owns(bond.near))
+    return;
+  const std::size_t row = lattice_.row_of(bond.near), shell = lattice_.shell(bond.kind);
+  const auto [force, dissipation] = single_bond({state, vx, vy}, bond);
+  row_viscous_power_[row] -= force.viscous_power;
+  for (std::size_t m = 0; m < n_mechanisms(material_.in_shell(shell)->memory); ++m)
+    row_mechanism_power_[material_.first_mechanism(shell) + m][row] -= dissipation[m];
+}
+
+Forces::SingleBond Forces::single_bond(const Motion &motion, const Bond &bond) const
+{
+  const State &state = motion.state;
+  const Field &vx = motion.vx, &vy = motion.vy;
+  const auto [near, kind, far] = bond;
+  const kernels::BondConstants &constants = constants_[kind];
+  const double factor = state.stiffness.of(near, kind);
+  SingleBond single{kernels::bond_force(material_.shell(lattice_, kind)->law, constants, factor,
+                                        state.x[far] - state.x[near], state.y[far] - state.y[near], vx[far] - vx[near],
+                                        vy[far] - vy[near], lattice_.length_ratio(near, kind)),
+                    {}};
+  if (!state.history.remembers(kind))
+    return single;
+  std::array<double, max_history_variables> variables{};
+  state.history.variables_of(near, kind, variables.data());
+  const MemoryStep &step = memory_steps_[lattice_.shell(kind)];
+  const double axial = constants.cross_section *
+                       advance(step, state.history.kinds[kind].stretch[near], single.force.stretch, variables.data(),
+                               single.dissipation.data()) *
+                       factor;
+  single.force.x += axial * single.force.nx;
+  single.force.y += axial * single.force.ny;
+  for (double &power : single.dissipation)
+  {
+    power = power * (constants.cross_section * constants.rest_length) * factor;
+    if (!dissipates_energy(step))
+      single.force.viscous_power += power;
+  }
+  return single;
+}
+
+Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field &vy, std::size_t place) const
+{
+  const auto force = [&](const Bond &bond) -> Eigen::Vector2d
+  {
+    if (!state.bonds.present(bond.near, bond.kind))
+      return {0., 0.};
+    const kernels::BondForce of_bond = single_bond({state, vx, vy}, bond).force;
+    return {of_bond.x, of_bond.y};
+  };
+  Eigen::Vector2d sum(0., 0.);
+  if (!lattice_.is_triangular())
+  {
+    // In the order of an evaluation: rows from the lowest up, half-bond by half-bond.
+    for (std::ptrdiff_t below = reach_; below >= 0; --below)
+      for (std::size_t kind = 0; kind < n_kinds_; ++kind)
+      {
+        if (below == 0)
+          sum += force(lattice_.bond(place, kind));
+        if (lattice_.rows_across(kind) == below)
+          sum -= force(lattice_.bond_into(place, kind));
+      }
+    return sum;
+  }
+  std::array<std::array<double, n_bond_kinds>, 2> start{}, end{};
+  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
+  {
+    const Eigen::Vector2d from = force(lattice_.bond(place, kind)), into = force(lattice_.bond_into(place, kind));
+    for (std::size_t c = 0; c < 2; ++c)
+    {
+      start[c][kind] = from[static_cast<Eigen::Index>(c)];
+      end[c][kind] = into[static_cast<Eigen::Index>(c)];
+    }
+  }
+  const auto component = [&](std::size_t c)
+  {
+    return n_kinds_ == n_bond_kinds ? formulas::sum_of_bonds<true>(start[c], end[c])
+                                    : formulas::sum_of_bonds<false>(start[c], end[c]);
+  };
+  return {component(0), component(1)};
 }
 
 } // namespace latcon::lattice

@@ -1,6 +1,7 @@
 #include "lattice/integrator.h"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 
 #include "lattice/row_kernels.h"
@@ -59,8 +60,8 @@ void Integrator::accelerate(State &state, BondHistory *history)
   const auto after = [&](std::size_t row, const double *fx, const double *fy)
   {
     const std::size_t begin = lattice_.index(row, 0), n = lattice_.columns();
-    kernels::loops().accelerate(n, fx, &state.inverse_mass[begin], &state.ax[begin]);
-    kernels::loops().accelerate(n, fy, &state.inverse_mass[begin], &state.ay[begin]);
+    std::transform(fx, fx + n, &state.inverse_mass[begin], &state.ax[begin], std::multiplies());
+    std::transform(fy, fy + n, &state.inverse_mass[begin], &state.ay[begin], std::multiplies());
   };
   forces_.evaluate(state, evaluated_vx(state), evaluated_vy(state), {{}, nullptr, std::ref(after), history});
   evaluate_site_forces(state);

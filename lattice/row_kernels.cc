@@ -199,21 +199,21 @@ void bonds_of_laws(const Law law, const SecondLaw second_law, const RowOfBonds &
   sums.has_short_bonds = sums.has_short_bonds || !hn::AllFalse(D(), hn::Gt(shortness.v, lanes(row.shortness_limit).v));
 }
 
-void bonds_of_row(const BondLaw *laws, const RowOfBonds &row, RowSums &sums)
+void bonds_of_row(const BondLaw &law, const BondLaw &second_law, const RowOfBonds &row, RowSums &sums)
 {
-  const auto of_law = [&](const auto &law)
+  const auto of_law = [&](const auto &first)
   {
     if (row.n_kinds == 1)
-      bonds_of_laws<1, true>(law, law, row, sums);
+      bonds_of_laws<1, true>(first, first, row, sums);
     else if (row.kinds->stiffness != nullptr || row.kinds->strength != nullptr)
-      bonds_of_laws<n_kinds_per_shell, true>(law, law, row, sums);
+      bonds_of_laws<n_kinds_per_shell, true>(first, first, row, sums);
     else if (row.n_kinds == n_kinds_per_shell)
-      bonds_of_laws<n_kinds_per_shell, false>(law, law, row, sums);
+      bonds_of_laws<n_kinds_per_shell, false>(first, first, row, sums);
     else
-      std::visit([&](const auto &second) { bonds_of_laws<2 * n_kinds_per_shell, false>(law, second, row, sums); },
-                 laws[1]);
+      std::visit([&](const auto &second) { bonds_of_laws<2 * n_kinds_per_shell, false>(first, second, row, sums); },
+                 second_law);
   };
-  std::visit(of_law, laws[0]);
+  std::visit(of_law, law);
 }
 
 // @tparam n_branches of a Maxwell memory, so that their variables stay in registers; 0: any number
@@ -339,7 +339,6 @@ const Loops &LoopsOfTarget()
                            any_event_ahead,
                            any_short_ahead,
                            drift,
-                           accelerate,
                            kick,
                            first_stage,
                            next_stage};
@@ -405,11 +404,6 @@ std::vector<std::string> instruction_sets()
   for (const std::int64_t target : targets())
     names.emplace_back(hwy::TargetName(target));
   return names;
-}
-
-void limit_instruction_sets()
-{
-  (void)targets();
 }
 
 void use_instruction_set(const std::string &name)

@@ -85,9 +85,9 @@ struct Loops
   const char *instruction_set; ///< its name
 
   /// Computes the forces of all bonds of a row (theory.md, eq. (L.3)) and adds to `sums` those over the bonds.
-  /// @param laws of the shells, the first being that of the first kind
+  /// @param law of the first n_kinds_per_shell kinds @param second_law of the others
   /// @param row of one kind, of the n_kinds_per_shell of a shell, or, for bonds without factors, of two shells
-  void (*bonds_of_row)(const BondLaw *laws, const RowOfBonds &row, RowSums &sums);
+  void (*bonds_of_row)(const BondLaw &law, const BondLaw &second_law, const RowOfBonds &row, RowSums &sums);
 
   /// Adds the overstress of the bonds of one kind that start in a row to their `force`, the present stretch being
   /// reached in the duration of `step` since the last update. Takes the `lengths` that bonds_of_row() has kept.
@@ -118,10 +118,8 @@ struct Loops
   void (*drift)(double h, std::size_t n, const double *acceleration, double *velocity, double *position,
                 double *predicted);
 
-  /// Computes one component of the acceleration of n sites from the force on them.
-  void (*accelerate)(std::size_t n, const double *force, const double *inverse_mass, double *acceleration);
-
-  /// Computes the acceleration as accelerate() does, and the velocity after it has acted for `duration` [s].
+  /// Computes one component of the acceleration of n sites from the force on them, and the velocity after it has acted
+  /// for `duration` [s].
   void (*kick)(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,
                double *velocity);
 
@@ -156,12 +154,9 @@ BondForce bond_force(const BondLaw &law, const BondConstants &bond, double facto
 /// Returns the names of the instruction sets that this processor has and the loops exist for, the best first. The
 /// last is for any processor: "SCALAR", or with some compilers "EMU128". The environment variable
 /// LATCON_INSTRUCTION_SET, which is read once, names the best one of them that may be used: for ThreadSanitizer, which
-/// does not see loads and stores of more than 16 bytes.
+/// does not see loads and stores of more than 16 bytes. Forces call this before they use any loop.
 /// @throws std::invalid_argument if the variable names none of them
 std::vector<std::string> instruction_sets();
-/// Leaves out the instruction sets that LATCON_INSTRUCTION_SET rules out. Forces do so before they use any loop.
-/// @throws std::invalid_argument as instruction_sets() does
-void limit_instruction_sets();
 /// Selects the instruction set of the loops; the default is the best one. Not to be called during a computation.
 /// @throws std::invalid_argument for a name that instruction_sets() does not have
 void use_instruction_set(const std::string &name);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <type_traits>
 #include <variant>
 
 #include "lattice/bonds/formulas.h"
@@ -59,6 +60,19 @@ inline double largest_stiffness(const BondMemory &memory)
 inline double stored_energy(const BondMemory &memory, std::size_t mechanism, double stretch, const double *variables)
 {
   return std::visit([&](const auto &m) { return m.stored_energy(mechanism, stretch, variables); }, memory);
+}
+/// Overstress of a bond after an update of its variables by the formula of its memory [Pa].
+/// @param dissipation of each mechanism, see above
+inline double advance(const MemoryStep &step, double before, double now, double *variables, double *dissipation)
+{
+  const auto of_kind = [&](const auto &s) -> double
+  {
+    if constexpr (std::is_same_v<std::decay_t<decltype(s)>, NoMemory::Step>)
+      return 0.;
+    else
+      return formulas::advance(s, before, now, variables, dissipation);
+  };
+  return std::visit(of_kind, step);
 }
 /// Update over `duration` [s], >= 0.
 inline MemoryStep memory_step(const BondMemory &memory, double duration)
