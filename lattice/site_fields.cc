@@ -1,7 +1,6 @@
 #include "lattice/site_fields.h"
 
 #include <cmath>
-#include <type_traits>
 
 #include <Eigen/LU>
 
