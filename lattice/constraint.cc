@@ -133,40 +133,31 @@ void PrescribedMotion::append_rollers(const State &state, std::vector<RollerVelo
                  });
 }
 
-void PrescribedMotion::power(const State &state, const Forces &forces, const Field &vx, const Field &vy,
-                             const std::vector<const SiteForces *> &site_forces, std::vector<double> &of_rows) const
+void PrescribedMotion::add_power(const State &state, const Forces &forces, const Field &vx, const Field &vy,
+                                 const std::vector<const SiteForces *> &site_forces,
+                                 std::vector<double> &of_rows) const
 {
-  const TriangularLattice &lattice = band_.lattice();
-  std::fill(of_rows.begin(), of_rows.end(), 0.);
   if (released_ != 0 || velocity_.is_zero())
     return;
+  const TriangularLattice &lattice = band_.lattice();
+  const std::vector<std::size_t> &sites = constraint_.sites;
   const auto power_of = [&](std::size_t place, const Eigen::Vector2d &force)
   {
     return (constraint_.along_x ? force.x() * state.vx[place] : 0.) +
            (constraint_.along_y ? force.y() * state.vy[place] : 0.);
   };
-  std::vector<std::size_t> own;
-  for_each_known(state,
-                 [&](std::size_t place)
-                 {
-                   if (band_.owns(place))
-                     own.push_back(place);
-                 });
-  std::vector<double> powers(own.size());
-  const auto n = static_cast<std::ptrdiff_t>(own.size());
-#pragma omp parallel for schedule(static) if (own.size() >= min_sites_for_threads)
+  std::vector<double> powers(sites.size());
+  const auto n = static_cast<std::ptrdiff_t>(sites.size());
+#pragma omp parallel for schedule(static) if (sites.size() >= min_sites_for_threads)
   for (std::ptrdiff_t i = 0; i < n; ++i)
-  {
-    const std::size_t place = own[static_cast<std::size_t>(i)];
-    powers[static_cast<std::size_t>(i)] = power_of(place, forces.on_site(state, vx, vy, place));
-  }
-  for (std::size_t i = 0; i < own.size(); ++i)
-    of_rows[lattice.row_of(own[i])] -= powers[i];
+    if (const std::size_t place = sites[static_cast<std::size_t>(i)]; band_.owns(place) && state.removed[place] == 0)
+      powers[static_cast<std::size_t>(i)] = power_of(place, forces.on_site(state, vx, vy, place));
+  for (std::size_t i = 0; i < sites.size(); ++i)
+    of_rows[lattice.row_of(sites[i])] -= powers[i];
   for (const SiteForces *others : site_forces)
-    if (others != nullptr)
-      for (const SiteForce &on : others->last())
-        if (std::binary_search(own.begin(), own.end(), on.place))
-          of_rows[lattice.row_of(on.place)] -= power_of(on.place, on.force);
+    for (const SiteForce &on : others->last())
+      if (std::binary_search(sites.begin(), sites.end(), on.place))
+        of_rows[lattice.row_of(on.place)] -= power_of(on.place, on.force);
 }
 
 void PrescribedMotion::set_free(State &state, const Material &material) const

@@ -76,10 +76,10 @@ public:
   /// Appends the single components of own sites that are prescribed while the other one is free.
   void append_rollers(const State &state, std::vector<RollerVelocity> &rollers) const;
 
-  /// Power of the constraint on the sheet, -f . v over the components prescribed, f being all forces on a site [W/m].
-  /// @param site_forces beside those of the bonds; null ones are skipped @param of_rows one per row; own ones are set
-  void power(const State &state, const Forces &forces, const Field &vx, const Field &vy,
-             const std::vector<const SiteForces *> &site_forces, std::vector<double> &of_rows) const;
+  /// Adds the power of the constraint on the sheet, -f . v over the components prescribed, f being all forces on a site
+  /// [W/m]. @param site_forces beside those of the bonds @param of_rows one per row
+  void add_power(const State &state, const Forces &forces, const Field &vx, const Field &vy,
+                 const std::vector<const SiteForces *> &site_forces, std::vector<double> &of_rows) const;
 
   /// Saves or loads what changes, besides the state; see Simulation.
   template <class Archive>

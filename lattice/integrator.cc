@@ -23,23 +23,63 @@ void for_each_acceleration(const State &state, const std::vector<SiteForces *> &
 } // namespace
 
 Integrator::Integrator(const RowPartition &band, Forces &forces, double time_step)
-  : band_(band), lattice_(band.lattice()), halo_(band), forces_(forces), time_step_(time_step)
+  : band_(band), lattice_(band.lattice()), forces_(forces), sent_(band.halo_sites(true)),
+    received_(band.halo_sites(false)), interior_(band.rows()), time_step_(time_step)
 {
   if (!(time_step > 0.))
     throw std::invalid_argument("time stepping needs a positive time step");
+  const std::size_t middle = (interior_.begin + interior_.end) / 2;
+  for (const std::vector<std::size_t> &to_rank : sent_)
+    for (const std::size_t place : to_rank)
+      // Within the reach of bonds of either edge of the band.
+      if (const std::size_t row = lattice_.row_of(place); row < middle)
+        interior_.begin = std::max(interior_.begin, row + 1);
+      else
+        interior_.end = std::min(interior_.end, row);
+}
+
+std::vector<Field *> Integrator::evaluated_fields(State &state)
+{
+  const bool predicts = !predicted_vx_.empty();
+  return {&state.x, &state.y, predicts ? &predicted_vx_ : &state.vx, predicts ? &predicted_vy_ : &state.vy};
+}
+
+void Integrator::initialise(State &state)
+{
+  if (!predicted_vx_.empty())
+    for_each_row(lattice_, band_.rows(),
+                 [&](std::size_t row)
+                 {
+                   const std::size_t first = lattice_.index(row, 0), n = lattice_.columns();
+                   std::copy_n(&state.vx[first], n, &predicted_vx_[first]);
+                   std::copy_n(&state.vy[first], n, &predicted_vy_[first]);
+                 });
+  exchange_ghosts(state);
+  accelerate(state);
+}
+
+Forces::RowCallbacks Integrator::move_rows(State &state, const std::function<void(std::size_t row)> &move)
+{
+  Forces::RowCallbacks work;
+  for_each_row(lattice_, {band_.rows().begin, interior_.begin}, move);
+  for_each_row(lattice_, {interior_.end, band_.rows().end}, move);
+  if (lattice_.images().empty())
+    work.pre_force = [this, &move](std::size_t row)
+    {
+      if (row >= interior_.begin && row < interior_.end)
+        move(row);
+    };
+  else
+    for_each_row(lattice_, interior_, move);
+  exchange_ghosts(state);
+  return work;
 }
 
 void Integrator::exchange_ghosts(State &state)
 {
-  halo_.start(evaluated_fields(state));
-  halo_.finish();
-  update_all_images(state);
-}
-
-void Integrator::update_all_images(State &state)
-{
-  update_images(state, band_);
   const std::vector<Field *> fields = evaluated_fields(state);
+  band_.exchange(sent_, received_, fields);
+  update_images(state, band_);
   for (const TriangularLattice::Image &image : lattice_.images())
     if (band_.is_relevant(image.site))
       for (Field *velocity : {fields[2], fields[3]})

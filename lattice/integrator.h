@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -42,14 +43,14 @@ public:
   void set_rollers(std::vector<RollerVelocity> rollers) { rollers_ = std::move(rollers); }
 
   /// Computes the accelerations a state starts with; needed once, and again after a change from outside. Collective.
-  virtual void initialise(State &state) = 0;
+  void initialise(State &state);
 
   /// Advances by one time step. Sites with zero inverse mass keep their velocity. Collective.
   virtual void step(State &state) = 0;
 
   /// Velocities the last force evaluation was made with [m/s], `state` being that of the last call.
-  virtual const Field &evaluated_vx(const State &state) const = 0;
-  virtual const Field &evaluated_vy(const State &state) const = 0;
+  const Field &evaluated_vx(const State &state) const { return predicted_vx_.empty() ? state.vx : predicted_vx_; }
+  const Field &evaluated_vy(const State &state) const { return predicted_vy_.empty() ? state.vy : predicted_vy_; }
 
   /// Evaluates the added forces anew, at the last positions and velocities. Collective.
   void evaluate_site_forces(State &state);
@@ -59,11 +60,12 @@ public:
   void update_accelerations(State &state, const std::vector<std::size_t> &places) const;
 
 protected:
-  /// Positions and velocities that forces are evaluated at: x, y, vx, vy.
-  virtual std::vector<Field *> evaluated_fields(State &state) = 0;
-  /// Brings these up to date in the halo and at images. Collective.
+  /// Brings what forces are evaluated at up to date in the halo and at images. Collective.
   void exchange_ghosts(State &state);
-  void update_all_images(State &state);
+  /// Moves all rows of the band to where forces are evaluated next: rows that other ranks need now, the others in that
+  /// evaluation, while they are in cache, unless the sheet is periodic. Collective.
+  /// @param move moves a row; must outlive that evaluation @return what the evaluation is to begin with
+  Forces::RowCallbacks move_rows(State &state, const std::function<void(std::size_t row)> &move);
   /// Accelerations and velocities of a row after forces on its sites have acted for `duration` [s].
   void kick(State &state, std::size_t row, const double *fx, const double *fy, double duration) const;
   /// Forces of bonds and of all that was added, at the present positions and velocities, as accelerations.
@@ -76,10 +78,15 @@ protected:
 
   RowPartition band_;
   const TriangularLattice &lattice_;
-  HaloExchange halo_;
   Forces &forces_;
+  Field predicted_vx_, predicted_vy_; // velocities that forces are evaluated at; empty: those of the state
 
 private:
+  /// x, y, vx, vy that forces are evaluated at.
+  std::vector<Field *> evaluated_fields(State &state);
+
+  SitesOfRanks sent_, received_; // of the halo
+  Rows interior_;                // no other rank needs these
   double time_step_;
   std::vector<SiteForces *> site_forces_;
   std::vector<RollerVelocity> rollers_;

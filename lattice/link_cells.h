@@ -1,28 +1,47 @@
 #pragma once
 
-#include <cstddef>
+#include <cmath>
 #include <cstdint>
+#include <map>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace latcon::lattice
 {
 
-/// Points of the plane sorted into square cells, to find those near a position without looking at all of them.
-///
-/// Cells are hashed, so the points may spread as far as they like (Allen and Tildesley, Computer Simulation of Liquids,
-/// 2017, section 5.3.2, with a hash in place of the grid).
+/// Points of the plane sorted into square cells, to find those near a position without looking at all of them (Allen
+/// and Tildesley, Computer Simulation of Liquids, 2017, section 5.3.2). Only cells with points are kept, so that these
+/// may spread as far as they like.
 class LinkCells
 {
 public:
   /// @param reach distance up to which neighbours are wanted [m], > 0 @throws std::invalid_argument
-  explicit LinkCells(double reach);
+  explicit LinkCells(double reach) : inverse_size_(1. / (room * reach))
+  {
+    if (!(reach > 0.))
+      throw std::invalid_argument("link cells need a positive reach");
+  }
+  LinkCells(const LinkCells &) = delete; // remembers where its points are
+  LinkCells &operator=(const LinkCells &) = delete;
 
   /// Removes all points.
-  void clear();
+  void clear()
+  {
+    points_.clear();
+    where_.clear();
+  }
 
   /// Puts the point `id` at (x, y) [m], wherever it was before. A point whose position is not finite is near nothing.
   /// @param id small number, to which memory grows
-  void put(std::size_t id, double x, double y);
+  void put(std::size_t id, double x, double y)
+  {
+    if (id >= where_.size())
+      where_.resize(id + 1, points_.end());
+    if (where_[id] != points_.end())
+      points_.erase(where_[id]);
+    where_[id] = inside(x, y) ? points_.emplace(Cell(number(x), number(y)), id) : points_.end();
+  }
 
   /// Calls visit(id) once for every point that is at `reach` or less from (x, y), and for some that are farther: all in
   /// the cell of (x, y) and the eight around it. A point at (x, y) itself is among them.
@@ -31,32 +50,32 @@ public:
   {
     if (!inside(x, y))
       return;
-    const std::int64_t column = cell(x), row = cell(y);
-    for (std::int64_t i = column - 1; i <= column + 1; ++i)
-      for (std::int64_t j = row - 1; j <= row + 1; ++j)
-        for (std::size_t id = first_[bucket(i, j)]; id != none; id = points_[id].next)
-          if (points_[id].column == i && points_[id].row == j)
-            visit(id);
+    for (std::int64_t column = number(x) - 1; column <= number(x) + 1; ++column)
+      for (auto point = points_.lower_bound({column, number(y) - 1});
+           point != points_.end() && point->first <= Cell(column, number(y) + 1); ++point)
+        visit(point->second);
   }
 
 private:
-  static constexpr std::size_t none = static_cast<std::size_t>(-1);
-  struct Point
-  {
-    std::int64_t column, row;
-    std::size_t next; // in the same bucket
-    bool is_in_cell;
-  };
+  using Cell = std::pair<std::int64_t, std::int64_t>; // column, row
 
-  bool inside(double x, double y) const;
-  std::int64_t cell(double coordinate) const;
-  std::size_t bucket(std::int64_t column, std::int64_t row) const;
-  void link(std::size_t id);
-  void unlink(std::size_t id);
+  /// Two points at exactly `reach` must be in cells that touch, whatever the rounding of their quotients.
+  static constexpr double room = 1. + 1e-6;
+  /// Beyond this many cells from the origin rounding would eat the room, and nothing of a sheet is there.
+  static constexpr double farthest_cell = 1e9;
+
+  bool inside(double x, double y) const
+  {
+    return std::abs(x * inverse_size_) < farthest_cell && std::abs(y * inverse_size_) < farthest_cell;
+  }
+  std::int64_t number(double coordinate) const
+  {
+    return static_cast<std::int64_t>(std::floor(coordinate * inverse_size_));
+  }
 
   double inverse_size_;
-  std::vector<Point> points_;      // by id
-  std::vector<std::size_t> first_; // point of each bucket; their number is a power of two
+  std::multimap<Cell, std::size_t> points_;
+  std::vector<std::multimap<Cell, std::size_t>::iterator> where_; // of each id; the end: nowhere
 };
 
 } // namespace latcon::lattice

@@ -36,7 +36,7 @@ RowPartition::RowPartition(const TriangularLattice &lattice, MPI_Comm communicat
 
 std::vector<std::size_t> RowPartition::known_rows() const
 {
-  std::vector<std::size_t> known = halo();
+  std::vector<std::size_t> known = halo_of(rank_);
   for (std::size_t row = rows().begin; row < rows().end; ++row)
     known.push_back(row);
   std::sort(known.begin(), known.end());
@@ -78,6 +78,17 @@ std::vector<std::size_t> RowPartition::halo_of(std::size_t rank) const
   std::sort(halo.begin(), halo.end());
   halo.erase(std::unique(halo.begin(), halo.end()), halo.end());
   return halo;
+}
+
+SitesOfRanks RowPartition::halo_sites(bool own) const
+{
+  SitesOfRanks sites(n_ranks());
+  for (std::size_t rank = 0; rank < n_ranks(); ++rank)
+    for (const std::size_t row : halo_of(own ? rank : rank_))
+      if (owner(row) == (own ? rank_ : rank))
+        for (std::size_t column = 0; column < lattice_->columns(); ++column)
+          sites[rank].push_back(lattice_->index(row, column));
+  return sites;
 }
 
 bool RowPartition::is_relevant_to(std::size_t rank, std::size_t place) const
@@ -181,77 +192,6 @@ void RowPartition::gather_bytes(void *field, std::size_t bytes_of_place, Rows ro
     MPI_Gatherv(static_cast<char *>(field) + static_cast<std::size_t>(offsets[rank_]) * bytes, counts[rank_], row_type,
                 nullptr, nullptr, nullptr, row_type, 0, communicator_);
   MPI_Type_free(&row_type);
-}
-
-HaloExchange::HaloExchange(const RowPartition &band)
-  : lattice_(band.lattice()), communicator_(band.communicator()), interior_(band.rows())
-{
-  if (!band.is_shared())
-    return;
-  const std::vector<std::size_t> halo = band.halo();
-  const Rows own = band.rows();
-  const std::size_t middle = (own.begin + own.end) / 2;
-  for (std::size_t rank = 0; rank < band.n_ranks(); ++rank)
-  {
-    if (rank == band.rank())
-      continue;
-    Partner partner{static_cast<int>(rank), {}, {}, {}, {}};
-    for (const std::size_t row : band.halo_of(rank))
-      if (band.owner(row) == band.rank())
-      {
-        partner.sent.push_back(row);
-        // Within the reach of bonds of either edge of the band.
-        if (row < middle)
-          interior_.begin = std::max(interior_.begin, row + 1);
-        else
-          interior_.end = std::min(interior_.end, row);
-      }
-    for (const std::size_t row : halo)
-      if (band.owner(row) == rank)
-        partner.received.push_back(row);
-    if (!partner.sent.empty() || !partner.received.empty())
-      partners_.push_back(std::move(partner));
-  }
-}
-
-void HaloExchange::start(const std::vector<Field *> &fields)
-{
-  const std::size_t columns = lattice_.columns();
-  fields_ = fields;
-  for (Partner &partner : partners_)
-  {
-    partner.in.resize(partner.received.size() * fields.size() * columns);
-    MPI_Irecv(partner.in.data(), static_cast<int>(partner.in.size()), MPI_DOUBLE, partner.rank, tag, communicator_,
-              &requests_.emplace_back());
-    partner.out.clear();
-    for (const std::size_t row : partner.sent)
-      for (const Field *field : fields)
-      {
-        const double *const first = field->data() + lattice_.index(row, 0);
-        partner.out.insert(partner.out.end(), first, first + columns);
-      }
-    MPI_Isend(partner.out.data(), static_cast<int>(partner.out.size()), MPI_DOUBLE, partner.rank, tag, communicator_,
-              &requests_.emplace_back());
-  }
-}
-
-void HaloExchange::finish()
-{
-  if (requests_.empty())
-    return;
-  MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
-  requests_.clear();
-  const std::size_t columns = lattice_.columns();
-  for (const Partner &partner : partners_)
-  {
-    const double *next = partner.in.data();
-    for (const std::size_t row : partner.received)
-      for (Field *field : fields_)
-      {
-        std::copy_n(next, columns, field->data() + lattice_.index(row, 0));
-        next += columns;
-      }
-  }
 }
 
 } // namespace latcon::lattice

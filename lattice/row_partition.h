@@ -50,8 +50,6 @@ public:
   bool owns(std::size_t place) const; ///< whether a place, margin included, is in one of its rows
   bool is_relevant(std::size_t place) const { return is_relevant_[padded_row(place)] != 0; } ///< or in its halo
   bool is_relevant_to(std::size_t rank, std::size_t place) const; ///< whether it is in a row of a rank or in its halo
-  /// The rows of other ranks that it needs, by increasing number.
-  std::vector<std::size_t> halo() const { return halo_of(rank_); }
   std::vector<std::size_t> known_rows() const; ///< own ones and halo, by increasing number
 
   bool is_first() const { return rank_ == 0; } ///< whether this is the first rank, which gathers
@@ -60,7 +58,9 @@ public:
   std::size_t n_ranks() const { return first_rows_.size() - 1; }
   MPI_Comm communicator() const { return communicator_; }
   std::size_t owner(std::size_t row) const; ///< rank that moves a row
-  std::vector<std::size_t> halo_of(std::size_t rank) const;
+  std::vector<std::size_t> halo_of(std::size_t rank) const; ///< rows of others that a rank needs, by increasing number
+  /// Places in its rows that others have in their halos, or places in its own halo, for exchange().
+  SitesOfRanks halo_sites(bool own) const;
 
   /// Sum of the values of all rows from the lowest up, whoever has them: the same bits for any number of ranks.
   /// Collective. @param values one a row of the sheet; those of own rows are read
@@ -112,42 +112,5 @@ void RowPartition::gather(Vector &field, Rows rows) const
   if (is_shared())
     gather_bytes(field.data(), sizeof(typename Vector::value_type), rows);
 }
-
-/// Brings the halo rows of fields up to date. While messages are under way the rows that no other rank needs, the
-/// interior, may be changed, and nothing of the halo be read:
-///
-///     change rows [rows.begin, interior.begin) and [interior.end, rows.end)
-///     halo.start({&x, &y});
-///     change the interior
-///     halo.finish();
-class HaloExchange
-{
-public:
-  explicit HaloExchange(const RowPartition &band);
-  HaloExchange(const HaloExchange &) = delete; // messages arrive in its buffers
-  HaloExchange &operator=(const HaloExchange &) = delete;
-
-  Rows interior() const { return interior_; }
-
-  /// Sends own rows and begins to receive those of the halo. Collective among ranks that need rows of each other.
-  void start(const std::vector<Field *> &fields);
-  /// Waits for what start() began and puts it in place.
-  void finish();
-
-private:
-  struct Partner
-  {
-    int rank;
-    std::vector<std::size_t> sent, received; // rows
-    std::vector<double> out, in;
-  };
-
-  const TriangularLattice &lattice_;
-  MPI_Comm communicator_;
-  Rows interior_;
-  std::vector<Partner> partners_;
-  std::vector<Field *> fields_;
-  std::vector<MPI_Request> requests_;
-};
 
 } // namespace latcon::lattice

@@ -16,11 +16,6 @@ RungeKuttaChebyshev::RungeKuttaChebyshev(const RowPartition &band, Forces &force
       *field = Field(lattice_.n_places());
 }
 
-std::vector<Field *> RungeKuttaChebyshev::evaluated_fields(State &state)
-{
-  return {&state.x, &state.y, &state.vx, &state.vy};
-}
-
 void RungeKuttaChebyshev::set_time_step(double time_step)
 {
   if (time_step == this->time_step())
@@ -30,45 +25,22 @@ void RungeKuttaChebyshev::set_time_step(double time_step)
   stages_ = ChebyshevStages(ChebyshevStages::needed((1. - 1e-9) * damping_limit_ * time_step));
 }
 
-void RungeKuttaChebyshev::initialise(State &state)
-{
-  exchange_ghosts(state);
-  accelerate(state);
-}
-
-void RungeKuttaChebyshev::first_stage(State &state, std::size_t row)
-{
-  const double duration = time_step() * stages_.first();
-  const std::size_t i = lattice_.index(row, 0), n = lattice_.columns();
-  kernels::loops().first_stage(duration, n, &state.ax[i], &state.x[i], &state.vx[i], &start_.x[i], &start_.vx[i],
-                               &previous_.x[i], &previous_.vx[i]);
-  kernels::loops().first_stage(duration, n, &state.ay[i], &state.y[i], &state.vy[i], &start_.y[i], &start_.vy[i],
-                               &previous_.y[i], &previous_.vy[i]);
-}
-
 void RungeKuttaChebyshev::step(State &state)
 {
   const double h = time_step();
-  const Rows own = band_.rows(), interior = halo_.interior();
-  const auto move_row = [&](std::size_t row) { first_stage(state, row); };
-  const auto move_interior = [&](std::size_t row)
+  const std::function<void(std::size_t)> first_stage = [&](std::size_t row)
   {
-    if (row >= interior.begin && row < interior.end)
-      first_stage(state, row);
+    const double duration = h * stages_.first();
+    const std::size_t i = lattice_.index(row, 0), n = lattice_.columns();
+    kernels::loops().first_stage(duration, n, &state.ax[i], &state.x[i], &state.vx[i], &start_.x[i], &start_.vx[i],
+                         &previous_.x[i], &previous_.vx[i]);
+    kernels::loops().first_stage(duration, n, &state.ay[i], &state.y[i], &state.vy[i], &start_.y[i], &start_.vy[i],
+                         &previous_.y[i], &previous_.vy[i]);
   };
-  for_each_row(lattice_, {own.begin, interior.begin}, move_row);
-  for_each_row(lattice_, {interior.end, own.end}, move_row);
-  // In a periodic sheet all rows must have moved before those of the images can be evaluated.
-  const bool in_one_pass = lattice_.images().empty();
-  if (!in_one_pass)
-    for_each_row(lattice_, interior, move_row);
-  exchange_ghosts(state);
+  Forces::RowCallbacks work = move_rows(state, first_stage);
   touched_ = {&state.x,  &state.y,   &state.vx,  &state.vy,    &state.ax,    &state.ay,     &start_.x,
               &start_.y, &start_.vx, &start_.vy, &previous_.x, &previous_.y, &previous_.vx, &previous_.vy};
-  Forces::RowCallbacks work;
   work.fields = &touched_;
-  if (in_one_pass)
-    work.pre_force = std::ref(move_interior);
   for (const ChebyshevStages::Stage &stage : stages_.stages())
   {
     const auto next = [&](std::size_t row, const double *fx, const double *fy)
@@ -76,9 +48,9 @@ void RungeKuttaChebyshev::step(State &state)
       const std::size_t i = lattice_.index(row, 0), n = lattice_.columns();
       const double *const inverse_mass = &state.inverse_mass[i];
       kernels::loops().next_stage(stage, h, n, fx, inverse_mass, &state.ax[i], &start_.x[i], &start_.vx[i], &state.x[i],
-                                  &state.vx[i], &previous_.x[i], &previous_.vx[i]);
+                          &state.vx[i], &previous_.x[i], &previous_.vx[i]);
       kernels::loops().next_stage(stage, h, n, fy, inverse_mass, &state.ay[i], &start_.y[i], &start_.vy[i], &state.y[i],
-                                  &state.vy[i], &previous_.y[i], &previous_.vy[i]);
+                          &state.vy[i], &previous_.y[i], &previous_.vy[i]);
     };
     forces_.set_elapsed(stage.elapsed * h);
     work.post_force = std::ref(next);

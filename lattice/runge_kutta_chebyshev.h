@@ -20,16 +20,9 @@ public:
 
   /// Shorter steps take fewer stages: no more than (L.22) requires.
   void set_time_step(double time_step) override;
-  void initialise(State &state) override;
   void step(State &state) override;
 
-  const Field &evaluated_vx(const State &state) const override { return state.vx; }
-  const Field &evaluated_vy(const State &state) const override { return state.vy; }
-
 private:
-  std::vector<Field *> evaluated_fields(State &state) override;
-  void first_stage(State &state, std::size_t row);
-
   /// Positions and velocities.
   struct Motion
   {

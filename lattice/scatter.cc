@@ -1,13 +1,15 @@
 #include "lattice/scatter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include <Eigen/SparseCore>
+
 #include "lattice/counter_hash.h"
 #include "lattice/triangular_lattice.h"
-#include "support/dense.h"
 
 namespace latcon::lattice
 {
@@ -19,161 +21,69 @@ constexpr double tolerance = 1e-11;                  // rms of the equations of 
 constexpr double softness = 0.01; // multiplier of odd harmonics times this is what remains of their sums
 constexpr int most_steps = 60, most_iterations = 2000;
 
-// A bond that may have a weight: tent * exp(mu_near . of_point + mu_far . (far end's) + nu . common).
-struct Link
+// Exponents of the weights of bonds, one a row, are linear in the multipliers: those of each point, for its sum and for
+// its odd harmonics, and those common to all, for the even harmonics.
+using Exponents = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+// x of (J^T diag(weights) J + diag(soft)) x = right, by conjugate gradients with the diagonal as preconditioner.
+Eigen::VectorXd newton_direction(const Exponents &J, const Eigen::VectorXd &weights, const Eigen::VectorXd &soft,
+                                 const Eigen::VectorXd &right)
 {
-  std::size_t place, kind;
-  std::ptrdiff_t near, far; // numbers of the points; negative: beyond an edge
-  double weight;            // at first that of the tent
-  Eigen::Matrix<double, n_of_point, 1>
-    of_point;                                // 1 and odd harmonics over the length; these are opposite at the far end
-  Eigen::Matrix<double, n_common, 1> common; // even harmonics
-};
+  const Eigen::VectorXd diagonal = J.cwiseAbs2().transpose() * weights + soft;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(right.size()), residual = right, z = residual.cwiseQuotient(diagonal),
+                  p = z;
+  double rz = residual.dot(z);
+  const double rms = residual.norm() / std::sqrt(static_cast<double>(right.size()));
+  const double wanted = std::min(0.1, rms) * residual.norm();
+  for (int iteration = 0; iteration < most_iterations && residual.norm() > wanted; ++iteration)
+  {
+    const Eigen::VectorXd Hp = J.transpose() * weights.cwiseProduct(J * p) + soft.cwiseProduct(p);
+    const double step = rz / p.dot(Hp);
+    x += step * p;
+    residual -= step * Hp;
+    z = residual.cwiseQuotient(diagonal);
+    const double next = residual.dot(z);
+    p = z + next / rz * p;
+    rz = next;
+  }
+  return x;
+}
 
-// Weights of greatest entropy of one ring: the minimum of a convex function of the multipliers mu and nu.
-class RingWeights
+// Turns the weights of the tent into those of greatest entropy of one ring, which minimise a convex function of the
+// multipliers, by Newton's method.
+void maximise_entropy(const Exponents &J, Eigen::VectorXd &weights)
 {
-public:
-  RingWeights(std::vector<Link> &links, std::size_t n_points)
-    : links_(links), n_(static_cast<Eigen::Index>(n_points)), size_(n_of_point * n_ + n_common)
+  const Eigen::Index size = J.cols();
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(size); // 1 at the multipliers of the sums at points
+  for (Eigen::Index i = 0; i + n_common < size; i += n_of_point)
+    sums[i] = 1.;
+  Eigen::VectorXd soft = softness * (Eigen::VectorXd::Ones(size) - sums); // at those of odd harmonics
+  soft.tail<n_common>().setZero();
+  weights *= 2. * sums.sum() / weights.dot(J * sums);
+  Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(size);
+  const auto gradient = [&]
+  { return Eigen::VectorXd(J.transpose() * weights + soft.cwiseProduct(multipliers) - 2. * sums); };
+  Eigen::VectorXd residual = gradient();
+  for (int step = 0; residual.norm() > tolerance * std::sqrt(static_cast<double>(size)); ++step)
   {
-    double sum = 0.;
-    for (const Link &link : links_)
-      sum += link.weight * ((link.near >= 0) + (link.far >= 0));
-    for (Link &link : links_)
-      link.weight *= 2. * static_cast<double>(n_points) / sum;
-  }
-
-  void solve()
-  {
-    Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(size_), residual = equations(multipliers);
-    for (int step = 0; residual.norm() > tolerance * std::sqrt(static_cast<double>(size_)); ++step)
+    if (step == most_steps || !residual.allFinite())
+      throw std::invalid_argument(
+        "the points are too scattered for positive weights: less scatter or a finer grid is needed");
+    const Eigen::VectorXd direction = newton_direction(J, weights, soft, -residual), along = J * direction;
+    const auto function = [&](double share)
     {
-      if (step == most_steps || !residual.allFinite())
-        throw std::invalid_argument(
-          "the points are too scattered for positive weights: less scatter or a finer grid is needed");
-      const Eigen::VectorXd direction = newton_direction(residual);
-      const double slope = residual.dot(direction), before = function(multipliers, direction, 0.);
-      double share = 1.;
-      while (share > 1e-6 &&
-             !(function(multipliers, direction, share) <= before + 0.1 * share * slope + 1e-12 * before))
-        share *= 0.5;
-      for (Link &link : links_)
-        link.weight *= std::exp(share * along(link, direction));
-      multipliers += share * direction;
-      residual = equations(multipliers);
-    }
-  }
-
-private:
-  // Changes of the exponent of a bond with the multipliers, and the transpose.
-  double along(const Link &link, const Eigen::VectorXd &x) const
-  {
-    double sum = link.common.dot(x.tail<n_common>());
-    if (link.near >= 0)
-      sum += link.of_point.dot(x.segment<n_of_point>(n_of_point * link.near));
-    if (link.far >= 0)
-      sum += 2. * x[n_of_point * link.far] - link.of_point.dot(x.segment<n_of_point>(n_of_point * link.far));
-    return sum;
-  }
-  void add(const Link &link, double value, Eigen::VectorXd &x) const
-  {
-    x.tail<n_common>() += value * link.common;
-    if (link.near >= 0)
-      x.segment<n_of_point>(n_of_point * link.near) += value * link.of_point;
-    if (link.far >= 0)
-    {
-      x.segment<n_of_point>(n_of_point * link.far) -= value * link.of_point;
-      x[n_of_point * link.far] += 2. * value;
-    }
-  }
-
-  // The minimised function after a share of a step.
-  double function(const Eigen::VectorXd &multipliers, const Eigen::VectorXd &direction, double share) const
-  {
-    double sum = 0.;
-    for (const Link &link : links_)
-      sum += link.weight * std::exp(share * along(link, direction));
-    const Eigen::VectorXd at = multipliers + share * direction;
-    for (Eigen::Index i = 0; i < n_; ++i)
-      sum += 0.5 * softness * at.segment<n_of_point - 1>(n_of_point * i + 1).squaredNorm() - 2. * at[n_of_point * i];
-    return sum;
-  }
-
-  // Its gradient.
-  Eigen::VectorXd equations(const Eigen::VectorXd &multipliers) const
-  {
-    Eigen::VectorXd sums = soft(multipliers);
-    for (Eigen::Index i = 0; i < n_; ++i)
-      sums[n_of_point * i] = -2.;
-    for (const Link &link : links_)
-      add(link, link.weight, sums);
-    return sums;
-  }
-
-  // The part of the gradient that is proportional to the multipliers, those of odd harmonics.
-  Eigen::VectorXd soft(const Eigen::VectorXd &multipliers) const
-  {
-    Eigen::VectorXd sums = softness * multipliers;
-    for (Eigen::Index i = 0; i < n_; ++i)
-      sums[n_of_point * i] = 0.;
-    sums.tail<n_common>().setZero();
-    return sums;
-  }
-
-  // Conjugate gradients, preconditioned by the blocks of the points.
-  Eigen::VectorXd newton_direction(const Eigen::VectorXd &equations) const
-  {
-    std::vector<Eigen::Matrix<double, n_of_point, n_of_point>> blocks(static_cast<std::size_t>(n_));
-    for (auto &block : blocks)
-      block = softness * block.Identity();
-    Eigen::Matrix<double, n_common, n_common> common = common.Zero();
-    for (const Link &link : links_)
-    {
-      Eigen::Matrix<double, n_of_point, 1> end = link.of_point;
-      if (link.near >= 0)
-        blocks[static_cast<std::size_t>(link.near)] += link.weight * end * end.transpose();
-      end.tail<n_of_point - 1>() *= -1.;
-      if (link.far >= 0)
-        blocks[static_cast<std::size_t>(link.far)] += link.weight * end * end.transpose();
-      common += link.weight * link.common * link.common.transpose();
-    }
-    for (auto &block : blocks)
-      block = support::solve_positive(block, block.Identity());
-    common = support::solve_positive(common, common.Identity());
-    const auto preconditioned = [&](const Eigen::VectorXd &of)
-    {
-      Eigen::VectorXd result(size_);
-      for (Eigen::Index i = 0; i < n_; ++i)
-        result.segment<n_of_point>(n_of_point * i) =
-          blocks[static_cast<std::size_t>(i)] * of.segment<n_of_point>(n_of_point * i);
-      result.tail<n_common>() = common * of.tail<n_common>();
-      return result;
+      const Eigen::VectorXd at = multipliers + share * direction;
+      return weights.dot((share * along).array().exp().matrix()) + 0.5 * soft.dot(at.cwiseAbs2()) - 2. * sums.dot(at);
     };
-
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(size_), residual = -equations, z = preconditioned(residual), p = z;
-    double rz = residual.dot(z);
-    const double rms = residual.norm() / std::sqrt(static_cast<double>(size_));
-    const double wanted = std::min(0.1, rms) * residual.norm();
-    for (int iteration = 0; iteration < most_iterations && residual.norm() > wanted; ++iteration)
-    {
-      Eigen::VectorXd Hp = soft(p);
-      for (const Link &link : links_)
-        add(link, link.weight * along(link, p), Hp);
-      const double step = rz / p.dot(Hp);
-      x += step * p;
-      residual -= step * Hp;
-      z = preconditioned(residual);
-      const double next = residual.dot(z);
-      p = z + next / rz * p;
-      rz = next;
-    }
-    return x;
+    const double slope = residual.dot(direction), before = function(0.);
+    double share = 1.;
+    while (share > 1e-6 && !(function(share) <= before + 0.1 * share * slope + 1e-12 * before))
+      share *= 0.5;
+    weights.array() *= (share * along).array().exp();
+    multipliers += share * direction;
+    residual = gradient();
   }
-
-  std::vector<Link> &links_;
-  Eigen::Index n_, size_;
-};
+}
 
 } // namespace
 
@@ -221,7 +131,14 @@ ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
     const double radius = lattice.ring_radius(first);
     while (end < lattice.n_kinds() && lattice.ring_radius(end) == radius && lattice.shell(end) == lattice.shell(first))
       ++end;
+    struct Link
+    {
+      std::size_t place, kind;
+      std::array<std::ptrdiff_t, 2> ends; // numbers of the points; negative: beyond an edge
+    };
     std::vector<Link> links;
+    std::vector<double> tents;
+    std::vector<Eigen::Triplet<double, std::ptrdiff_t>> exponents;
     for (std::size_t place = 0; place < lattice.n_places(); ++place)
       for (std::size_t kind = first; kind < end; ++kind)
       {
@@ -230,28 +147,44 @@ ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
             (!lattice.images().empty() && !lattice.is_site(place)))
           continue;
         const Eigen::Vector2d R = points[far] - points[place];
-        const double length = R.norm(), weight = 1. - std::abs(length - radius) / h, angle = std::atan2(R.y(), R.x()),
-                     share = radius / length;
+        const double length = R.norm(), weight = 1. - std::abs(length - radius) / h, angle = std::atan2(R.y(), R.x());
         if (!(weight > 1e-9))
           continue;
-        links.push_back({place, kind, number[place], number[far], weight, {}, {}});
-        links.back().of_point << 1., share * std::cos(angle), share * std::sin(angle), share * std::cos(3. * angle),
-          share * std::sin(3. * angle);
-        links.back().common << std::cos(2. * angle), std::sin(2. * angle), std::cos(4. * angle), std::sin(4. * angle);
+        const auto row = static_cast<std::ptrdiff_t>(links.size());
+        const auto add_harmonic = [&](std::ptrdiff_t column, int order, double factor)
+        {
+          exponents.emplace_back(row, column, factor * std::cos(order * angle));
+          exponents.emplace_back(row, column + 1, factor * std::sin(order * angle));
+        };
+        links.push_back({place, kind, {number[place], number[far]}});
+        tents.push_back(weight);
+        for (const double sense : {1., -1.}) // odd harmonics are opposite at the far end
+          if (const std::ptrdiff_t point = links.back().ends[sense > 0. ? 0 : 1]; point >= 0)
+          {
+            exponents.emplace_back(row, n_of_point * point, 1.);
+            for (const int order : {1, 3})
+              add_harmonic(n_of_point * point + order, order, sense * radius / length);
+          }
+        for (const int order : {2, 4})
+          add_harmonic(n_of_point * n + order - 2, order, 1.);
         length_ratios[kind][place] = lattice.rest_length(kind) / length;
         shortest = std::min(shortest, length);
       }
-    RingWeights(links, static_cast<std::size_t>(n)).solve();
+    Exponents J(static_cast<Eigen::Index>(links.size()), n_of_point * n + n_common);
+    J.setFromTriplets(exponents.begin(), exponents.end());
+    Eigen::VectorXd of_links = Eigen::VectorXd::Map(tents.data(), J.rows());
+    maximise_entropy(J, of_links);
 
     std::vector<double> crowding(static_cast<std::size_t>(n), 0.);
-    for (const Link &link : links)
+    for (std::size_t i = 0; i < links.size(); ++i)
     {
-      weights[link.kind][link.place] = link.weight;
-      const double length = lattice.rest_length(link.kind) / length_ratios[link.kind][link.place];
-      for (const std::ptrdiff_t point : {link.near, link.far})
+      const auto &[place, kind, ends] = links[i];
+      const double weight = weights[kind][place] = of_links[static_cast<Eigen::Index>(i)];
+      const double length = lattice.rest_length(kind) / length_ratios[kind][place];
+      for (const std::ptrdiff_t point : ends)
         if (point >= 0)
         {
-          crowding[static_cast<std::size_t>(point)] += 0.5 * link.weight / (length * length);
+          crowding[static_cast<std::size_t>(point)] += 0.5 * weight / (length * length);
           bonds_of_point += 1. / static_cast<double>(n);
         }
     }

@@ -1,6 +1,7 @@
 #include "lattice/simulation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -43,8 +44,8 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
                        std::optional<Fracture> fracture)
   : band_(band), lattice_(band.lattice()), material_(material), state_(std::move(initial)),
     time_stepping_(time_stepping), forces_(band, material), integrator_(integrator(band, forces_, time_stepping)),
-    fracture_(std::move(fracture)), powers_(lattice_.rows(), material.n_mechanisms()),
-    work_(lattice_.rows(), material.n_mechanisms())
+    fracture_(std::move(fracture)), powers_(of_constraint(0), std::vector<double>(lattice_.rows(), 0.)),
+    work_(powers_)
 {
   if (material_.has_memory() && state_.history.empty())
     relax_memory(state_, band_, material_);
@@ -75,7 +76,7 @@ void Simulation::reinitialize_forces()
 int Simulation::needed_parts() const
 {
   const double h = time_stepping_.step;
-  const ContactLaw *const contact = contact_law_ ? &*contact_law_ : nullptr;
+  const std::optional<ContactLaw> contact = contact_ ? std::optional(contact_->law()) : std::nullopt;
   const Field &vx = integrator_->evaluated_vx(state_), &vy = integrator_->evaluated_vy(state_);
   const auto divide_for = [&](const Bond &short_bond, int &parts)
   {
@@ -118,52 +119,59 @@ int Simulation::needed_parts() const
   return parts;
 }
 
+std::string Simulation::name_of(std::size_t account) const
+{
+  if (account < mechanisms)
+    return std::array{"viscous", "contact", "boundary"}[account];
+  return account < of_constraint(0) ? "mechanism_" + std::to_string(account - mechanisms)
+                                    : "constraint_" + std::to_string(account - of_constraint(0));
+}
+
 void Simulation::update_powers()
 {
+  for (std::vector<double> &power : powers_)
+    std::fill(power.begin(), power.end(), 0.);
   for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
   {
-    powers_.viscous[row] = forces_.viscous_power(row);
-    for (std::size_t m = 0; m < powers_.mechanisms.size(); ++m)
-      powers_.mechanisms[m][row] = forces_.mechanism_power(m, row);
-    powers_.contact[row] = 0.;
-    powers_.boundary[row] = 0.;
+    powers_[viscous][row] = forces_.viscous_power(row);
+    for (std::size_t m = 0; m < material_.n_mechanisms(); ++m)
+      powers_[mechanisms + m][row] = forces_.mechanism_power(m, row);
   }
   const auto power = [this](const SiteForce &on)
   { return on.force.dot(Eigen::Vector2d(state_.vx[on.place], state_.vy[on.place])); };
+  std::vector<const SiteForces *> site_forces;
   if (contact_)
+  {
     for (const SiteForce &on : contact_->last())
-      powers_.contact[lattice_.row_of(on.place)] -= power(on);
-  std::vector<const SiteForces *> site_forces{contact_ ? &*contact_ : nullptr};
+      powers_[contacts][lattice_.row_of(on.place)] -= power(on);
+    site_forces.push_back(&*contact_);
+  }
   for (const std::unique_ptr<SiteForces> &added : added_forces_)
   {
     for (const SiteForce &on : added->last())
-      powers_.boundary[lattice_.row_of(on.place)] += power(on);
+      powers_[boundary][lattice_.row_of(on.place)] += power(on);
     site_forces.push_back(added.get());
   }
   for (std::size_t c = 0; c < constraints_.size(); ++c)
-    constraints_[c].power(state_, forces_, integrator_->evaluated_vx(state_), integrator_->evaluated_vy(state_),
-                          site_forces, powers_.constraints[c]);
+    constraints_[c].add_power(state_, forces_, integrator_->evaluated_vx(state_), integrator_->evaluated_vy(state_),
+                              site_forces, powers_[of_constraint(c)]);
 }
 
 // Trapezoidal rule over a time step, or a part of one.
 void Simulation::add_work(const Ledger &before, double duration)
 {
   const double half = 0.5 * duration;
-  for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
+  for (std::size_t account = 0; account < powers_.size(); ++account)
   {
-    work_.viscous[row] += half * (before.viscous[row] + powers_.viscous[row]);
-    work_.contact[row] += half * (before.contact[row] + powers_.contact[row]);
-    work_.boundary[row] += half * (before.boundary[row] + powers_.boundary[row]);
-    for (std::size_t c = 0; c < work_.constraints.size(); ++c)
-      work_.constraints[c][row] += half * (before.constraints[c][row] + powers_.constraints[c][row]);
-    for (std::size_t m = 0; m < work_.mechanisms.size(); ++m)
-      if (forces_.gives_energy(m))
-      {
-        work_.mechanisms[m][row] += powers_.mechanisms[m][row];
-        work_.viscous[row] += powers_.mechanisms[m][row];
-      }
-      else
-        work_.mechanisms[m][row] += half * (before.mechanisms[m][row] + powers_.mechanisms[m][row]);
+    const bool is_energy =
+      account >= mechanisms && account < of_constraint(0) && forces_.gives_energy(account - mechanisms);
+    for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
+    {
+      const double now = powers_[account][row];
+      work_[account][row] += is_energy ? now : half * (before[account][row] + now);
+      if (is_energy)
+        work_[viscous][row] += now;
+    }
   }
 }
 
@@ -172,7 +180,6 @@ void Simulation::enable_contact(const ContactLaw &law)
   if (contact_)
     throw std::logic_error("contact has been added to this simulation already");
   contact_.emplace(band_, law);
-  contact_law_ = law;
   integrator_->add(*contact_);
   reinitialize_forces();
 }
@@ -218,29 +225,71 @@ void Simulation::cut_bonds(const std::vector<std::pair<std::size_t, std::size_t>
   reinitialize_forces();
 }
 
-template <class Visitor>
-void Simulation::for_each_known_site(const Visitor &visit) const
-{
-  for (const std::size_t row : band_.known_rows())
-    for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
-      visit(lattice_.index(row, column));
-}
-
 void Simulation::set_velocities(const Field &vx, const Field &vy)
 {
   const double before = kinetic_energy(state_, band_);
-  for_each_known_site(
-    [&](std::size_t place)
+  for (const std::size_t row : band_.known_rows())
+    for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
     {
+      const std::size_t place = lattice_.index(row, column);
       if (!(state_.inverse_mass[place] > 0.))
-        return;
+        continue;
       if ((state_.rollers[place] & 1) == 0)
         state_.vx[place] = vx[place];
       if ((state_.rollers[place] & 2) == 0)
         state_.vy[place] = vy[place];
-    });
+    }
   initial_energy_ += kinetic_energy(state_, band_) - before;
   reinitialize_forces();
+}
+
+std::size_t Simulation::constrain(const Constraint &constraint)
+{
+  const PrescribedMotion added(band_, constraint);
+  for (const PrescribedMotion &other : constraints_)
+    if (added.overlaps(other))
+      throw std::logic_error("a site is constrained twice along the same axis");
+  const double before = kinetic_energy(state_, band_);
+  lattice::constrain(state_, band_, constraint);
+  initial_energy_ += kinetic_energy(state_, band_) - before;
+  constraints_.push_back(added);
+  for (Ledger *ledger : {&powers_, &work_})
+    ledger->emplace_back(lattice_.rows(), 0.);
+  update_rollers();
+  reinitialize_forces();
+  return constraints_.size() - 1;
+}
+
+void Simulation::set_motion(std::size_t constraint, Constraint::Motion motion)
+{
+  constraints_.at(constraint).set_motion(std::move(motion));
+}
+
+// Velocities of constrained sites for the next `duration` [s]. Forces are evaluated anew only where they change.
+void Simulation::prescribe_motion(double duration)
+{
+  bool changed = false;
+  for (std::size_t c = 0; c < constraints_.size(); ++c)
+  {
+    if (constraints_[c].ends(state_.time))
+    {
+      constraints_[c].release(state_, material_, work_[of_constraint(c)]);
+      changed = true;
+    }
+    changed = constraints_[c].prescribe(state_, state_.time, state_.time + duration) || changed;
+  }
+  if (!changed)
+    return;
+  update_rollers();
+  reinitialize_forces();
+}
+
+void Simulation::update_rollers()
+{
+  std::vector<RollerVelocity> rollers;
+  for (const PrescribedMotion &constraint : constraints_)
+    constraint.append_rollers(state_, rollers);
+  integrator_->set_rollers(std::move(rollers));
 }
 
 const std::vector<BrokenBond> &Simulation::step()
@@ -332,17 +381,7 @@ Eigen::Vector2d Simulation::position(std::size_t place) const
 
 const State &Simulation::gather(Rows rows)
 {
-  for (Field *field : {&state_.x, &state_.y, &state_.vx, &state_.vy})
-    band_.gather(*field, rows);
-  for (BondStates::Words &words : state_.bonds.storage())
-    band_.gather(words, rows);
-  for (BondHistory::Kind &history : state_.history.kinds)
-    if (!history.variables.empty())
-    {
-      band_.gather(history.stretch, rows);
-      for (Field &variable : history.variables)
-        band_.gather(variable, rows);
-    }
+  for_each_field(state_, lattice_, [&](const std::string &, auto &field) { band_.gather(field, rows); });
   state_.stiffness.gather(band_, rows);
   state_.strength.gather(band_, rows);
   if (band_.is_first())
@@ -381,11 +420,11 @@ double Simulation::stored_energy() const
 
 EnergyBalance Simulation::energies() const
 {
-  double boundary = band_.sum(work_.boundary);
-  for (const std::vector<double> &work : work_.constraints)
-    boundary += band_.sum(work);
-  return {stored_energy(), kinetic_energy(state_, band_), band_.sum(work_.viscous),
-          broken_,         band_.sum(work_.contact),      boundary,
+  double boundary_work = band_.sum(work_[boundary]);
+  for (std::size_t c = 0; c < constraints_.size(); ++c)
+    boundary_work += constraint_work(c);
+  return {stored_energy(), kinetic_energy(state_, band_), band_.sum(work_[viscous]),
+          broken_,         band_.sum(work_[contacts]),    boundary_work,
           initial_energy_};
 }
 
@@ -393,7 +432,7 @@ std::vector<MechanismEnergy> Simulation::mechanism_energies() const
 {
   std::vector<MechanismEnergy> energies;
   for (const double stored : memory_energies(state_, band_, material_))
-    energies.push_back({stored, band_.sum(work_.mechanisms[energies.size()])});
+    energies.push_back({stored, band_.sum(work_[mechanisms + energies.size()])});
   return energies;
 }
 

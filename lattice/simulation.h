@@ -61,7 +61,7 @@ public:
   /// Gives a constraint another motion from the next step on.
   void set_motion(std::size_t constraint, Constraint::Motion motion);
   /// Work that a constraint has done on the sheet [J/m]; a part of EnergyBalance::boundary_work. Collective.
-  double constraint_work(std::size_t constraint) const { return band_.sum(work_.constraints.at(constraint)); }
+  double constraint_work(std::size_t constraint) const { return band_.sum(work_.at(of_constraint(constraint))); }
 
   /// Adds forces on sites, whose work counts as boundary work. They must be functions of time, positions and
   /// velocities, and are evaluated on each rank for its own sites.
@@ -121,22 +121,19 @@ public:
   static constexpr double shortest = 1e-6;   ///< stretch to which the parts follow a bond [-]
 
 private:
-  /// Powers per sheet thickness [W/m], and what they have added up to [J/m]; one a row of the sheet.
-  struct Ledger
+  /// Powers per sheet thickness [W/m], and what they have added up to [J/m]: by account, one a row of the sheet. After
+  /// these accounts come one for each mechanism of the memories, a part of `viscous`, and one for each constraint.
+  using Ledger = std::vector<std::vector<double>>;
+  enum Account : std::size_t
   {
-    std::vector<double> viscous;                  // dissipated by dashpots
-    std::vector<double> contact;                  // from the sheet into contacts
-    std::vector<double> boundary;                 // into the sheet from forces on its sites
-    std::vector<std::vector<double>> constraints; // into the sheet from each constraint
-    std::vector<std::vector<double>> mechanisms;  // dissipated by each mechanism of the memories; a part of `viscous`
-    Ledger(std::size_t rows, std::size_t n_mechanisms)
-      : viscous(rows, 0.), contact(rows, 0.), boundary(rows, 0.), mechanisms(n_mechanisms, viscous)
-    {
-    }
+    viscous,  // dissipated by dashpots
+    contacts, // from the sheet into contacts
+    boundary, // into the sheet from forces on its sites
+    mechanisms
   };
+  std::size_t of_constraint(std::size_t constraint) const { return mechanisms + material_.n_mechanisms() + constraint; }
+  std::string name_of(std::size_t account) const;
 
-  template <class Visitor>
-  void for_each_known_site(const Visitor &visit) const;
   double stored_energy() const; // in bonds and their memory [J/m]
   void reinitialize_forces();
   void prescribe_motion(double duration);
@@ -157,7 +154,6 @@ private:
   Forces forces_;
   std::unique_ptr<Integrator> integrator_;
   std::optional<Fracture> fracture_;
-  std::optional<ContactLaw> contact_law_;
   std::optional<Contact> contact_;
   std::vector<std::unique_ptr<SiteForces>> added_forces_;
   bool has_end_loads_ = false;
@@ -186,36 +182,12 @@ void Simulation::archive(Archive &archive)
   if constexpr (is_checked)
     bonds_before = state_.bonds;
   archive("time", state_.time);
-  for (const auto &[name, field] :
-       {std::pair("x", &state_.x), std::pair("y", &state_.y), std::pair("vx", &state_.vx), std::pair("vy", &state_.vy),
-        std::pair("ax", &state_.ax), std::pair("ay", &state_.ay)})
-    archive_rows(archive, name, *field, band_, known);
-  for (std::size_t word = 0; word < state_.bonds.storage().size(); ++word)
-    archive_rows(archive,
-                 word == 0                  ? "bonds"
-                 : lattice_.is_triangular() ? "bonds_of_third_shell"
-                                            : "bonds_" + std::to_string(word),
-                 state_.bonds.storage()[word], band_, known);
-  for (std::size_t kind = 0; kind < state_.history.kinds.size(); ++kind)
-  {
-    BondHistory::Kind &history = state_.history.kinds[kind];
-    const std::string name = "memory_" + std::to_string(kind) + "_";
-    for (std::size_t v = 0; v < history.variables.size(); ++v)
-      archive_rows(archive, name + std::to_string(v), history.variables[v], band_, known);
-    if (!history.variables.empty())
-      archive_rows(archive, name + "stretch", history.stretch, band_, known);
-  }
+  for_each_field(state_, lattice_,
+                 [&](const std::string &name, auto &field) { archive_rows(archive, name, field, band_, known); });
   archive_rows(archive, "lost_bonds", state_.lost_bonds, band_, all);
-  for (const auto &[name, ledger] : {std::pair<std::string, Ledger *>("powers", &powers_), {"work", &work_}})
-  {
-    archive_rows(archive, name + "_viscous", ledger->viscous, band_);
-    archive_rows(archive, name + "_contact", ledger->contact, band_);
-    archive_rows(archive, name + "_boundary", ledger->boundary, band_);
-    for (std::size_t c = 0; c < ledger->constraints.size(); ++c)
-      archive_rows(archive, name + "_constraint_" + std::to_string(c), ledger->constraints[c], band_);
-    for (std::size_t m = 0; m < ledger->mechanisms.size(); ++m)
-      archive_rows(archive, name + "_mechanism_" + std::to_string(m), ledger->mechanisms[m], band_);
-  }
+  for (const auto &[name, ledger] : {std::pair("powers_", &powers_), std::pair("work_", &work_)})
+    for (std::size_t account = 0; account < ledger->size(); ++account)
+      archive_rows(archive, name + name_of(account), (*ledger)[account], band_);
   archive("parts", parts_);
   archive("n_divided_steps", n_divided_steps_);
   archive("n_broken", n_broken_);

@@ -79,28 +79,13 @@ SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
   return values;
 }
 
-SiteFields site_fields(const State &state, const TriangularLattice &lattice, const Material &material)
+std::vector<SiteValues> site_fields(const State &state, const TriangularLattice &lattice, const Material &material)
 {
-  const std::size_t n = lattice.n_places();
-  const Eigen::Matrix2d zero = Eigen::Matrix2d::Zero();
-  SiteFields fields;
-  fields.strain_energy_density.assign(n, 0.);
-  fields.damage.assign(n, 0.);
-  fields.first_piola_stress.assign(n, zero);
-  fields.cauchy_stress.assign(n, zero);
-  fields.deformation_gradient.assign(n, zero);
+  std::vector<SiteValues> fields(lattice.n_places());
   const SiteEvaluator evaluator(lattice, material);
   for (std::size_t row = 0; row < lattice.rows(); ++row)
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
-    {
-      const std::size_t place = lattice.index(row, column);
-      const SiteValues values = evaluator.at(state, place);
-      fields.strain_energy_density[place] = values.strain_energy_density;
-      fields.deformation_gradient[place] = values.deformation_gradient;
-      fields.first_piola_stress[place] = values.first_piola_stress;
-      fields.cauchy_stress[place] = values.cauchy_stress;
-      fields.damage[place] = values.damage;
-    }
+      fields[lattice.index(row, column)] = evaluator.at(state, lattice.index(row, column));
   return fields;
 }
 

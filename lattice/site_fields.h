@@ -5,9 +5,6 @@
 namespace latcon::lattice
 {
 
-/// A 2 x 2 tensor at every place.
-using TensorField = std::vector<Eigen::Matrix2d>;
-
 /// Continuum quantities at one site, from the bonds it has.
 ///
 /// The area of a site is that of its reference Voronoi cell, (sqrt3 / 2) d^2, also at the edges of the sheet and at
@@ -52,17 +49,7 @@ private:
   std::vector<Kind> kinds_;
 };
 
-/// SiteValues at every place. Zero in the margin and at removed sites, but for F there.
-struct SiteFields
-{
-  Field strain_energy_density;
-  TensorField deformation_gradient;
-  TensorField first_piola_stress;
-  TensorField cauchy_stress;
-  Field damage;
-};
-
-/// All fields of a state.
-SiteFields site_fields(const State &state, const TriangularLattice &lattice, const Material &material);
+/// SiteValues of all sites, by their places; in the margin those of no bonds.
+std::vector<SiteValues> site_fields(const State &state, const TriangularLattice &lattice, const Material &material);
 
 } // namespace latcon::lattice

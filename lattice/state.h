@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -51,6 +53,31 @@ struct State
   SiteFlags lost_bonds;                   ///< bonds a site has lost, to breaking or to removed neighbours
   Eigen::Matrix2d periods = Eigen::Matrix2d::Identity(); ///< F that takes reference periods to current ones [-]
 };
+
+/// Calls visit(name, field) for each field of a state that changes from step to step and is known in own rows and halo,
+/// with the name that it has in files.
+template <class Visitor>
+void for_each_field(State &state, const TriangularLattice &lattice, const Visitor &visit)
+{
+  for (const auto &[name, field] :
+       {std::pair("x", &state.x), std::pair("y", &state.y), std::pair("vx", &state.vx), std::pair("vy", &state.vy),
+        std::pair("ax", &state.ax), std::pair("ay", &state.ay)})
+    visit(std::string(name), *field);
+  for (std::size_t word = 0; word < state.bonds.storage().size(); ++word)
+    visit(word == 0                 ? "bonds"
+          : lattice.is_triangular() ? "bonds_of_third_shell"
+                                    : "bonds_" + std::to_string(word),
+          state.bonds.storage()[word]);
+  for (std::size_t kind = 0; kind < state.history.kinds.size(); ++kind)
+  {
+    BondHistory::Kind &history = state.history.kinds[kind];
+    const std::string name = "memory_" + std::to_string(kind) + "_";
+    for (std::size_t v = 0; v < history.variables.size(); ++v)
+      visit(name + std::to_string(v), history.variables[v]);
+    if (!history.variables.empty())
+      visit(name + "stretch", history.stretch);
+  }
+}
 
 /// Gives the images of a periodic sheet the positions and velocities of their sites, those in known rows. To be called
 /// after a change of either from outside; what moves a sheet calls it itself.

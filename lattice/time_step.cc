@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "lattice/chebyshev_stages.h"
-#include "lattice/contact.h"
 
 namespace latcon::lattice
 {
@@ -91,40 +90,36 @@ Rates bound_of_contacts(const TriangularLattice &lattice, const Material &materi
   return {per_contact * contact.stiffness, per_contact * contact.viscosity};
 }
 
-Rates with_contacts(const Rates &bonds, const Rates &contacts)
+Rates bound(const TriangularLattice &lattice, const Material &material, const SmallestStretch &smallest_stretch,
+            const std::optional<ContactLaw> &contact)
 {
+  const Rates bonds = bound_of_bonds(lattice, material, smallest_stretch);
+  if (!contact)
+    return bonds;
+  const Rates contacts = bound_of_contacts(lattice, material, *contact);
   return {std::max(bonds.omega_square, 0.5 * bonds.omega_square + contacts.omega_square),
           std::max(bonds.gamma, 0.5 * bonds.gamma + contacts.gamma)};
 }
 
 } // namespace
 
-TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch)
-{
-  return limits(bound_of_bonds(lattice, material, of_all(smallest_stretch)));
-}
-
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
-                                const ContactLaw &contact)
+                                const std::optional<ContactLaw> &contact)
 {
-  return limits(with_contacts(bound_of_bonds(lattice, material, of_all(smallest_stretch)),
-                              bound_of_contacts(lattice, material, contact)));
-}
-
-double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch)
-{
-  return std::min(share_of_elastic_limit * time_step_limits(lattice, material, 1.).elastic,
-                  damped_step(lattice, material, of_all(smallest_stretch)));
+  return limits(bound(lattice, material, of_all(smallest_stretch), contact));
 }
 
 double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
-                      const ContactLaw &contact)
+                      const std::optional<ContactLaw> &contact)
 {
-  const auto &[omega_square, gamma] = bound_of_contacts(lattice, material, contact);
-  return std::min({chebyshev_step(lattice, material, smallest_stretch),
-                   share_of_elastic_limit * time_step_limits(lattice, material, 1., contact).elastic,
+  const double of_bonds = std::min(share_of_elastic_limit * time_step_limits(lattice, material, 1.).elastic,
+                                   damped_step(lattice, material, of_all(smallest_stretch)));
+  if (!contact)
+    return of_bonds;
+  const auto &[omega_square, gamma] = bound_of_contacts(lattice, material, *contact);
+  return std::min({of_bonds, share_of_elastic_limit * time_step_limits(lattice, material, 1., contact).elastic,
                    std::cbrt(4. * gamma / (omega_square * omega_square)),
-                   site_mass(material, lattice) / contact.viscosity});
+                   site_mass(material, lattice) / contact->viscosity});
 }
 
 bool amplifies_contact(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
@@ -143,15 +138,14 @@ bool amplifies_contact(const TimeStepping &stepping, const TriangularLattice &la
 }
 
 double recoil_step(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
-                   std::size_t kind, double stretch, const ContactLaw *contact)
+                   std::size_t kind, double stretch, const std::optional<ContactLaw> &contact)
 {
   SmallestStretch smallest = of_all(short_stretch);
   smallest[lattice.shell(kind)] = stretch;
   if (stepping.stages > 0)
     return damped_step(lattice, material, smallest);
-  const Rates bonds = bound_of_bonds(lattice, material, smallest);
-  const Rates all = contact != nullptr ? with_contacts(bonds, bound_of_contacts(lattice, material, *contact)) : bonds;
-  return std::min(limits(all).combined, share_for_recoil * limits(bonds).elastic);
+  return std::min(limits(bound(lattice, material, smallest, contact)).combined,
+                  share_for_recoil * limits(bound_of_bonds(lattice, material, smallest)).elastic);
 }
 
 double watched_stretch(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,

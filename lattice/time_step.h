@@ -1,11 +1,11 @@
 #pragma once
 
-#include "lattice/material.h"
+#include <optional>
+
+#include "lattice/contact.h"
 
 namespace latcon::lattice
 {
-
-struct ContactLaw;
 
 /// Time integrator of a motion, and its step.
 struct TimeStepping
@@ -34,14 +34,12 @@ struct TimeStepLimits
 /// are taken to be as stiff as the distribution allows. In the undeformed lattice
 /// of nearest neighbours the true limit is larger by a factor of 2 for the dashpots (attained by the shortest waves),
 /// of sqrt2 for the springs.
-/// @param smallest_stretch lam_min [-] in (0, 1]
-TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch);
-
-/// Returns the step for a sheet whose sites may touch (theory.md, eq. (L.14)): a site with all its bonds, as they are
-/// in the undeformed lattice, and six contacts around it. Differs only for contacts that are stiffer or more viscous
+/// In a sheet whose sites may touch (theory.md, eq. (L.14)) the bound is for a site with all its bonds, as they are in
+/// the undeformed lattice, and six contacts around it too. It differs only for contacts that are stiffer or more viscous
 /// than the bonds that they replace.
+/// @param smallest_stretch lam_min [-] in (0, 1] @param contact none: sites do not touch
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
-                                const ContactLaw &contact);
+                                const std::optional<ContactLaw> &contact = std::nullopt);
 
 /// Stretch below which a bond can require divided steps [-] (theory.md, eq. (L.24)).
 inline constexpr double short_stretch = 0.5;
@@ -49,9 +47,9 @@ inline constexpr double short_stretch = 0.5;
 /// Longest step [s] that follows the recoil of a bond (theory.md, eq. (L.24)). For velocity Verlet: the combined
 /// limit, at most a tenth of the elastic one; for Runge-Kutta-Chebyshev: 1 / kappa. All bonds of the shell of `kind`
 /// are taken to be at `stretch`, those of the other shell at short_stretch.
-/// @param contact nullptr: sites do not touch
+/// @param contact none: sites do not touch
 double recoil_step(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
-                   std::size_t kind, double stretch, const ContactLaw *contact);
+                   std::size_t kind, double stretch, const std::optional<ContactLaw> &contact);
 
 /// Stretch below which bonds are checked after each step for whether the next step must be divided [-]: short_stretch
 /// plus what a bond may lose in one step, at most 0.3 (theory.md, eq. (L.26)).
@@ -66,14 +64,11 @@ double largest_stretch_rate(const TriangularLattice &lattice, const Material &ma
 /// Step of Runge-Kutta-Chebyshev at which waves and the breaking of bonds are resolved [s]: a share of the elastic
 /// limit of the undeformed sheet, or, where it is smaller, h = 1 / kappa: all oscillating modes are stable then for any
 /// number of stages (theory.md, eq. (L.22)). kappa is the largest psi''_max / eta.
-/// @return 0 where a shell has no dashpots, for which the method is not made
-double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch);
-
-/// Step for a sheet with contact [s]: also resolves and keeps stable a site with six contacts (theory.md, eqs. (L.14)
-/// and (L.23)) and the jump of a contact's dashpot, h <= m/c.
-/// @return 0 also for contacts without dashpots, whose oscillations every step would amplify
+/// Where sites may touch it also resolves and keeps stable a site with six contacts (theory.md, eqs. (L.14) and (L.23))
+/// and the jump of a contact's dashpot, h <= m/c.
+/// @return 0 where a shell, or the contact, has no dashpots: the method is not made for oscillations that nothing damps
 double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
-                      const ContactLaw &contact);
+                      const std::optional<ContactLaw> &contact = std::nullopt);
 
 /// Returns whether the oscillation of two free, isolated sites in contact grows from step to step. Their relative
 /// motion has gamma = 2c/m and omega^2 = 2k/m.

@@ -101,18 +101,10 @@ Periodic TriangularLattice::periodic() const
                                                         : Periodic{periodic_across_, periodic_along_};
 }
 
-double TriangularLattice::length() const
+Eigen::Vector2d TriangularLattice::extent() const
 {
-  const double along = static_cast<double>(periodic_along_ ? columns_ : columns_ - 1);
-  const double across = static_cast<double>(periodic_across_ ? rows_ : rows_ - 1);
-  return grid_.from_row_frame(along, across).x();
-}
-
-double TriangularLattice::height() const
-{
-  const double along = static_cast<double>(periodic_along_ ? columns_ : columns_ - 1);
-  const double across = static_cast<double>(periodic_across_ ? rows_ : rows_ - 1);
-  return grid_.from_row_frame(along, across).y();
+  return grid_.from_row_frame(static_cast<double>(periodic_along_ ? columns_ : columns_ - 1),
+                              static_cast<double>(periodic_across_ ? rows_ : rows_ - 1));
 }
 
 bool TriangularLattice::is_site(std::size_t place) const
@@ -128,31 +120,25 @@ void TriangularLattice::find_images()
 {
   if (!periodic_along_ && !periodic_across_)
     return;
-  const std::size_t width = stride();
-  for (std::size_t place = 0; place < n_places(); ++place)
-  {
-    const std::size_t padded_row = place / width, padded_column = place % width;
-    const bool below = padded_row < reach_, above = padded_row >= rows_ + reach_;
-    const bool left = padded_column < first_column_, right = padded_column >= columns_ + first_column_;
-    if (padded_column + column_reach_ < first_column_ || padded_column >= columns_ + first_column_ + column_reach_)
-      continue;
-    if (!below && !above && !left && !right)
+  const auto turns = [](std::ptrdiff_t number, std::size_t n)
+  { return number < 0 ? -1 : number < static_cast<std::ptrdiff_t>(n) ? 0 : 1; };
+  const auto rows = static_cast<std::ptrdiff_t>(rows_), columns = static_cast<std::ptrdiff_t>(columns_);
+  const auto rows_beyond = static_cast<std::ptrdiff_t>(reach_), beyond = static_cast<std::ptrdiff_t>(column_reach_);
+  const auto place = [&](std::ptrdiff_t row, std::ptrdiff_t column)
+  { return index(static_cast<std::size_t>(row), static_cast<std::size_t>(column)); };
+  for (std::ptrdiff_t row = -rows_beyond; row < rows + rows_beyond; ++row)
+    for (std::ptrdiff_t column = -beyond; column < columns + beyond; ++column)
     {
-      place += columns_ - 1; // on to the right end of the row
-      continue;
+      const int across = turns(row, rows_), along = turns(column, columns_);
+      if (across == 0 && along == 0)
+        column = columns - 1; // on to the right end of the row
+      else if ((across == 0 || periodic_across_) && (along == 0 || periodic_along_))
+        // Not the missing end of an odd row.
+        if (const std::size_t site = place(row - across * rows, column - along * columns); is_site(site))
+          images_.push_back({place(row, column), site,
+                             grid_.from_row_frame(along * static_cast<double>(columns_),
+                                                  across * static_cast<double>(rows_))});
     }
-    if (((below || above) && !periodic_across_) || ((left || right) && !periodic_along_))
-      continue;
-    const std::size_t row = below ? padded_row + rows_ : above ? padded_row - rows_ : padded_row;
-    const std::size_t column = left ? padded_column + columns_ : right ? padded_column - columns_ : padded_column;
-    const std::size_t site = row * width + column;
-    if (!is_site(site))
-      continue; // the missing end of an odd row
-    const auto turns = [](bool before, bool after) { return after ? 1. : before ? -1. : 0.; };
-    images_.push_back({place, site,
-                       grid_.from_row_frame(turns(left, right) * static_cast<double>(columns_),
-                                            turns(below, above) * static_cast<double>(rows_))});
-  }
 }
 
 const TriangularLattice::Image *TriangularLattice::site_of_image(std::size_t place) const

@@ -84,8 +84,8 @@ public:
   Orientation orientation() const { return grid_.orientation; }
   const Grid &grid() const { return grid_; }
   Periodic periodic() const;
-  double length() const; ///< distance of the outermost sites along x after rounding, or the period [m]
-  double height() const; ///< the same along y [m]
+  double length() const { return extent().x(); } ///< distance of the outermost sites along x, or the period [m]
+  double height() const { return extent().y(); } ///< the same along y [m]
   /// Reference area V of one site [m^2], (sqrt3 / 2) d^2 of the triangular lattice.
   double site_area() const { return grid_.cell_area(); }
 
@@ -192,6 +192,7 @@ private:
   bool rows_shift() const { return grid_.kind == Grid::Kind::triangular; }
   bool rows_alternate() const { return rows_shift() && !periodic_along_; } // in length
   double pitch() const { return rows_shift() ? half_sqrt3 : 1.; }          // of rows, in spacings
+  Eigen::Vector2d extent() const;
   const Image *site_of_image(std::size_t place) const;
   void find_images();
 

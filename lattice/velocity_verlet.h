@@ -19,18 +19,9 @@ public:
   /// @param time_step h [s], > 0; see TimeStepLimits
   VelocityVerlet(const RowPartition &band, Forces &forces, double time_step);
 
-  void initialise(State &state) override;
   void step(State &state) override;
 
-  const Field &evaluated_vx(const State &) const override { return predicted_vx_; }
-  const Field &evaluated_vy(const State &) const override { return predicted_vy_; }
-
 private:
-  std::vector<Field *> evaluated_fields(State &state) override;
-  /// Positions and predicted velocities of a row at the end of a step, velocities half way.
-  void drift(State &state, std::size_t row);
-
-  Field predicted_vx_, predicted_vy_;
   std::vector<const Field *> touched_; // by a step
 };
 

@@ -130,7 +130,7 @@ TEST(Simulation, DividesAStepThatMakesABondShort)
   const TriangularLattice sheet = sheets::square(8);
   const Material material = Recoil(1e10).material;
   const std::size_t near = sheet.index(4, 3), far = near + 1;
-  const double now = 0.7, h = 1.01 * recoil_step({1., 2}, sheet, material, 0, short_stretch, nullptr);
+  const double now = 0.7, h = 1.01 * recoil_step({1., 2}, sheet, material, 0, short_stretch, std::nullopt);
   for (const double then : {0.45, 0.499, 0.501, 0.55, 0.69})
   {
     Simulation simulation(sheet, material,

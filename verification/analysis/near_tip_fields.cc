@@ -57,7 +57,7 @@ NearTipField::NearTipField(const NearTipGrid &grid_of_points) : grid(grid_of_poi
   const double none = std::numeric_limits<double>::quiet_NaN();
   for (auto *vectors : {&velocity, &displacement, &excess_displacement})
     vectors->assign(grid.size(), Eigen::Vector2d::Constant(none));
-  for (lattice::TensorField *tensors :
+  for (std::vector<Eigen::Matrix2d> *tensors :
        {&deformation_gradient, &first_piola_stress, &cauchy_stress, &strain_gradient_x, &strain_gradient_y})
     tensors->assign(grid.size(), Eigen::Matrix2d::Constant(none));
 }

@@ -50,10 +50,10 @@ struct NearTipField
   std::vector<Eigen::Vector2d> displacement;
   std::vector<Eigen::Vector2d> excess_displacement; ///< x - F X [m], with F of the loaded sheet
   // Means over every fourth sample, starting with the first: these fields are expensive and change slowly.
-  lattice::TensorField deformation_gradient; ///< see SiteValues
-  lattice::TensorField first_piola_stress;   ///< [Pa], see SiteValues
-  lattice::TensorField cauchy_stress;        ///< [Pa], see SiteValues
-  lattice::TensorField strain_gradient_x,
+  std::vector<Eigen::Matrix2d> deformation_gradient; ///< see SiteValues
+  std::vector<Eigen::Matrix2d> first_piola_stress;   ///< [Pa], see SiteValues
+  std::vector<Eigen::Matrix2d> cauchy_stress;        ///< [Pa], see SiteValues
+  std::vector<Eigen::Matrix2d> strain_gradient_x,
     strain_gradient_y; ///< [1/m], see StrainGradient; where the bonds determine it
 
   explicit NearTipField(const NearTipGrid &grid);

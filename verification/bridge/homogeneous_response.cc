@@ -75,8 +75,8 @@ LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, co
   forces.evaluate(state, state.vx, state.vy);
   const Eigen::Matrix2d P = edge_stress(
     sheet, material, [&](std::size_t place) { return Eigen::Vector2d(forces.fx()[place], forces.fy()[place]); });
-  const lattice::SiteFields fields = lattice::site_fields(state, sheet, material);
-  return {fields.strain_energy_density[sheet.index(2 * (sheet.rows() / 4), sheet.columns() / 2)], P};
+  const std::size_t middle = sheet.index(2 * (sheet.rows() / 4), sheet.columns() / 2);
+  return {lattice::SiteEvaluator(sheet, material).at(state, middle).strain_energy_density, P};
 }
 
 Eigen::Matrix2d lattice_rotation(int k)

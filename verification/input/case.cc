@@ -247,9 +247,9 @@ lattice::ContactLaw Case::contact_law() const
 
 double Case::chebyshev_step(const bool breaks) const
 {
-  if (breaks && has_contact)
-    return safety_factor * lattice::chebyshev_step(sheet(), material(), smallest_chebyshev_stretch, contact_law());
-  return safety_factor * lattice::chebyshev_step(sheet(), material(), smallest_chebyshev_stretch);
+  return safety_factor *
+         lattice::chebyshev_step(sheet(), material(), smallest_chebyshev_stretch,
+                                 breaks && has_contact ? std::optional(contact_law()) : std::nullopt);
 }
 
 lattice::TimeStepping Case::time_stepping(const bool breaks) const
@@ -265,9 +265,8 @@ lattice::TimeStepping Case::time_stepping(const bool breaks) const
 
 lattice::TimeStepLimits Case::time_step_limits(const bool breaks) const
 {
-  if (breaks && has_contact)
-    return lattice::time_step_limits(sheet(), material(), smallest_stable_stretch, contact_law());
-  return lattice::time_step_limits(sheet(), material(), smallest_stable_stretch);
+  return lattice::time_step_limits(sheet(), material(), smallest_stable_stretch,
+                                   breaks && has_contact ? std::optional(contact_law()) : std::nullopt);
 }
 
 std::string case_lines(const Parameters &parameters)

@@ -183,7 +183,7 @@ double parts_of_first_step(const input::Case &input, const lattice::TimeStepping
         stretch >= lattice::short_stretch)
       continue;
     const double longest = lattice::recoil_step(
-      stepping, sheet, material, kind, std::max(stretch, lattice::Simulation::shortest), contact ? &*contact : nullptr);
+      stepping, sheet, material, kind, std::max(stretch, lattice::Simulation::shortest), contact);
     parts = std::max(parts, std::exp2(std::ceil(std::log2(stepping.step / longest))));
   }
   return std::min(parts, static_cast<double>(lattice::Simulation::most_parts));

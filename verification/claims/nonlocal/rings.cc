@@ -114,12 +114,12 @@ bridge::LatticeResponse StencilSheet::response(const Eigen::Matrix2d &F) const
 {
   if (sheet_.scattered() == nullptr)
     return bridge::homogeneous_response(sheet_, material_, F);
-  const lattice::SiteFields fields = lattice::site_fields(state(F), sheet_, material_);
+  const std::vector<lattice::SiteValues> fields = lattice::site_fields(state(F), sheet_, material_);
   bridge::LatticeResponse mean{0., Eigen::Matrix2d::Zero()};
   for (const std::size_t place : sites(sheet_))
   {
-    mean.energy_density += fields.strain_energy_density[place] / static_cast<double>(sheet_.n_sites());
-    mean.first_piola_stress += fields.first_piola_stress[place] / static_cast<double>(sheet_.n_sites());
+    mean.energy_density += fields[place].strain_energy_density / static_cast<double>(sheet_.n_sites());
+    mean.first_piola_stress += fields[place].first_piola_stress / static_cast<double>(sheet_.n_sites());
   }
   return mean;
 }

@@ -154,10 +154,10 @@ CutSolution solution(const CutLattice &cut, const bridge::EquivalentSheet &domai
     inside += (of_lattice.back() - of_continuum[i]).squaredNorm();
     ++n_inside;
     const Eigen::Matrix2d sigma = P * F.transpose() / F.determinant();
-    stress += (cut.fields.first_piola_stress[place] - P).squaredNorm();
-    product += cut.fields.first_piola_stress[place].cwiseProduct(P).sum();
+    stress += (cut.fields[place].first_piola_stress - P).squaredNorm();
+    product += cut.fields[place].first_piola_stress.cwiseProduct(P).sum();
     stress_norm += P.squaredNorm();
-    cauchy += (cut.fields.cauchy_stress[place] - sigma).squaredNorm();
+    cauchy += (cut.fields[place].cauchy_stress - sigma).squaredNorm();
     cauchy_norm += sigma.squaredNorm();
   }
   e.displacement_max = displacement_max.error();

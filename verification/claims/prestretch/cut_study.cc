@@ -152,9 +152,9 @@ CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet
   cut.fields = lattice::site_fields(cut.state, lattice, subject.material);
 
   const std::size_t inside = lattice.index(lattice.rows() / 2, lattice.columns() / 2);
-  const lattice::SiteFields fields = lattice::site_fields(whole, lattice, subject.material);
-  cut.homogeneous_energy = fields.strain_energy_density[inside];
-  cut.homogeneous_P = fields.first_piola_stress[inside];
+  const lattice::SiteValues values = lattice::SiteEvaluator(lattice, subject.material).at(whole, inside);
+  cut.homogeneous_energy = values.strain_energy_density;
+  cut.homogeneous_P = values.first_piola_stress;
   cut.energy_change = lattice::elastic_energy(cut.state, lattice, subject.material) -
                       lattice::elastic_energy(whole, lattice, subject.material);
   cut.reaction_change = reactions(lattice, cut.state, subject.material, sheet.held) -

@@ -24,7 +24,7 @@ const output::Tolerance solver_tolerance{1e-10, "both solvers stop at 1e-12 of t
 struct LatticeSide
 {
   lattice::State state;
-  lattice::SiteFields fields;
+  std::vector<lattice::SiteValues> fields;
   std::vector<std::size_t> interior; // sites with all their bonds
   double energy_density;
   Eigen::Matrix2d edge_stress; // first Piola, of the forces on held sites [Pa]
@@ -44,7 +44,7 @@ LatticeSide relaxed_lattice(const bridge::Subject &subject, const lattice::Trian
     if (side.state.held[place] == 0)
     {
       side.interior.push_back(place);
-      side.energy_density += side.fields.strain_energy_density[place];
+      side.energy_density += side.fields[place].strain_energy_density;
     }
   side.energy_density /= static_cast<double>(side.interior.size());
 
@@ -90,8 +90,8 @@ std::vector<Compared> compare(const bridge::Subject &subject, const lattice::Tri
     const Eigen::Vector2d u(side.state.x[place] - X.x(), side.state.y[place] - X.y());
     displacement_error.add((u - Eigen::Vector2d(state.displacement[0], state.displacement[1])).norm());
     const Eigen::Matrix2d F = bridge::to_lattice(state.F), P = bridge::to_lattice(state.P);
-    gradient_error.add((side.fields.deformation_gradient[place] - F).norm() / F.norm());
-    stress_error.add((side.fields.first_piola_stress[place] - P).norm());
+    gradient_error.add((side.fields[place].deformation_gradient - F).norm() / F.norm());
+    stress_error.add((side.fields[place].first_piola_stress - P).norm());
     stress_scale.add(P.norm());
   }
 

@@ -60,7 +60,7 @@ struct CutLattice
   CutSheet sheet;
   lattice::TriangularLattice lattice;
   lattice::State state;
-  lattice::SiteFields fields;
+  std::vector<lattice::SiteValues> fields;
   lattice::Relaxation relaxation;
 
   /// A site whose fields are compared.
