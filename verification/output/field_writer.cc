@@ -100,6 +100,7 @@ void add_fields(vtkPolyData &frame, const lattice::State &state, const lattice::
 {
   const lattice::SiteEvaluator evaluator(sheet, material);
   std::vector<lattice::SiteValues> values;
+  values.reserve(slots.size());
   const analysis::Fragments fragments = analysis::find_fragments(state, sheet);
   lattice::StrainGradientFit gradient_fit(sheet);
   std::vector<lattice::StrainGradient> gradients;

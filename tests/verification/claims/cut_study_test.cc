@@ -143,7 +143,7 @@ void exchange_axes(CutLattice &cut)
     const double ux = cut.state.x[place] - X.x(), uy = cut.state.y[place] - X.y();
     cut.state.x[place] = X.x() + uy;
     cut.state.y[place] = X.y() + ux;
-    cut.fields.first_piola_stress[place] = cut.fields.first_piola_stress[place].reverse().eval();
+    cut.fields[place].first_piola_stress = cut.fields[place].first_piola_stress.reverse().eval();
   }
   std::swap(cut.reaction_change.x(), cut.reaction_change.y());
   cut.homogeneous_P = cut.homogeneous_P.reverse().eval();
