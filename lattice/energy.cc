@@ -26,17 +26,14 @@ double sum_over_bonds(const State &state, const RowPartition &band, const Energy
 double elastic_energy(const State &state, const RowPartition &band, const Material &material)
 {
   const TriangularLattice &lattice = band.lattice();
-  std::vector<double> volume(lattice.n_kinds());
-  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
-    if (const Shell *shell = material.shell(lattice, kind))
-      volume[kind] = cross_section(*shell, lattice, kind) * lattice.rest_length(kind);
-  return sum_over_bonds(state, band,
-                        [&](const Bond &bond)
-                        {
-                          return state.stiffness.of(bond.near, bond.kind) *
-                                 (volume[bond.kind] *
-                                  energy(material.shell(lattice, bond.kind)->law, stretch(state, lattice, bond)));
-                        });
+  const auto of_bond = [&](const Bond &bond)
+  {
+    const Shell &shell = *material.shell(lattice, bond.kind);
+    return state.stiffness.of(bond.near, bond.kind) *
+           (cross_section(shell, lattice, bond.kind) * lattice.rest_length(bond.kind) *
+            energy(shell.law, stretch(state, lattice, bond)));
+  };
+  return sum_over_bonds(state, band, of_bond);
 }
 
 namespace
@@ -76,19 +73,16 @@ std::vector<double> memory_energies(const State &state, const RowPartition &band
   std::vector<std::vector<double>> of_rows(material.n_mechanisms(), std::vector<double>(lattice.rows(), 0.));
   if (of_rows.empty())
     return {};
-  std::array<std::size_t, n_shells> first{};
-  for (std::size_t shell = 0; shell < n_shells; ++shell)
-    first[shell] = material.first_mechanism(shell);
   for_each_row(lattice, band.rows(),
                [&](std::size_t row)
                {
-                 for_each_bond(state, lattice, {row, row + 1},
-                               [&](const Bond &bond)
-                               {
-                                 for_each_mechanism(state, lattice, material, bond,
-                                                    [&](std::size_t m, double energy)
-                                                    { of_rows[first[lattice.shell(bond.kind)] + m][row] += energy; });
-                               });
+                 const auto of_bond = [&](const Bond &bond)
+                 {
+                   const std::size_t first = material.first_mechanism(lattice.shell(bond.kind));
+                   for_each_mechanism(state, lattice, material, bond,
+                                      [&](std::size_t m, double energy) { of_rows[first + m][row] += energy; });
+                 };
+                 for_each_bond(state, lattice, {row, row + 1}, of_bond);
                });
   std::vector<double> energies;
   for (const std::vector<double> &rows : of_rows)

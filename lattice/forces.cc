@@ -1,45 +1,22 @@
 #include "lattice/forces.h"
 
 #include <algorithm>
+#include <cmath>
+#include <variant>
 
 #include <omp.h>
 
 namespace latcon::lattice
 {
-namespace
-{
-
-// Those of shells that the sheet lacks are unused.
-kernels::BondLaws laws_of(const Material &material)
-{
-  const auto law = [&](std::size_t number)
-  { return material.in_shell(number) != nullptr ? material.in_shell(number)->law : material.nearest.law; };
-  return {{law(0), law(1), law(2)}};
-}
-
-// Returns whether bonds have factors of their own.
-bool has_factors(const State &state)
-{
-  return !state.stiffness.empty() || !state.strength.empty();
-}
-
-} // namespace
 
 Forces::Forces(const RowPartition &band, const Material &material)
-  : band_(band), lattice_(band.lattice()), laws_(laws_of(material)), n_kinds_(material.n_kinds(lattice_)),
+  : band_(band), lattice_(band.lattice()), material_(material), n_kinds_(material.n_kinds(lattice_)),
     reach_(static_cast<std::ptrdiff_t>(lattice_.reach())),
     columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_viscous_power_(lattice_.rows(), 0.),
     row_mechanism_power_(material.n_mechanisms(), Field(lattice_.rows(), 0.)), row_events_(lattice_.rows(), 0),
     row_short_bonds_(lattice_.rows(), 0)
 {
-  kernels::limit_instruction_sets();
-  for (std::size_t number = 0; number < n_shells; ++number)
-    if (const Shell *shell = material.in_shell(number))
-    {
-      has_shell_[number] = true;
-      memories_[number] = shell->memory;
-      first_mechanism_[number] = material.first_mechanism(number);
-    }
+  kernels::instruction_sets();
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {
     constants_.emplace_back();
@@ -51,15 +28,16 @@ Forces::Forces(const RowPartition &band, const Material &material)
   }
   set_elapsed(0.);
   for (std::size_t number = 0; number < n_shells; ++number)
-    if (has_shell(number))
-      mechanism_gives_energy_.insert(mechanism_gives_energy_.end(), n_mechanisms(memories_[number]),
-                                     lattice::dissipates_energy(memory_steps_[number]));
+    if (const Shell *shell = material.in_shell(number))
+      mechanism_gives_energy_.insert(mechanism_gives_energy_.end(), n_mechanisms(shell->memory),
+                                     dissipates_energy(memory_steps_[number]));
 }
 
 void Forces::set_elapsed(double duration)
 {
-  for (std::size_t shell = 0; shell < memories_.size(); ++shell)
-    memory_steps_[shell] = memory_step(memories_[shell], duration);
+  for (std::size_t number = 0; number < n_shells; ++number)
+    if (const Shell *shell = material_.in_shell(number))
+      memory_steps_[number] = memory_step(shell->memory, duration);
 }
 
 void Forces::update_memory(State &state)
@@ -68,21 +46,9 @@ void Forces::update_memory(State &state)
     return;
   Scratch scratch(lattice_, n_kinds_);
   for (const std::size_t row : BondHistory::rows(band_))
-    update_memory({state, state.vx, state.vy, &state.history}, row, scratch);
+    bonds_of_row({state, state.vx, state.vy, &state.history}, row, static_cast<std::ptrdiff_t>(row),
+                 static_cast<std::ptrdiff_t>(row), scratch);
   set_elapsed(0.);
-}
-
-// Only updates the memory of the bonds that start in a row.
-void Forces::update_memory(const Motion &motion, std::size_t row, Scratch &scratch) const
-{
-  bonds_of_kinds(motion.state, row, scratch.kinds);
-  scratch.mechanism_power.assign(row_mechanism_power_.size(), 0.);
-  const kernels::RowOfBonds sites = sites_of_row(motion, row);
-  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-  {
-    scratch.kinds[kind].force = {{scratch.fx.data(), scratch.fy.data()}};
-    add_overstress(motion, row, sites, scratch.kinds[kind], kind, scratch.mechanism_power);
-  }
 }
 
 // Adds the overstress of the bonds of a kind that start in row `from` to what their law gives.
@@ -90,17 +56,22 @@ void Forces::add_overstress(const Motion &motion, std::size_t from, const kernel
                             const kernels::BondsOfKind &bonds, std::size_t kind,
                             std::vector<double> &mechanism_power) const
 {
-  const BondHistory &history = motion.state.history;
-  if (!history.remembers(kind))
+  if (!motion.state.history.remembers(kind))
     return;
   const std::size_t shell = lattice_.shell(kind), first = lattice_.index(from, 0);
-  double *const power = &mechanism_power[first_mechanism_[shell]];
+  const BondHistory::Kind &history = motion.state.history.kinds[kind];
+  kernels::RememberedRow remembered{&history.stretch[first], {}};
+  for (std::size_t v = 0; v < history.variables.size(); ++v)
+    remembered.variable[v] = &history.variables[v][first];
   if (motion.history != nullptr)
-    kernels::add_overstress(memory_steps_[shell], row, bonds,
-                            kernels::remembered_from<double *>(motion.history->kinds[kind], first), power);
-  else
-    kernels::add_overstress(memory_steps_[shell], row, bonds,
-                            kernels::remembered_from<const double *>(history.kinds[kind], first), power);
+  {
+    BondHistory::Kind &updated = motion.history->kinds[kind];
+    remembered.new_stretch = &updated.stretch[first];
+    for (std::size_t v = 0; v < updated.variables.size(); ++v)
+      remembered.new_variable[v] = &updated.variables[v][first];
+  }
+  kernels::loops().add_overstress(memory_steps_[shell], row, bonds, remembered,
+                                  &mechanism_power[material_.first_mechanism(shell)]);
 }
 
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy, const RowCallbacks &work)
@@ -109,11 +80,7 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy, cons
   const bool threads = (own.end - own.begin) * lattice_.stride() >= min_places_for_threads;
   const std::size_t n_scratch = threads ? static_cast<std::size_t>(omp_get_max_threads()) : 1;
   while (scratch_.size() < n_scratch)
-  {
     scratch_.emplace_back(lattice_, n_kinds_);
-    if (!row_mechanism_power_.empty() && lattice_.is_triangular())
-      scratch_.back().lengths.resize(4 * n_kinds_per_shell * lattice_.stride());
-  }
   BondHistory *const history = state.history.empty() ? nullptr : work.history;
 #pragma omp parallel if (threads)
   {
@@ -134,30 +101,14 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy, cons
       // The rows whose bonds the thread above computed too, and those below the band.
 #pragma omp barrier
       for (std::ptrdiff_t row = std::max(begin, end - reach_); row < end; ++row)
-        update_memory({state, vx, vy, history}, static_cast<std::size_t>(row), scratch);
+        bonds_of_row({state, vx, vy, history}, static_cast<std::size_t>(row), row, row, scratch);
       for (std::ptrdiff_t below = first - reach_; i == 0 && below < first; ++below)
         if (const auto row = lattice_.row(below); row && (*row < own.begin || *row >= own.end))
-          update_memory({state, vx, vy, history}, *row, scratch);
+          bonds_of_row({state, vx, vy, history}, *row, below, below, scratch);
     }
   }
   if (history != nullptr)
     set_elapsed(0.);
-}
-
-void Forces::add_mechanisms(const std::vector<double> &mechanisms, double &power) const
-{
-  for (std::size_t m = 0; m < mechanisms.size(); ++m)
-    if (!mechanism_gives_energy_[m])
-      power += mechanisms[m];
-}
-
-double Forces::viscous_power() const
-{
-  // Summed row after row, whatever thread did which.
-  double sum = 0.;
-  for (const double power : row_viscous_power_)
-    sum += power;
-  return sum;
 }
 
 void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
@@ -169,7 +120,11 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
   scratch.ahead.clear();
   scratch.sums.clear();
   for (std::ptrdiff_t row = begin - reach_; row < begin; ++row)
-    bonds_from_below(motion, row, begin, scratch);
+    if (const auto from = lattice_.row(row))
+      bonds_of_row(motion, *from, row, begin, scratch);
+    else
+      for (LastRows &bonds : scratch.bonds)
+        bonds.clear(row);
   for (std::ptrdiff_t row = begin; row < end; ++row)
   {
     const auto index = static_cast<std::size_t>(row);
@@ -181,54 +136,38 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
       for (const Field *field : *work.fields)
         scratch.ahead.push_back(&(*field)[lattice_.index(index + lattice_.reach() + 1, 0)]);
     const Motion &of_row = row < end - reach_ ? updating : motion;
-    const kernels::RowSums sums = lattice_.is_triangular() ? bonds_of_row(of_row, index, row, scratch)
-                                                           : scatter_row(of_row, index, row, begin, scratch);
+    const kernels::RowSums sums = bonds_of_row(of_row, index, row, begin, scratch);
     row_viscous_power_[index] = sums.viscous_power;
     for (std::size_t m = 0; m < row_mechanism_power_.size(); ++m)
       row_mechanism_power_[m][index] = scratch.mechanism_power[m];
     row_events_[index] = sums.has_events ? 1 : 0;
     row_short_bonds_[index] = sums.has_short_bonds ? 1 : 0;
-    if (lattice_.is_triangular())
-    {
-      gather_row(row, scratch);
-      work.post_force(index, scratch.fx.data(), scratch.fy.data());
-      continue;
-    }
+    const std::array<double *, 2> on_sites = scratch.sums.at(row);
     // What bonds across a periodic edge do to images of sites is done to the sites.
     const auto columns = static_cast<std::ptrdiff_t>(lattice_.columns());
-    if (columns_repeat_)
-      for (double *const sum : {scratch.sums.at(row, 0), scratch.sums.at(row, 1)})
+    if (lattice_.is_triangular())
+      gather_row(row, scratch);
+    else if (columns_repeat_)
+      for (double *const sum : on_sites)
         for (std::ptrdiff_t c = 0; c < static_cast<std::ptrdiff_t>(lattice_.column_reach()); ++c)
         {
           sum[c] += sum[columns + c];
           sum[columns - 1 - c] += sum[-1 - c];
         }
-    work.post_force(index, scratch.sums.at(row, 0), scratch.sums.at(row, 1));
-    scratch.sums.clear(row);
+    work.post_force(index, on_sites[0], on_sites[1]);
+    if (!lattice_.is_triangular())
+      scratch.sums.clear(row);
   }
 }
 
-void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, std::ptrdiff_t begin, Scratch &scratch) const
-{
-  const auto from = lattice_.row(row);
-  if (!lattice_.is_triangular())
-  {
-    if (from)
-      scatter_row(motion, *from, row, begin, scratch);
-  }
-  else if (from)
-    bonds_of_row(motion, *from, row, scratch);
-  else
-    for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-      for (double *component : scratch.bonds.at(row, kind))
-        std::fill_n(component - TriangularLattice::row_alignment, lattice_.stride(), 0.);
-}
-
-void Forces::bonds_of_kinds(const State &state, std::size_t row, std::vector<kernels::BondsOfKind> &kinds) const
+kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row,
+                                         std::vector<kernels::BondsOfKind> &kinds) const
 {
   const std::size_t near = lattice_.index(row, 0);
+  const State &state = motion.state;
   const auto from = [near](const BondFactors &factors, std::size_t kind)
   { return factors.kinds.empty() || factors.kinds[kind].empty() ? nullptr : factors.kinds[kind].data() + near; };
+  kinds.resize(n_kinds_);
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {
     // One by one: a whole that is copied would wait for its parts.
@@ -239,36 +178,18 @@ void Forces::bonds_of_kinds(const State &state, std::size_t row, std::vector<ker
     bonds.present = BondStates::bit(kind);
     bonds.toughened = BondStates::toughened_bit(kind);
     bonds.retraction_stretch = retraction_stretch_.empty() ? 0. : retraction_stretch_[kind];
-    bonds.lengths = {};
     bonds.stiffness = from(state.stiffness, kind);
     bonds.strength = from(state.strength, kind);
     bonds.length_ratio = lattice_.scattered() != nullptr ? &lattice_.scattered()->length_ratios[kind][near] : nullptr;
   }
-}
-
-kernels::RowOfBonds Forces::sites_of_row(const Motion &motion, std::size_t row) const
-{
-  const std::size_t near = lattice_.index(row, 0);
-  const State &state = motion.state;
-  return {lattice_.columns(), &state.x[near],         &state.y[near],          &motion.vx[near],
-          &motion.vy[near],   state.breaking_stretch, state.toughened_stretch, shortness_limit_};
-}
-
-kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row,
-                                         std::vector<kernels::BondsOfKind> &kinds) const
-{
-  kinds.resize(n_kinds_);
-  bonds_of_kinds(motion.state, row, kinds);
-  kernels::RowOfBonds bonds = sites_of_row(motion, row);
-  bonds.kinds = kinds.data();
-  bonds.n_kinds = n_kinds_;
-  return bonds;
+  return {lattice_.columns(),     &state.x[near],          &state.y[near],   &motion.vx[near], &motion.vy[near],
+          state.breaking_stretch, state.toughened_stretch, shortness_limit_, kinds.data(),     n_kinds_};
 }
 
 bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ahead) const
 {
   std::vector<kernels::BondsOfKind> kinds;
-  return kernels::any_event_ahead(row_of_bonds({state, state.vx, state.vy}, row, kinds), ahead);
+  return kernels::loops().any_event_ahead(row_of_bonds({state, state.vx, state.vy}, row, kinds), ahead);
 }
 
 bool Forces::row_has_short_bonds_ahead(const State &state, const Field &vx, const Field &vy, std::size_t row,
@@ -276,84 +197,64 @@ bool Forces::row_has_short_bonds_ahead(const State &state, const Field &vx, cons
 {
   std::vector<kernels::BondsOfKind> kinds;
   return row_has_short_bonds(row) &&
-         kernels::any_short_ahead(row_of_bonds({state, vx, vy}, row, kinds), ahead, stretch);
+         kernels::loops().any_short_ahead(row_of_bonds({state, vx, vy}, row, kinds), ahead, stretch);
 }
 
-// The bonds of row `from` as those of `row`: the same, or below the edge of a periodic sheet.
-kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row,
+// The bonds of row `from` as those of `row`: the same, or below the edge of a periodic sheet. Those of stencils other
+// than the triangular lattice are added to the sums of rows from `begin` on.
+kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, std::ptrdiff_t begin,
                                       Scratch &scratch) const
 {
+  const bool gathers = lattice_.is_triangular();
+  const bool has_factors = !motion.state.stiffness.empty() || !motion.state.strength.empty();
+  const std::size_t columns = lattice_.columns();
   std::vector<kernels::BondsOfKind> &kinds = scratch.kinds;
-  bonds_of_kinds(motion.state, from, kinds);
-  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-    kinds[kind].force = scratch.bonds.at(row, kind);
-  kernels::RowOfBonds bonds = sites_of_row(motion, from);
+  kernels::RowOfBonds bonds = row_of_bonds(motion, from, kinds);
   bonds.ahead = scratch.ahead.data();
   bonds.n_ahead = scratch.ahead.size();
-  kernels::RowSums sums;
-  std::size_t shell = 0;
-  if (!has_factors(motion.state))
-  {
-    // The first two at once.
-    bonds.kinds = kinds.data();
-    bonds.n_kinds = (has_shell(1) ? 2 : 1) * n_kinds_per_shell;
-    for (std::size_t kind = 0; kind < bonds.n_kinds && !scratch.lengths.empty(); ++kind)
-      kinds[kind].lengths = {
-        {&scratch.lengths[2 * kind * lattice_.stride()], &scratch.lengths[(2 * kind + 1) * lattice_.stride()]}};
-    sums = kernels::bonds_of_row(laws_, bonds);
-    shell = 2;
-  }
-  for (; shell < n_shells; ++shell)
-    if (has_shell(shell))
-    {
-      bonds.kinds = &kinds[shell * n_kinds_per_shell];
-      bonds.n_kinds = n_kinds_per_shell;
-      kernels::bonds_of_stencil(laws_[shell], bonds, sums);
-    }
-  if (!row_mechanism_power_.empty())
-  {
-    scratch.mechanism_power.assign(row_mechanism_power_.size(), 0.);
-    for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-      add_overstress(motion, from, bonds, kinds[kind], kind, scratch.mechanism_power);
-    add_mechanisms(scratch.mechanism_power, sums.viscous_power);
-  }
-  // A site gathers from the places around it, so bonds that start beyond a periodic edge must be there.
-  const std::size_t columns = lattice_.columns();
-  if (columns_repeat_)
-    for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-      for (double *component : kinds[kind].force)
-      {
-        std::copy_n(component, 2, component + columns);
-        std::copy_n(component + columns - 2, 2, component - 2);
-      }
-  return sums;
-}
-
-// The bonds of row `from` as those of `row`, added to the sums of rows from `begin` on.
-kernels::RowSums Forces::scatter_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, std::ptrdiff_t begin,
-                                     Scratch &scratch) const
-{
-  bonds_of_kinds(motion.state, from, scratch.kinds);
   scratch.mechanism_power.assign(row_mechanism_power_.size(), 0.);
-  kernels::RowOfBonds sites = sites_of_row(motion, from);
-  sites.n_kinds = 1;
   kernels::RowSums sums;
-  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
+  for (std::size_t first = 0; first < n_kinds_; first += bonds.n_kinds)
   {
-    const std::ptrdiff_t rows = lattice_.rows_across(kind);
-    if (row + rows < begin || !has_shell(lattice_.shell(kind)))
+    const Shell *const shell = material_.shell(lattice_, first);
+    // The first two shells of the lattice at once.
+    bonds.n_kinds =
+      !gathers ? 1 : (first == 0 && material_.next_nearest && !has_factors ? 2 * n_kinds_per_shell : n_kinds_per_shell);
+    const std::ptrdiff_t rows = lattice_.rows_across(first);
+    if (shell == nullptr || (!gathers && row + rows < begin))
       continue;
-    kernels::BondsOfKind &bonds = scratch.kinds[kind];
-    bonds.force = {{scratch.fx.data(), scratch.fy.data()}};
-    sites.kinds = &bonds;
-    kernels::bonds_of_stencil(laws_[lattice_.shell(kind)], sites, sums);
-    add_overstress(motion, from, sites, bonds, kind, scratch.mechanism_power);
-    const std::ptrdiff_t columns = bonds.shift - rows * static_cast<std::ptrdiff_t>(lattice_.stride());
-    for (std::size_t component = 0; component < 2; ++component)
-      kernels::scatter(sites.n, bonds.force[component], row >= begin ? scratch.sums.at(row, component) : nullptr,
-                       scratch.sums.at(row + rows, component) + columns);
+    bonds.kinds = &kinds[first];
+    for (std::size_t kind = first; kind < first + bonds.n_kinds; ++kind)
+    {
+      kinds[kind].force = scratch.bonds[gathers ? kind : 0].at(row);
+      double *const lengths = &scratch.lengths[2 * (kind - first) * lattice_.stride()];
+      kinds[kind].lengths = {};
+      if (!row_mechanism_power_.empty())
+        kinds[kind].lengths = {lengths, lengths + lattice_.stride()};
+    }
+    kernels::loops().bonds_of_row(shell->law, material_.next_nearest ? material_.next_nearest->law : shell->law, bonds,
+                                  sums);
+    bonds.n_ahead = 0;
+    for (std::size_t kind = first; kind < first + bonds.n_kinds; ++kind)
+    {
+      add_overstress(motion, from, bonds, kinds[kind], kind, scratch.mechanism_power);
+      // A site gathers from the places around it, so bonds that start beyond a periodic edge must be there.
+      if (gathers && columns_repeat_)
+        for (double *component : kinds[kind].force)
+        {
+          std::copy_n(component, 2, component + columns);
+          std::copy_n(component + columns - 2, 2, component - 2);
+        }
+    }
+    const std::ptrdiff_t to = kinds[first].shift - rows * static_cast<std::ptrdiff_t>(lattice_.stride());
+    for (std::size_t component = 0; component < 2 && !gathers; ++component)
+      kernels::loops().scatter(columns, kinds[first].force[component],
+                               row >= begin ? scratch.sums.at(row)[component] : nullptr,
+                               scratch.sums.at(row + rows)[component] + to);
   }
-  add_mechanisms(scratch.mechanism_power, sums.viscous_power);
+  for (std::size_t m = 0; m < row_mechanism_power_.size(); ++m)
+    if (!mechanism_gives_energy_[m])
+      sums.viscous_power += scratch.mechanism_power[m];
   return sums;
 }
 
@@ -366,15 +267,15 @@ void Forces::gather_row(std::ptrdiff_t row, Scratch &scratch) const
     // From the place of the same column where a bond starts to the one where it ends.
     const auto columns = static_cast<std::ptrdiff_t>(lattice_.shift(kind, static_cast<std::size_t>(row + rows)) -
                                                      static_cast<std::size_t>(rows) * lattice_.stride());
-    const std::array<double *, 2> starting = scratch.bonds.at(row, kind), ending = scratch.bonds.at(row - rows, kind);
+    const std::array<double *, 2> starting = scratch.bonds[kind].at(row), ending = scratch.bonds[kind].at(row - rows);
     for (std::size_t component = 0; component < 2; ++component)
     {
       start[component][kind] = starting[component];
       end[component][kind] = ending[component] - columns;
     }
   }
-  kernels::gather_row(lattice_.columns(), n_kinds_, start[0], end[0], scratch.fx.data());
-  kernels::gather_row(lattice_.columns(), n_kinds_, start[1], end[1], scratch.fy.data());
+  kernels::loops().gather_row(lattice_.columns(), n_kinds_, start[0], end[0], scratch.sums.at(row)[0]);
+  kernels::loops().gather_row(lattice_.columns(), n_kinds_, start[1], end[1], scratch.sums.at(row)[1]);
 }
 
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
@@ -387,6 +288,110 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
     std::copy_n(fy, lattice_.columns(), &fy_[lattice_.index(row, 0)]);
   };
   evaluate(state, vx, vy, {{}, nullptr, std::ref(keep)});
+}
+
+// Forces of a bond and on a site, by the operations of an evaluation of all, so that both have the same bits.
+
+kernels::BondForce kernels::bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx,
+                                       double dy, double dvx, double dvy, double length_ratio)
+{
+  dx *= length_ratio;
+  dy *= length_ratio;
+  const double distance = std::sqrt(dx * dx + dy * dy);
+  const double inverse = 1. / distance;
+  const double nx = length_ratio * (dx * inverse), ny = length_ratio * (dy * inverse);
+  const double rate = dvx * nx + dvy * ny;
+  const double stretch = (1. / bond.rest_length) * distance;
+  const double viscous = bond.damping * rate;
+  const double axial =
+    factor * (bond.cross_section * std::visit([&](const auto &of_kind)
+                                              { return formulas::force(of_kind, stretch, bond.rest_length * inverse); },
+                                              law) +
+              viscous);
+  return {axial * nx, axial * ny, nx, ny, stretch, factor * (viscous * rate)};
+}
+
+void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, const Bond &bond)
+{
+  if (!band_.owns(bond.near))
+    return;
+  const std::size_t row = lattice_.row_of(bond.near), shell = lattice_.shell(bond.kind);
+  const auto [force, dissipation] = single_bond({state, vx, vy}, bond);
+  row_viscous_power_[row] -= force.viscous_power;
+  for (std::size_t m = 0; m < n_mechanisms(material_.in_shell(shell)->memory); ++m)
+    row_mechanism_power_[material_.first_mechanism(shell) + m][row] -= dissipation[m];
+}
+
+Forces::SingleBond Forces::single_bond(const Motion &motion, const Bond &bond) const
+{
+  const State &state = motion.state;
+  const Field &vx = motion.vx, &vy = motion.vy;
+  const auto [near, kind, far] = bond;
+  const kernels::BondConstants &constants = constants_[kind];
+  const double factor = state.stiffness.of(near, kind);
+  SingleBond single{kernels::bond_force(material_.shell(lattice_, kind)->law, constants, factor,
+                                        state.x[far] - state.x[near], state.y[far] - state.y[near], vx[far] - vx[near],
+                                        vy[far] - vy[near], lattice_.length_ratio(near, kind)),
+                    {}};
+  if (!state.history.remembers(kind))
+    return single;
+  std::array<double, max_history_variables> variables{};
+  state.history.variables_of(near, kind, variables.data());
+  const MemoryStep &step = memory_steps_[lattice_.shell(kind)];
+  const double axial = constants.cross_section *
+                       advance(step, state.history.kinds[kind].stretch[near], single.force.stretch, variables.data(),
+                               single.dissipation.data()) *
+                       factor;
+  single.force.x += axial * single.force.nx;
+  single.force.y += axial * single.force.ny;
+  for (double &power : single.dissipation)
+  {
+    power = power * (constants.cross_section * constants.rest_length) * factor;
+    if (!dissipates_energy(step))
+      single.force.viscous_power += power;
+  }
+  return single;
+}
+
+Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field &vy, std::size_t place) const
+{
+  const auto force = [&](const Bond &bond) -> Eigen::Vector2d
+  {
+    if (!state.bonds.present(bond.near, bond.kind))
+      return {0., 0.};
+    const kernels::BondForce of_bond = single_bond({state, vx, vy}, bond).force;
+    return {of_bond.x, of_bond.y};
+  };
+  Eigen::Vector2d sum(0., 0.);
+  if (!lattice_.is_triangular())
+  {
+    // In the order of an evaluation: rows from the lowest up, half-bond by half-bond.
+    for (std::ptrdiff_t below = reach_; below >= 0; --below)
+      for (std::size_t kind = 0; kind < n_kinds_; ++kind)
+      {
+        if (below == 0)
+          sum += force(lattice_.bond(place, kind));
+        if (lattice_.rows_across(kind) == below)
+          sum -= force(lattice_.bond_into(place, kind));
+      }
+    return sum;
+  }
+  std::array<std::array<double, n_bond_kinds>, 2> start{}, end{};
+  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
+  {
+    const Eigen::Vector2d from = force(lattice_.bond(place, kind)), into = force(lattice_.bond_into(place, kind));
+    for (std::size_t c = 0; c < 2; ++c)
+    {
+      start[c][kind] = from[static_cast<Eigen::Index>(c)];
+      end[c][kind] = into[static_cast<Eigen::Index>(c)];
+    }
+  }
+  const auto component = [&](std::size_t c)
+  {
+    return n_kinds_ == n_bond_kinds ? formulas::sum_of_bonds<true>(start[c], end[c])
+                                    : formulas::sum_of_bonds<false>(start[c], end[c]);
+  };
+  return {component(0), component(1)};
 }
 
 } // namespace latcon::lattice

@@ -6,9 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "lattice/memory_kernels.h"
+#include "lattice/row_kernels.h"
 #include "lattice/state.h"
-#include "lattice/stencil_kernels.h"
 
 namespace latcon::lattice
 {
@@ -78,8 +77,6 @@ public:
   /// Power the dashpots dissipated at the last evaluation, sum of A0 eta (v_rel . n)^2 / l [W/m] over the bonds that
   /// start in a row of the band, those in the memory of bonds included.
   double viscous_power(std::size_t row) const { return row_viscous_power_[row]; }
-  /// Sums over all rows of the band.
-  double viscous_power() const;
 
   /// Power that each mechanism of Material::n_mechanisms() dissipated at the last evaluation [W/m], in the bonds that
   /// start in a row of the band; a part of viscous_power().
@@ -109,25 +106,27 @@ public:
   void remove_bond(const State &state, const Field &vx, const Field &vy, const Bond &bond);
 
 private:
-  /// Forces on the near ends of the bonds that start in the last rows: in as many as the neighbours of a site through
-  /// bonds of that kind are down, and in its own.
-  class BondRows
+  /// Forces in the last n rows, as far as they are known.
+  class LastRows
   {
   public:
-    BondRows(std::size_t stride, std::size_t n_kinds) : stride_(stride), values_(first[n_kinds] * 2 * stride, 0.) {}
-
-    /// The components along x and y for the bonds of a kind that start in a row >= -2: column 0, with
-    /// TriangularLattice::row_alignment places before it.
-    std::array<double *, 2> at(std::ptrdiff_t row, std::size_t kind)
+    LastRows(const TriangularLattice &lattice, std::ptrdiff_t n)
+      : stride_(lattice.stride()), column_(lattice.index(0, 0) % stride_), n_(n),
+        values_(2 * static_cast<std::size_t>(n) * stride_, 0.)
     {
-      const std::size_t slot = first[kind] + static_cast<std::size_t>(row + 6) % (first[kind + 1] - first[kind]);
-      double *const x = &values_[2 * slot * stride_ + TriangularLattice::row_alignment];
+    }
+    /// The components along x and y in a row >= -n, or any if n is 1: column 0.
+    std::array<double *, 2> at(std::ptrdiff_t row)
+    {
+      double *const x = &values_[2 * static_cast<std::size_t>((row + n_) % n_) * stride_ + column_];
       return {{x, x + stride_}};
     }
+    void clear() { std::fill(values_.begin(), values_.end(), 0.); }
+    void clear(std::ptrdiff_t row) { std::fill_n(at(row)[0] - column_, 2 * stride_, 0.); }
 
   private:
-    static constexpr std::array<std::size_t, n_bond_kinds + 1> first{{0, 1, 3, 5, 7, 9, 12, 13, 16, 19}};
-    std::size_t stride_;
+    std::size_t stride_, column_;
+    std::ptrdiff_t n_;
     Field values_;
   };
 
@@ -139,75 +138,51 @@ private:
     BondHistory *history = nullptr; // updated
   };
 
-  /// Sums of the forces on the sites of the rows that bonds reach from one row, as far as they are known.
-  class SiteSums
+  /// What one bond does.
+  struct SingleBond
   {
-  public:
-    SiteSums(const TriangularLattice &lattice, std::size_t n_rows)
-      : stride_(lattice.stride()), column_(lattice.index(0, 0) % stride_), n_rows_(n_rows),
-        values_(2 * n_rows * stride_)
-    {
-    }
-    /// Sums along x (0) or y (1) in a row >= 0: column 0.
-    double *at(std::ptrdiff_t row, std::size_t component)
-    {
-      return &values_[(2 * (static_cast<std::size_t>(row) % n_rows_) + component) * stride_ + column_];
-    }
-    void clear() { std::fill(values_.begin(), values_.end(), 0.); }
-    void clear(std::ptrdiff_t row) { std::fill_n(at(row, 0) - column_, 2 * stride_, 0.); }
-
-  private:
-    std::size_t stride_, column_, n_rows_;
-    Field values_;
+    kernels::BondForce force;                              // with the overstress of its memory
+    std::array<double, max_history_variables> dissipation; // of each mechanism, 0 beyond [W/m], or [J/m]
   };
 
   /// Scratch arrays of a thread.
   struct Scratch
   {
     Scratch(const TriangularLattice &lattice, std::size_t n_kinds)
-      : bonds(lattice.stride(), lattice.is_triangular() ? n_kinds : 0),
-        sums(lattice, lattice.is_triangular() ? 0 : lattice.reach() + 1), kinds(n_kinds), fx(lattice.stride(), 0.),
-        fy(lattice.stride(), 0.)
+      : sums(lattice, lattice.is_triangular() ? 1 : static_cast<std::ptrdiff_t>(lattice.reach()) + 1),
+        lengths(4 * n_kinds_per_shell * lattice.stride())
     {
+      for (std::size_t kind = 0; kind < (lattice.is_triangular() ? n_kinds : 1); ++kind)
+        bonds.emplace_back(lattice, lattice.is_triangular() ? lattice.rows_across(kind) + 1 : 1);
     }
-    BondRows bonds; // of the triangular lattice
-    SiteSums sums;  // of other stencils
-    std::vector<kernels::BondsOfKind> kinds;
-    Field fx, fy;                             // forces on the sites of a row, or of the bonds of a kind
+    /// On the near ends of the bonds that start in a row: of each kind of the triangular lattice, in as many rows as
+    /// the neighbours of a site through these bonds are down, and in its own; of one kind after the other of other
+    /// stencils.
+    std::vector<LastRows> bonds = {};
+    LastRows sums; // on the sites of the rows that bonds reach from one row
+    std::vector<kernels::BondsOfKind> kinds = {};
     std::vector<double> mechanism_power = {}; // of the bonds that start in a row
     std::vector<const double *> ahead = {};   // what is fetched during a row
-    Field lengths = {};                       // of the bonds of a row with a memory, and their inverse
+    Field lengths;                            // of the bonds of a row with a memory, and their inverse
   };
 
   void evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
                      const RowCallbacks &work);
-  void bonds_of_kinds(const State &state, std::size_t row, std::vector<kernels::BondsOfKind> &kinds) const;
-  kernels::RowOfBonds sites_of_row(const Motion &motion, std::size_t row) const;
   kernels::RowOfBonds row_of_bonds(const Motion &motion, std::size_t row,
                                    std::vector<kernels::BondsOfKind> &kinds) const;
-  bool has_shell(std::size_t shell) const { return has_shell_[shell]; }
-  void bonds_from_below(const Motion &motion, std::ptrdiff_t row, std::ptrdiff_t begin, Scratch &scratch) const;
-  kernels::RowSums scatter_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, std::ptrdiff_t begin,
-                               Scratch &scratch) const;
-  kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, Scratch &scratch) const;
+  kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, std::ptrdiff_t begin,
+                                Scratch &scratch) const;
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
   void add_overstress(const Motion &motion, std::size_t from, const kernels::RowOfBonds &row,
                       const kernels::BondsOfKind &bonds, std::size_t kind, std::vector<double> &mechanism_power) const;
-  void update_memory(const Motion &motion, std::size_t row, Scratch &scratch) const;
-  void add_mechanisms(const std::vector<double> &mechanisms, double &power) const;
-  kernels::Overstress overstress(const State &state, const Bond &bond, double stretch) const;
-  Eigen::Vector2d on_site_of_stencil(const Motion &motion, std::size_t place) const;
-  kernels::BondForce single_bond(const Motion &motion, const Bond &bond) const;
+  SingleBond single_bond(const Motion &motion, const Bond &bond) const;
 
   RowPartition band_;
   const TriangularLattice &lattice_;
-  kernels::BondLaws laws_;
-  std::array<BondMemory, n_shells> memories_;
+  Material material_;
   std::array<MemoryStep, n_shells> memory_steps_;
-  std::array<std::size_t, n_shells> first_mechanism_{}; // of each shell
-  std::size_t n_kinds_;                                 // of bonds: the first so many
-  std::ptrdiff_t reach_;                                // of these, in rows
-  std::array<bool, n_shells> has_shell_{};
+  std::size_t n_kinds_;                           // of bonds: the first so many
+  std::ptrdiff_t reach_;                          // of these, in rows
   std::vector<kernels::BondConstants> constants_; // by kind
   std::vector<double> retraction_stretch_;        // by kind; none: not watched
   double shortness_limit_ = std::numeric_limits<double>::infinity();

@@ -106,10 +106,10 @@ Fracture::Event Fracture::event(const State &state, const Bond &bond, const Fiel
   if (!(lookahead_ > 0.))
     return among(stretch(state, lattice_, bond), shortest, longest);
   const double l = lattice_.rest_length(kind);
-  return among(squared_length_after(lookahead_, ratio * (state.x[far] - state.x[near]),
-                                    ratio * (state.y[far] - state.y[near]), ratio * (state.vx[far] - state.vx[near]),
-                                    ratio * (state.vy[far] - state.vy[near])),
-               squared_length(shortest, l), squared_length(longest, l));
+  return among(formulas::squared_length_after(
+                 lookahead_, ratio * (state.x[far] - state.x[near]), ratio * (state.y[far] - state.y[near]),
+                 ratio * (state.vx[far] - state.vx[near]), ratio * (state.vy[far] - state.vy[near])),
+               formulas::squared_length(shortest, l), formulas::squared_length(longest, l));
 }
 
 double Fracture::bond_energy(const State &state, const Bond &bond) const

@@ -1,6 +1,7 @@
 #include "lattice/integrator.h"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 
 #include "lattice/row_kernels.h"
@@ -89,8 +90,8 @@ void Integrator::kick(State &state, std::size_t row, const double *fx, const dou
 {
   const std::size_t begin = lattice_.index(row, 0), n = lattice_.columns();
   const double *const inverse_mass = &state.inverse_mass[begin];
-  kernels::kick(duration, n, fx, inverse_mass, &state.ax[begin], &state.vx[begin]);
-  kernels::kick(duration, n, fy, inverse_mass, &state.ay[begin], &state.vy[begin]);
+  kernels::loops().kick(duration, n, fx, inverse_mass, &state.ax[begin], &state.vx[begin]);
+  kernels::loops().kick(duration, n, fy, inverse_mass, &state.ay[begin], &state.vy[begin]);
 }
 
 void Integrator::accelerate(State &state, BondHistory *history)
@@ -99,8 +100,8 @@ void Integrator::accelerate(State &state, BondHistory *history)
   const auto after = [&](std::size_t row, const double *fx, const double *fy)
   {
     const std::size_t begin = lattice_.index(row, 0), n = lattice_.columns();
-    kernels::accelerate(n, fx, &state.inverse_mass[begin], &state.ax[begin]);
-    kernels::accelerate(n, fy, &state.inverse_mass[begin], &state.ay[begin]);
+    std::transform(fx, fx + n, &state.inverse_mass[begin], &state.ax[begin], std::multiplies());
+    std::transform(fy, fy + n, &state.inverse_mass[begin], &state.ay[begin], std::multiplies());
   };
   forces_.evaluate(state, evaluated_vx(state), evaluated_vy(state), {{}, nullptr, std::ref(after), history});
   evaluate_site_forces(state);

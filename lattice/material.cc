@@ -69,11 +69,6 @@ Material without_dashpots(Material material)
   return material;
 }
 
-double cross_section(const Shell &shell, const TriangularLattice &lattice)
-{
-  return shell.area_factor * lattice.site_area() / lattice.spacing();
-}
-
 double cross_section(const Shell &shell, const TriangularLattice &lattice, std::size_t kind)
 {
   return shell.area_factor * lattice.site_area() / lattice.section_length(kind);

@@ -81,11 +81,9 @@ Material without_memory(Material material);
 /// Returns the bonds without their dashpots and memories, as they are in equilibrium.
 Material without_dashpots(Material material);
 
-/// A0 / h = s (sqrt3 / 2) d [m], cross-section of a bond of the triangular lattice per sheet thickness (theory.md, eq.
-/// (L.4)).
-double cross_section(const Shell &shell, const TriangularLattice &lattice);
-/// A0 / h = s V / D [m] of the bonds of a kind; see TriangularLattice::section_length.
-double cross_section(const Shell &shell, const TriangularLattice &lattice, std::size_t kind);
+/// A0 / h = s V / D [m], cross-section of a bond of a kind per sheet thickness; see TriangularLattice::section_length.
+/// It is s (sqrt3 / 2) d for all kinds of the triangular lattice (theory.md, eq. (L.4)).
+double cross_section(const Shell &shell, const TriangularLattice &lattice, std::size_t kind = 0);
 
 /// m / h = rho V [kg/m], (sqrt3 / 2) d^2 rho on the triangular lattice: mass of a site per sheet thickness (theory.md,
 /// eq. (L.1)).

@@ -1,7 +1,7 @@
 #include "lattice/row_kernels.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
@@ -23,28 +23,7 @@ namespace latcon::lattice::kernels::HWY_NAMESPACE
 
 #include "lattice/lanes.inc"
 
-#include "lattice/bond_geometry.inc"
-
-} // namespace latcon::lattice::kernels::HWY_NAMESPACE
-
-#include "lattice/bonds/formulas_for_vectors.inc"
-
-namespace latcon::lattice::kernels::HWY_NAMESPACE
-{
-
-// The consecutive sites of one vector: near ends of bonds of the first two shells.
-struct Sites
-{
-  Sites(const RowOfBonds &row, std::size_t site)
-    : first(site), x(load(row.x + site)), y(load(row.y + site)), states(load_states(row.kinds[0].states + site))
-  {
-  }
-  auto present(std::size_t kind) const { return mask_of_bit(states, BondStates::bit(kind)); }
-
-  std::size_t first;
-  Lanes x, y;
-  hn::Vec<Bits> states;
-};
+#include "lattice/site_loops.inc"
 
 // Lengths and inverse lengths of the bonds that start at these sites, both 0 for an absent one: it has no direction,
 // hence no force. Root and quotient take as long as all the rest, in units of the processor that do nothing
@@ -55,25 +34,38 @@ struct Lengths
   alignas(64) double inverse[2 * n_kinds_per_shell][block];
 };
 
-template <std::size_t n_kinds>
+// The difference of a field between the ends of bonds. @tparam has_factors whether bonds may have a length_ratio
+template <bool has_factors>
+HWY_INLINE Lanes difference(const BondsOfKind &bonds, const double *of_sites, std::size_t site, Lanes near)
+{
+  const Lanes apart = load(of_sites + site + static_cast<std::size_t>(bonds.shift)) - near;
+  if constexpr (has_factors)
+    return load_factors(bonds.length_ratio, site) * apart;
+  else
+    return apart;
+}
+
+template <std::size_t n_kinds, bool has_factors>
 HWY_INLINE void find_lengths(const RowOfBonds &row, std::size_t site, Lengths &lengths)
 {
-  const Sites near(row, site);
+  const Lanes x = load(row.x + site), y = load(row.y + site);
+  const auto states = load_states(row.kinds[0].states + site);
   HWY_UNROLL(6)
   for (std::size_t kind = 0; kind < n_kinds; ++kind)
   {
-    const std::size_t far = site + static_cast<std::size_t>(row.kinds[kind].shift);
-    const Lanes dx = load(row.x + far) - near.x, dy = load(row.y + far) - near.y;
+    const BondsOfKind &bonds = row.kinds[kind];
+    const Lanes dx = difference<has_factors>(bonds, row.x, site, x),
+                dy = difference<has_factors>(bonds, row.y, site, y);
     const Lanes length = square_root(dx * dx + dy * dy);
-    const auto present = near.present(kind);
-    store({hn::IfThenElseZero(present, length.v)}, lengths.length[kind]);
-    store({hn::IfThenElseZero(present, reciprocal(length).v)}, lengths.inverse[kind]);
+    const auto present = mask_of_bit(states, bonds.present);
+    store(where(present, length), lengths.length[kind]);
+    store(where(present, reciprocal(length)), lengths.inverse[kind]);
   }
 }
 
-HWY_INLINE Lanes stretch_of(const BondConstants &bond, std::size_t kind, const Lengths &lengths)
+HWY_INLINE Lanes stretch_of(const BondConstants &bond, const double *length)
 {
-  return (1. / bond.rest_length) * load(lengths.length[kind]);
+  return (1. / bond.rest_length) * load(length);
 }
 
 // Returns whether one of the bonds is past its own limit, or has retracted.
@@ -83,67 +75,70 @@ bool any_event(const RowOfBonds &row, std::size_t site, const Lengths &lengths)
   for (std::size_t kind = 0; kind < row.n_kinds; ++kind)
   {
     const BondsOfKind &bonds = row.kinds[kind];
-    const Lanes stretch = stretch_of(bonds.constants, kind, lengths);
+    const Lanes stretch = stretch_of(bonds.constants, lengths.length[kind]);
     events = hn::Or(events, are_events(row, bonds, site, stretch, [](Lanes limit) { return limit; }));
   }
   return !hn::AllFalse(D(), events);
 }
 
-// Quick test whether one of several bonds may be past a limit.
-template <bool watches_retraction>
-struct Extremes
+// Adds partial sums, whose order does not depend on the width of a vector.
+HWY_INLINE double add(double total, const Lanes *parts)
 {
-  Lanes longest;  // stretch
-  Lanes shortest; // stretch beyond that of retraction; negative for absent bonds as well
+  alignas(64) double sums[block];
+  for (std::size_t part = 0; part < block / width(); ++part)
+    store(parts[part], sums + part * width());
+  for (const double sum : sums)
+    total += sum;
+  return total;
+}
 
-  HWY_INLINE void add(Lanes stretch, double retraction)
-  {
-    longest.v = hn::Max(longest.v, stretch.v);
-    if constexpr (watches_retraction)
-      shortest.v = hn::Min(shortest.v, (stretch - retraction).v);
-  }
-  HWY_INLINE bool may_be_events(double first_limit) const
-  {
-    auto events = hn::Gt(longest.v, lanes(first_limit).v);
-    if constexpr (watches_retraction)
-      events = hn::Or(events, hn::Lt(shortest.v, lanes(0.).v));
-    return !hn::AllFalse(D(), events);
-  }
+// Sums and extremes over bonds so far.
+struct Running
+{
+  Lanes power, shortness, longest; // viscous power, largest inverse stretch, largest stretch
 };
 
 // Forces of the bonds of a kind.
-template <std::size_t kind, class Law, class Monitor>
-HWY_INLINE void bonds_of_kind(const Law &law, const BondConstants &bond, const RowOfBonds &row, const Sites &near,
-                              Lanes vx, Lanes vy, const Lengths &lengths, Lanes &power, Lanes &shortness,
-                              Monitor &extremes)
+template <bool has_factors, class Law>
+HWY_INLINE void bonds_of_kind(const Law &law, const BondConstants &bond, const RowOfBonds &row,
+                              const BondsOfKind &bonds, std::size_t site, Lanes x, Lanes y, Lanes vx, Lanes vy,
+                              const double *length, const double *inverse_length, Running &so_far)
 {
-  const std::size_t far = near.first + static_cast<std::size_t>(row.kinds[kind].shift);
-  const Lanes inverse = load(lengths.inverse[kind]);
-  const Lanes nx = (load(row.x + far) - near.x) * inverse, ny = (load(row.y + far) - near.y) * inverse;
+  const std::size_t far = site + static_cast<std::size_t>(bonds.shift);
+  const Lanes inverse = load(inverse_length);
+  Lanes nx = difference<has_factors>(bonds, row.x, site, x) * inverse,
+        ny = difference<has_factors>(bonds, row.y, site, y) * inverse;
+  if constexpr (has_factors)
+  {
+    nx = load_factors(bonds.length_ratio, site) * nx;
+    ny = load_factors(bonds.length_ratio, site) * ny;
+  }
   const Lanes rate = (load(row.vx + far) - vx) * nx + (load(row.vy + far) - vy) * ny;
-  const Lanes stretch = stretch_of(bond, kind, lengths);
+  const Lanes stretch = stretch_of(bond, length);
   const Lanes viscous = bond.damping * rate;
   const Lanes inverse_stretch = bond.rest_length * inverse;
-  const Lanes axial = bond.cross_section * force(law, stretch, inverse_stretch) + viscous;
-  store(axial * nx, row.kinds[kind].force[0] + near.first);
-  store(axial * ny, row.kinds[kind].force[1] + near.first);
-  power = power + viscous * rate;
+  Lanes axial = bond.cross_section * force(law, stretch, inverse_stretch) + viscous, power = viscous * rate;
+  if constexpr (has_factors)
+  {
+    const Lanes factor = load_factors(bonds.stiffness, site);
+    axial = factor * axial;
+    power = factor * power;
+  }
+  store(axial * nx, bonds.force[0] + site);
+  store(axial * ny, bonds.force[1] + site);
+  so_far.power = so_far.power + power;
   // It is 0 for absent bonds.
   if constexpr (Law::stiffens_when_short)
-    shortness.v = hn::Max(shortness.v, inverse_stretch.v);
-  extremes.add(stretch, row.kinds[kind].retraction_stretch);
+    so_far.shortness.v = hn::Max(so_far.shortness.v, inverse_stretch.v);
+  so_far.longest.v = hn::Max(so_far.longest.v, stretch.v);
 }
 
-struct NoBonds
-{
-};
-
-template <bool watches_retraction, class Nearest, class NextNearest>
+// @tparam n_kinds one, those of a shell, or of two shells, of which the second has the second law
+template <std::size_t n_kinds, bool has_factors, class Law, class SecondLaw>
 // cppcheck-suppress passedByValue ; copies, which no store can change
-RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, const RowOfBonds &given)
+void bonds_of_laws(const Law law, const SecondLaw second_law, const RowOfBonds &given, RowSums &sums)
 {
-  constexpr bool has_next_nearest = !std::is_same_v<NextNearest, NoBonds>;
-  constexpr std::size_t n_kinds = has_next_nearest ? 2 * n_kinds_per_shell : n_kinds_per_shell;
+  constexpr std::size_t n_first = std::min(n_kinds, n_kinds_per_shell);
   // Copies, which no store can change, as their addresses stay here.
   std::array<BondsOfKind, n_kinds> kinds;
   std::copy_n(given.kinds, n_kinds, kinds.begin());
@@ -154,6 +149,7 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
   const std::size_t n_ahead = row.n_ahead;
   const double first_limit = std::min(row.breaking_stretch, row.toughened_stretch);
   const bool keeps_lengths = kinds[0].lengths[0] != nullptr;
+  const bool asks_each = kinds[0].strength != nullptr || kinds[0].retraction_stretch > 0.;
   Lanes power[block];
   for (Lanes &sum : power)
     sum = lanes(0.);
@@ -161,18 +157,16 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
   bool has_events = false;
   const std::size_t end = (row.n + block - 1) / block * block;
   Lengths lengths[2];
-  find_lengths<n_kinds>(row, 0, lengths[0]);
+  find_lengths<n_kinds, has_factors>(row, 0, lengths[0]);
   std::size_t turn = 0;
   for (std::size_t site = 0; site < end; site += width())
   {
     // Beyond the last site the first is done again, for nothing.
-    find_lengths<n_kinds>(row, site + width() < end ? site + width() : 0, lengths[1 - turn]);
+    find_lengths<n_kinds, has_factors>(row, site + width() < end ? site + width() : 0, lengths[1 - turn]);
     if (site % block == 0)
       for (std::size_t i = 0; i < n_ahead; ++i)
         hwy::Prefetch(ahead[i] + site);
-    const Sites near(row, site);
-    const Lanes vx = load(row.vx + site), vy = load(row.vy + site);
-    Lanes &sum = power[site % block / width()];
+    const Lanes x = load(row.x + site), y = load(row.y + site), vx = load(row.vx + site), vy = load(row.vy + site);
     const Lengths &here = lengths[turn];
     if (HWY_UNLIKELY(keeps_lengths))
       for (std::size_t kind = 0; kind < n_kinds; ++kind)
@@ -180,136 +174,175 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
         store(load(here.length[kind]), kinds[kind].lengths[0] + site);
         store(load(here.inverse[kind]), kinds[kind].lengths[1] + site);
       }
-    Extremes<watches_retraction> extremes{lanes(0.), lanes(1e30)};
-    bonds_of_kind<0>(nearest, first, row, near, vx, vy, here, sum, shortness, extremes);
-    bonds_of_kind<1>(nearest, first, row, near, vx, vy, here, sum, shortness, extremes);
-    bonds_of_kind<2>(nearest, first, row, near, vx, vy, here, sum, shortness, extremes);
-    if constexpr (has_next_nearest)
+    Lanes &sum = power[site % block / width()];
+    Running so_far{sum, shortness, lanes(0.)};
+    HWY_UNROLL(3)
+    for (std::size_t kind = 0; kind < n_first; ++kind)
+      bonds_of_kind<has_factors>(law, first, row, kinds[kind], site, x, y, vx, vy, here.length[kind],
+                                 here.inverse[kind], so_far);
+    if constexpr (n_kinds > n_first)
     {
-      bonds_of_kind<3>(next_nearest, second, row, near, vx, vy, here, sum, shortness, extremes);
-      bonds_of_kind<4>(next_nearest, second, row, near, vx, vy, here, sum, shortness, extremes);
-      bonds_of_kind<5>(next_nearest, second, row, near, vx, vy, here, sum, shortness, extremes);
+      HWY_UNROLL(3)
+      for (std::size_t kind = n_first; kind < n_kinds; ++kind)
+        bonds_of_kind<has_factors>(second_law, second, row, kinds[kind], site, x, y, vx, vy, here.length[kind],
+                                   here.inverse[kind], so_far);
     }
-    // Few bonds are near a limit, so whose it is can be asked then.
-    if (HWY_UNLIKELY(!has_events && extremes.may_be_events(first_limit)))
+    sum = so_far.power;
+    shortness = so_far.shortness;
+    // Few bonds are near a limit that all have, so whose it is can be asked then.
+    if (HWY_UNLIKELY(!has_events && (asks_each || !hn::AllFalse(D(), hn::Gt(so_far.longest.v, lanes(first_limit).v)))))
       has_events = any_event(given, site, here);
     turn = 1 - turn;
   }
-  alignas(64) double sums[block];
-  for (std::size_t part = 0; part < block / width(); ++part)
-    store(power[part], sums + part * width());
-  double total = 0.;
-  for (const double sum : sums)
-    total += sum;
-  return {total, has_events, !hn::AllFalse(D(), hn::Gt(shortness.v, lanes(row.shortness_limit).v))};
+  sums.viscous_power = add(sums.viscous_power, power);
+  sums.has_events = sums.has_events || has_events;
+  sums.has_short_bonds = sums.has_short_bonds || !hn::AllFalse(D(), hn::Gt(shortness.v, lanes(row.shortness_limit).v));
 }
 
-RowSums BondsOfRow(const BondLaws &laws, const RowOfBonds &row)
+void bonds_of_row(const BondLaw &law, const BondLaw &second_law, const RowOfBonds &row, RowSums &sums)
 {
-  const auto of_laws = [&](const auto &nearest, const auto &next_nearest)
+  const auto of_law = [&](const auto &first)
   {
-    return row.kinds[0].retraction_stretch > 0. ? bonds_of_laws<true>(nearest, next_nearest, row)
-                                                : bonds_of_laws<false>(nearest, next_nearest, row);
+    if (row.n_kinds == 1)
+      bonds_of_laws<1, true>(first, first, row, sums);
+    else if (row.kinds->stiffness != nullptr || row.kinds->strength != nullptr)
+      bonds_of_laws<n_kinds_per_shell, true>(first, first, row, sums);
+    else if (row.n_kinds == n_kinds_per_shell)
+      bonds_of_laws<n_kinds_per_shell, false>(first, first, row, sums);
+    else
+      std::visit([&](const auto &second) { bonds_of_laws<2 * n_kinds_per_shell, false>(first, second, row, sums); },
+                 second_law);
   };
-  const auto of_nearest = [&](const auto &nearest)
-  {
-    if (row.n_kinds == n_kinds_per_shell)
-      return of_laws(nearest, NoBonds());
-    return std::visit([&](const auto &next_nearest) { return of_laws(nearest, next_nearest); }, laws[1]);
-  };
-  return std::visit(of_nearest, laws[0]);
+  std::visit(of_law, law);
 }
 
-template <std::size_t n_kinds>
-HWY_INLINE void gather(std::size_t n, const std::array<const double *, n_bond_kinds> &start,
-                       const std::array<const double *, n_bond_kinds> &end, double *total)
+// @tparam n_branches of a Maxwell memory, so that their variables stay in registers; 0: any number
+template <std::size_t n_branches, class Step>
+// cppcheck-suppress passedByValue ; copies, which no store can change
+void overstress_of_step(Step step, const RowOfBonds row, const BondsOfKind bonds, const RememberedRow remembered,
+                        double *power)
 {
-  for (std::size_t i = 0; i < n; i += width())
+  if constexpr (n_branches > 0)
+    step.n = n_branches;
+  constexpr std::size_t n_sums = n_branches > 0 ? n_branches : max_history_variables;
+  Lanes sums[n_sums][block];
+  for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
+    for (Lanes &sum : sums[m])
+      sum = lanes(0.);
+  const double section = bonds.constants.cross_section, volume = section * bonds.constants.rest_length;
+  double *const fx = bonds.force[0], *const fy = bonds.force[1];
+  const std::size_t end = (row.n + block - 1) / block * block;
+  for (std::size_t site = 0; site < end; site += width())
   {
-    Lanes s[n_kinds], e[n_kinds];
-    for (std::size_t kind = 0; kind < n_kinds; ++kind)
+    const auto present = mask_of_bit(load_states(bonds.states + site), bonds.present);
+    const Lanes ratio = load_factors(bonds.length_ratio, site), inverse = load(bonds.lengths[1] + site);
+    const Lanes nx = ratio * (difference<true>(bonds, row.x, site, load(row.x + site)) * inverse),
+                ny = ratio * (difference<true>(bonds, row.y, site, load(row.y + site)) * inverse);
+    const Lanes stretch = stretch_of(bonds.constants, bonds.lengths[0] + site);
+    Lanes variables[n_sums], dissipation[n_sums];
+    for (std::size_t v = 0; v < step.n; ++v)
+      variables[v] = load(remembered.variable[v] + site);
+    const Lanes stress = advance(step, load(remembered.stretch + site), stretch, variables, dissipation);
+    if (remembered.new_stretch != nullptr)
     {
-      s[kind] = load(start[kind] + i);
-      e[kind] = load(end[kind] + i);
+      for (std::size_t v = 0; v < step.n; ++v)
+        store(where(present, variables[v]), remembered.new_variable[v] + site);
+      store(stretch, remembered.new_stretch + site);
     }
-    store(sum_of_bonds<n_kinds == n_bond_kinds>(s, e), total + i);
+    const Lanes factor = load_factors(bonds.stiffness, site);
+    const Lanes axial = factor * (section * where(present, stress));
+    store(load(fx + site) + axial * nx, fx + site);
+    store(load(fy + site) + axial * ny, fy + site);
+    for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
+    {
+      Lanes &sum = sums[m][site % block / width()];
+      sum = sum + where(present, factor * dissipation[m]);
+    }
   }
+  for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
+    power[m] += volume * add(0., sums[m]);
 }
 
-void GatherRow(std::size_t n, std::size_t n_kinds, const std::array<const double *, n_bond_kinds> &start,
-               const std::array<const double *, n_bond_kinds> &end, double *total)
+void add_overstress(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
+                    const RememberedRow &remembered, double *power)
 {
-  if (n_kinds == n_bond_kinds)
-    gather<n_bond_kinds>(n, start, end, total);
-  else
-    gather<2 * n_kinds_per_shell>(n, start, end, total);
-}
-
-void Drift(double h, std::size_t n, const double *acceleration, double *velocity, double *position, double *predicted)
-{
-  for (std::size_t i = 0; i < n; i += width())
+  const auto of_step = [&](const auto &of_kind)
   {
-    const Lanes kick = (0.5 * h) * load(acceleration + i);
-    const Lanes halfway = load(velocity + i) + kick;
-    store(halfway, velocity + i);
-    store(load(position + i) + h * halfway, position + i);
-    store(halfway + kick, predicted + i);
-  }
+    using Step = std::decay_t<decltype(of_kind)>;
+    if constexpr (std::is_same_v<Step, MaxwellMemory::Step>)
+    {
+      if (of_kind.n == 1)
+        return overstress_of_step<1>(of_kind, row, bonds, remembered, power);
+      if (of_kind.n == 2)
+        return overstress_of_step<2>(of_kind, row, bonds, remembered, power);
+      if (of_kind.n == 3)
+        return overstress_of_step<3>(of_kind, row, bonds, remembered, power);
+    }
+    if constexpr (!std::is_same_v<Step, NoMemory::Step>)
+      overstress_of_step<0>(of_kind, row, bonds, remembered, power);
+  };
+  std::visit(of_step, step);
 }
 
-void Accelerate(std::size_t n, const double *force, const double *inverse_mass, double *acceleration)
+// Whether test(bonds of a kind, first site, vectors between the ends of bonds, their rates) holds for a bond of a row.
+template <class Test>
+HWY_INLINE bool any_bond(const RowOfBonds &row, const Test &test)
 {
-  for (std::size_t i = 0; i < n; i += width())
-    store(load(force + i) * load(inverse_mass + i), acceleration + i);
-}
-
-void Kick(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,
-          double *velocity)
-{
-  for (std::size_t i = 0; i < n; i += width())
+  auto found = hn::FirstN(D(), 0);
+  for (std::size_t site = 0; site < row.n; site += width())
   {
-    const Lanes a = load(force + i) * load(inverse_mass + i);
-    store(a, acceleration + i);
-    store(load(velocity + i) + duration * a, velocity + i);
+    const Lanes x = load(row.x + site), y = load(row.y + site), vx = load(row.vx + site), vy = load(row.vy + site);
+    for (std::size_t kind = 0; kind < row.n_kinds; ++kind)
+    {
+      const BondsOfKind &bonds = row.kinds[kind];
+      found = hn::Or(found,
+                     test(bonds, site, difference<true>(bonds, row.x, site, x), difference<true>(bonds, row.y, site, y),
+                          difference<true>(bonds, row.vx, site, vx), difference<true>(bonds, row.vy, site, vy)));
+    }
   }
+  return !hn::AllFalse(D(), found);
 }
 
-void FirstStage(double duration, std::size_t n, const double *acceleration, double *position, double *velocity,
-                double *start_position, double *start_velocity, double *previous_position, double *previous_velocity)
+bool any_event_ahead(const RowOfBonds &row, double ahead)
 {
-  for (std::size_t i = 0; i < n; i += width())
-  {
-    const Lanes x = load(position + i), v = load(velocity + i);
-    store(x, start_position + i);
-    store(x, previous_position + i);
-    store(v, start_velocity + i);
-    store(v, previous_velocity + i);
-    store(x + duration * v, position + i);
-    store(v + duration * load(acceleration + i), velocity + i);
-  }
+  return any_bond(row,
+                  [&](const BondsOfKind &bonds, std::size_t site, Lanes dx, Lanes dy, Lanes dvx, Lanes dvy)
+                  {
+                    const double l = bonds.constants.rest_length;
+                    return are_events(row, bonds, site, squared_length_after(ahead, dx, dy, dvx, dvy),
+                                      [l](Lanes stretch) { return (l * stretch) * (l * stretch); });
+                  });
 }
 
-// Written in differences from the start, so that what stands still or flies straight does so to the last bit.
-void NextStage(const ChebyshevStages::Stage &stage, double h, std::size_t n, const double *force,
-               const double *inverse_mass, const double *start_acceleration, const double *start_position,
-               const double *start_velocity, const double *position, const double *velocity, double *previous_position,
-               double *previous_velocity)
+bool any_short_ahead(const RowOfBonds &row, double ahead, double stretch)
 {
-  const double mu = stage.mu, nu = stage.nu, now = h * stage.now, start = h * stage.start;
-  for (std::size_t i = 0; i < n; i += width())
-  {
-    const Lanes x = load(start_position + i), v = load(start_velocity + i), last_v = load(velocity + i);
-    store(x + (mu * (load(position + i) - x) + nu * (load(previous_position + i) - x)) + (now * last_v + start * v),
-          previous_position + i);
-    store(v + (mu * (last_v - v) + nu * (load(previous_velocity + i) - v)) +
-            (now * (load(force + i) * load(inverse_mass + i)) + start * load(start_acceleration + i)),
-          previous_velocity + i);
-  }
+  return any_bond(row,
+                  [&](const BondsOfKind &bonds, std::size_t site, Lanes dx, Lanes dy, Lanes dvx, Lanes dvy)
+                  {
+                    // length + ahead min(product, 0) / length <= short length, without root or quotient.
+                    const Lanes square = dx * dx + dy * dy, product = dx * dvx + dy * dvy;
+                    const Lanes then_by_now = square + ahead * Lanes{hn::Min(product.v, lanes(0.).v)};
+                    const double length = stretch * bonds.constants.rest_length;
+                    const auto is_short = hn::Or(hn::Le(then_by_now.v, lanes(0.).v),
+                                                 hn::Le((then_by_now * then_by_now).v, (length * length * square).v));
+                    return hn::And(mask_of_bit(load_states(bonds.states + site), bonds.present), is_short);
+                  });
 }
 
-const char *InstructionSet()
+const Loops &LoopsOfTarget()
 {
-  return hwy::TargetName(HWY_TARGET);
+  static const Loops loops{hwy::TargetName(HWY_TARGET),
+                           bonds_of_row,
+                           add_overstress,
+                           gather_row,
+                           scatter,
+                           any_event_ahead,
+                           any_short_ahead,
+                           drift,
+                           kick,
+                           first_stage,
+                           next_stage};
+  return loops;
 }
 
 } // namespace latcon::lattice::kernels::HWY_NAMESPACE
@@ -319,14 +352,7 @@ HWY_AFTER_NAMESPACE();
 namespace latcon::lattice::kernels
 {
 
-HWY_EXPORT(BondsOfRow);
-HWY_EXPORT(GatherRow);
-HWY_EXPORT(Drift);
-HWY_EXPORT(Accelerate);
-HWY_EXPORT(Kick);
-HWY_EXPORT(FirstStage);
-HWY_EXPORT(NextStage);
-HWY_EXPORT(InstructionSet);
+HWY_EXPORT(LoopsOfTarget);
 
 namespace
 {
@@ -372,61 +398,12 @@ const std::vector<std::int64_t> &targets()
 
 } // namespace
 
-RowSums bonds_of_row(const BondLaws &laws, const RowOfBonds &row)
-{
-  return HWY_DYNAMIC_DISPATCH(BondsOfRow)(laws, row);
-}
-
-void gather_row(std::size_t n, std::size_t n_kinds, const std::array<const double *, n_bond_kinds> &start,
-                const std::array<const double *, n_bond_kinds> &end, double *total)
-{
-  HWY_DYNAMIC_DISPATCH(GatherRow)(n, n_kinds, start, end, total);
-}
-
-void drift(double h, std::size_t n, const double *acceleration, double *velocity, double *position, double *predicted)
-{
-  HWY_DYNAMIC_DISPATCH(Drift)(h, n, acceleration, velocity, position, predicted);
-}
-
-void accelerate(std::size_t n, const double *force, const double *inverse_mass, double *acceleration)
-{
-  HWY_DYNAMIC_DISPATCH(Accelerate)(n, force, inverse_mass, acceleration);
-}
-
-void kick(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,
-          double *velocity)
-{
-  HWY_DYNAMIC_DISPATCH(Kick)(duration, n, force, inverse_mass, acceleration, velocity);
-}
-
-void first_stage(double duration, std::size_t n, const double *acceleration, double *position, double *velocity,
-                 double *start_position, double *start_velocity, double *previous_position, double *previous_velocity)
-{
-  HWY_DYNAMIC_DISPATCH(FirstStage)
-  (duration, n, acceleration, position, velocity, start_position, start_velocity, previous_position, previous_velocity);
-}
-
-void next_stage(const ChebyshevStages::Stage &stage, double h, std::size_t n, const double *force,
-                const double *inverse_mass, const double *start_acceleration, const double *start_position,
-                const double *start_velocity, const double *position, const double *velocity, double *previous_position,
-                double *previous_velocity)
-{
-  HWY_DYNAMIC_DISPATCH(NextStage)
-  (stage, h, n, force, inverse_mass, start_acceleration, start_position, start_velocity, position, velocity,
-   previous_position, previous_velocity);
-}
-
 std::vector<std::string> instruction_sets()
 {
   std::vector<std::string> names;
   for (const std::int64_t target : targets())
     names.emplace_back(hwy::TargetName(target));
   return names;
-}
-
-void limit_instruction_sets()
-{
-  (void)targets();
 }
 
 void use_instruction_set(const std::string &name)
@@ -441,9 +418,9 @@ void use_instruction_set(const std::string &name)
   throw std::invalid_argument("there is no instruction set " + name + " here");
 }
 
-std::string instruction_set()
+const Loops &loops()
 {
-  return HWY_DYNAMIC_DISPATCH(InstructionSet)();
+  return HWY_DYNAMIC_DISPATCH(LoopsOfTarget)();
 }
 
 } // namespace latcon::lattice::kernels

@@ -17,18 +17,8 @@
 /// instruction set, from SSSE3 to AVX-512; the best that the processor has is chosen at run time, and all give the same
 /// bits. Rows begin at multiples of TriangularLattice::row_alignment and are worked on in blocks of as many places, so
 /// arrays must be readable, and those written to writable, to the end of the last block.
-namespace latcon::lattice
-{
-
-#include "lattice/bond_geometry.inc"
-
-} // namespace latcon::lattice
-
 namespace latcon::lattice::kernels
 {
-
-/// Laws of the shells; those of shells that the sheet lacks are unused.
-using BondLaws = std::array<BondLaw, n_shells>;
 
 /// Constants of bonds of one kind besides their law.
 struct BondConstants
@@ -42,17 +32,17 @@ struct BondConstants
 struct BondsOfKind
 {
   BondConstants constants;
-  std::ptrdiff_t shift;                                   ///< from a site to the far end of its bond
-  const BondStates::Word *states;                         ///< of sites: the words that hold this kind
-  BondStates::Word present, toughened;                    ///< its bits in these words
-  double retraction_stretch = 0.;                         ///< see Forces::set_retraction_threshold; 0: not watched
+  std::ptrdiff_t shift;                ///< from a site to the far end of its bond
+  const BondStates::Word *states;      ///< of sites: the words that hold this kind and all others of a call
+  BondStates::Word present, toughened; ///< its bits in these words
+  double retraction_stretch = 0.;      ///< see Forces::set_retraction_threshold; 0: not watched
   const double *stiffness = nullptr, *strength = nullptr; ///< factors by site, as in State; null: all 1
   /// Rest length of the kind over that of a bond, by site; null: all 1. The length of a bond times this ratio is that
   /// of a bond of the kind with the same stretch, and its gradient is what rates and forces are projected on.
   const double *length_ratio = nullptr;
-  std::array<double *, 2> force{};                        ///< on the near ends, x (0) and y (1) [N/m]: what is computed
-  /// Lengths [m] and inverse lengths that bonds_of_row() keeps for add_overstress(), 0 for absent bonds; null: not
-  /// kept.
+  std::array<double *, 2> force{}; ///< on the near ends, x (0) and y (1) [N/m]: what is computed
+  /// Lengths [m] and inverse lengths that bonds_of_row() keeps for add_overstress(), 0 for absent bonds; null in the
+  /// first of the kinds: not kept.
   std::array<double *, 2> lengths{};
 };
 
@@ -79,51 +69,96 @@ struct RowSums
   bool has_short_bonds = false; ///< whether one has an inverse stretch above RowOfBonds::shortness_limit
 };
 
-/// Forces of all bonds of the nearest neighbours, or of these and the next-nearest, that start in a row (theory.md, eq.
-/// (L.3)): the loop of stencil_kernels.h unrolled for bonds without factors. @param row of 3 or 6 kinds
-RowSums bonds_of_row(const BondLaws &laws, const RowOfBonds &row);
+/// History of the bonds of one kind that start in a row, by places counted from its first site.
+struct RememberedRow
+{
+  const double *stretch;                                      ///< at the last update [-]
+  std::array<const double *, max_history_variables> variable; ///< of BondMemory
+  /// The same, to be updated to the present; null: not updated. Absent bonds remember 0.
+  double *new_stretch = nullptr;
+  std::array<double *, max_history_variables> new_variable = {};
+};
 
-/// A component of the forces on the n sites of a row: those on the near ends of the bonds that start at a site, less
-/// those of the bonds that end there, [kind][site]. Kinds without a shell must be there and hold zeros.
-/// @param n_kinds 6, or 9 with third-nearest neighbours
-void gather_row(std::size_t n, std::size_t n_kinds, const std::array<const double *, n_bond_kinds> &start,
-                const std::array<const double *, n_bond_kinds> &end, double *total);
+/// The loops of one instruction set.
+struct Loops
+{
+  const char *instruction_set; ///< its name
 
-/// One component of n sites: from velocity and acceleration at the start of a step h [s] to the velocity at half of it,
-/// and position and predicted velocity at its end (theory.md, eq. (L.7)).
-void drift(double h, std::size_t n, const double *acceleration, double *velocity, double *position, double *predicted);
+  /// Computes the forces of all bonds of a row (theory.md, eq. (L.3)) and adds to `sums` those over the bonds.
+  /// @param law of the first n_kinds_per_shell kinds @param second_law of the others
+  /// @param row of one kind, of the n_kinds_per_shell of a shell, or, for bonds without factors, of two shells
+  void (*bonds_of_row)(const BondLaw &law, const BondLaw &second_law, const RowOfBonds &row, RowSums &sums);
 
-/// Computes one component of the acceleration of n sites from the force on them.
-void accelerate(std::size_t n, const double *force, const double *inverse_mass, double *acceleration);
+  /// Adds the overstress of the bonds of one kind that start in a row to their `force`, the present stretch being
+  /// reached in the duration of `step` since the last update. Takes the `lengths` that bonds_of_row() has kept.
+  /// @param power what each mechanism dissipates in them is added [W/m], or [J/m] for energies; see BondMemory
+  void (*add_overstress)(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
+                         const RememberedRow &remembered, double *power);
 
-/// Computes the acceleration as accelerate() does, and the velocity after it has acted for `duration` [s].
-void kick(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,
-          double *velocity);
+  /// A component of the forces on the n sites of a row: those on the near ends of the bonds that start at a site, less
+  /// those of the bonds that end there, [kind][site]. Kinds without a shell must be there and hold zeros.
+  /// @param n_kinds 6, or 9 with third-nearest neighbours
+  void (*gather_row)(std::size_t n, std::size_t n_kinds, const std::array<const double *, n_bond_kinds> &start,
+                     const std::array<const double *, n_bond_kinds> &end, double *total);
 
-/// The first stage of a Runge-Kutta-Chebyshev step (theory.md, eq. (L.18)) for one component of n sites, in place,
-/// after `duration` [s]; positions and velocities before it go to `start` and `previous`.
-void first_stage(double duration, std::size_t n, const double *acceleration, double *position, double *velocity,
-                 double *start_position, double *start_velocity, double *previous_position, double *previous_velocity);
+  /// Adds a component of the forces of n bonds of a kind to the sums of their near ends, unless null, and takes it from
+  /// those of their far ends, which may be other places of the same array.
+  void (*scatter)(std::size_t n, const double *force, double *near, double *far);
 
-/// A further stage of a step h [s] from the forces at the last one; it takes the place of the stage before the last.
-void next_stage(const ChebyshevStages::Stage &stage, double h, std::size_t n, const double *force,
-                const double *inverse_mass, const double *start_acceleration, const double *start_position,
-                const double *start_velocity, const double *position, const double *velocity, double *previous_position,
-                double *previous_velocity);
+  /// Returns whether one of the bonds of all kinds of a row will be past its limit, or will have retracted, after its
+  /// ends have moved for `ahead` [s] at their velocities. Does not use the forces.
+  bool (*any_event_ahead)(const RowOfBonds &row, double ahead);
+
+  /// Returns whether one of the bonds of all kinds of a row has at most a stretch of `stretch` [-] now, or will have it
+  /// in `ahead` [s] at its present rate. Does not use the forces.
+  bool (*any_short_ahead)(const RowOfBonds &row, double ahead, double stretch);
+
+  /// One component of n sites: from velocity and acceleration at the start of a step h [s] to the velocity at half of
+  /// it, and position and predicted velocity at its end (theory.md, eq. (L.7)).
+  void (*drift)(double h, std::size_t n, const double *acceleration, double *velocity, double *position,
+                double *predicted);
+
+  /// Computes one component of the acceleration of n sites from the force on them, and the velocity after it has acted
+  /// for `duration` [s].
+  void (*kick)(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,
+               double *velocity);
+
+  /// The first stage of a Runge-Kutta-Chebyshev step (theory.md, eq. (L.18)) for one component of n sites, in place,
+  /// after `duration` [s]; positions and velocities before it go to `start` and `previous`.
+  void (*first_stage)(double duration, std::size_t n, const double *acceleration, double *position, double *velocity,
+                      double *start_position, double *start_velocity, double *previous_position,
+                      double *previous_velocity);
+
+  /// A further stage of a step h [s] from the forces at the last one; it takes the place of the stage before the last.
+  void (*next_stage)(const ChebyshevStages::Stage &stage, double h, std::size_t n, const double *force,
+                     const double *inverse_mass, const double *start_acceleration, const double *start_position,
+                     const double *start_velocity, const double *position, const double *velocity,
+                     double *previous_position, double *previous_velocity);
+};
+/// Those of the instruction set in use.
+const Loops &loops();
+
+/// A bond's force, one at a time: the operations of the loops, so that both have the same bits.
+struct BondForce
+{
+  double x, y;   ///< on the near end [N/m], the opposite on the far end
+  double nx, ny; ///< direction from the near to the far end, times the ratio of lengths
+  double stretch;
+  double viscous_power; ///< [W/m]
+};
+/// Returns the force of a bond whose ends are at a distance (dx, dy) [m] and move apart with (dvx, dvy) [m/s].
+/// @param factor,length_ratio of the bond, see BondsOfKind
+BondForce bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx, double dy, double dvx,
+                     double dvy, double length_ratio = 1.);
 
 /// Returns the names of the instruction sets that this processor has and the loops exist for, the best first. The
 /// last is for any processor: "SCALAR", or with some compilers "EMU128". The environment variable
 /// LATCON_INSTRUCTION_SET, which is read once, names the best one of them that may be used: for ThreadSanitizer, which
-/// does not see loads and stores of more than 16 bytes.
+/// does not see loads and stores of more than 16 bytes. Forces call this before they use any loop.
 /// @throws std::invalid_argument if the variable names none of them
 std::vector<std::string> instruction_sets();
-/// Leaves out the instruction sets that LATCON_INSTRUCTION_SET rules out. Forces do so before they use any loop.
-/// @throws std::invalid_argument as instruction_sets() does
-void limit_instruction_sets();
 /// Selects the instruction set of the loops; the default is the best one. Not to be called during a computation.
 /// @throws std::invalid_argument for a name that instruction_sets() does not have
 void use_instruction_set(const std::string &name);
-/// Name of the one in use.
-std::string instruction_set();
 
 } // namespace latcon::lattice::kernels

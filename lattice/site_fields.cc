@@ -1,7 +1,6 @@
 #include "lattice/site_fields.h"
 
 #include <cmath>
-#include <type_traits>
 
 #include <Eigen/LU>
 
@@ -13,19 +12,12 @@ namespace
 // Overstress of a bond as of the last update of its memory [Pa]. @param step over no time
 double overstress(const MemoryStep &step, const BondHistory &history, std::size_t place, std::size_t kind)
 {
-  const auto of_bond = [&](const auto &over_no_time) -> double
-  {
-    if constexpr (std::is_same_v<std::decay_t<decltype(over_no_time)>, NoMemory::Step>)
-      return 0.;
-    else
-    {
-      std::array<double, max_history_variables> variables{}, dissipation{};
-      history.variables_of(place, kind, variables.data());
-      const double stretch = history.kinds[kind].stretch[place];
-      return formulas::advance(over_no_time, stretch, stretch, variables.data(), dissipation.data());
-    }
-  };
-  return std::visit(of_bond, step);
+  if (!history.remembers(kind))
+    return 0.;
+  std::array<double, max_history_variables> variables{}, dissipation{};
+  history.variables_of(place, kind, variables.data());
+  const double stretch = history.kinds[kind].stretch[place];
+  return advance(step, stretch, stretch, variables.data(), dissipation.data());
 }
 
 } // namespace

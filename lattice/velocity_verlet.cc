@@ -19,8 +19,8 @@ void VelocityVerlet::step(State &state)
   const std::function<void(std::size_t)> drift = [&](std::size_t row)
   {
     const std::size_t begin = lattice_.index(row, 0), n = lattice_.columns();
-    kernels::drift(time_step(), n, &state.ax[begin], &state.vx[begin], &state.x[begin], &predicted_vx_[begin]);
-    kernels::drift(time_step(), n, &state.ay[begin], &state.vy[begin], &state.y[begin], &predicted_vy_[begin]);
+    kernels::loops().drift(time_step(), n, &state.ax[begin], &state.vx[begin], &state.x[begin], &predicted_vx_[begin]);
+    kernels::loops().drift(time_step(), n, &state.ay[begin], &state.vy[begin], &state.y[begin], &predicted_vy_[begin]);
   };
   const auto kick_row = [&](std::size_t row, const double *fx, const double *fy)
   { kick(state, row, fx, fy, 0.5 * time_step()); };

@@ -1,14 +1,8 @@
-// The list of bond laws, for each type of number; see formulas.h.
-#include "lattice/bonds/custom_bond.h"
-#include "lattice/bonds/linear_bond.h"
-#include "lattice/bonds/mooney_rivlin_bond.h"
-
-#ifndef LATCON_LATTICE_BOND_LAW
-/// @cond
-#define LATCON_LATTICE_BOND_LAW
-/// @endcond
+#pragma once
 
 #include <variant>
+
+#include "lattice/bonds/formulas.h"
 
 /// @file
 /// Bond laws: energy, force and stiffness as functions of the stretch alone. What a bond adds that depends on its past
@@ -16,7 +10,7 @@
 ///
 /// A bond of rest length l and cross-section A0 stores A0 l psi(lam), lam = |x_j - x_i| / l > 0 being its stretch, and
 /// pulls with the axial force A0 psi'(lam), tension positive. A law gives psi, psi' and psi'' in Pa. Its header has a
-/// struct with its constants, energy, stiffness and limits, and the formula of the force for any type of number.
+/// struct with its constants, energy, stiffness and limits; formulas.inc has its force for any type of number.
 namespace latcon::lattice
 {
 
@@ -50,4 +44,3 @@ inline bool stiffens_when_short(const BondLaw &law)
 }
 
 } // namespace latcon::lattice
-#endif

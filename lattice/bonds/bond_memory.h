@@ -1,20 +1,17 @@
-// The list of bond memories, for each type of number; see formulas.h.
-#include "lattice/bonds/custom_memory.h"
-#include "lattice/bonds/maxwell_memory.h"
-#include "lattice/bonds/plastic_memory.h"
+#pragma once
 
-#ifndef LATCON_LATTICE_BOND_MEMORY
-#define LATCON_LATTICE_BOND_MEMORY
-
+#include <type_traits>
 #include <variant>
+
+#include "lattice/bonds/formulas.h"
 
 /// @file
 /// Memories of bonds: overstresses q that depend on the past of a bond through a number of variables per bond,
 ///   sigma = psi'(lam) + eta lam' + q   (theory.md, eq. (L.27)).
 ///
 /// A memory declares its number of variables, the mechanisms by which it stores and dissipates energy, and a bound on
-/// its stiffness; its `Step` has what an update over one duration needs, and `advance` is its formula for any type of
-/// number. Variables are 0 at rest and are stored by BondHistory. `advance` gives the power that each mechanism
+/// its stiffness; its `Step` has what an update over one duration needs, and `advance` is its formula (formulas.inc).
+/// Variables are 0 at rest and are stored by BondHistory. `advance` gives the power that each mechanism
 /// dissipates at the end of an update, or, if `Step::dissipates_energy`, the energy that it dissipates in the update.
 namespace latcon::lattice
 {
@@ -64,6 +61,19 @@ inline double stored_energy(const BondMemory &memory, std::size_t mechanism, dou
 {
   return std::visit([&](const auto &m) { return m.stored_energy(mechanism, stretch, variables); }, memory);
 }
+/// Overstress of a bond after an update of its variables by the formula of its memory [Pa].
+/// @param dissipation of each mechanism, see above
+inline double advance(const MemoryStep &step, double before, double now, double *variables, double *dissipation)
+{
+  const auto of_kind = [&](const auto &s) -> double
+  {
+    if constexpr (std::is_same_v<std::decay_t<decltype(s)>, NoMemory::Step>)
+      return 0.;
+    else
+      return formulas::advance(s, before, now, variables, dissipation);
+  };
+  return std::visit(of_kind, step);
+}
 /// Update over `duration` [s], >= 0.
 inline MemoryStep memory_step(const BondMemory &memory, double duration)
 {
@@ -71,4 +81,3 @@ inline MemoryStep memory_step(const BondMemory &memory, double duration)
 }
 
 } // namespace latcon::lattice
-#endif

@@ -1,9 +1,8 @@
+#pragma once
+
 #include <cstddef>
 #include <memory>
 
-#include "lattice/bonds/formulas.h"
-
-#ifndef LATCON_LATTICE_CUSTOM_BOND
 namespace latcon::lattice
 {
 
@@ -80,27 +79,3 @@ private:
 };
 
 } // namespace latcon::lattice
-#endif
-
-#if !defined(LATCON_LATTICE_CUSTOM_BOND) || defined(LATCON_VECTORS)
-#define LATCON_LATTICE_CUSTOM_BOND
-namespace latcon::lattice::LATCON_FORMULAS
-{
-
-#ifndef LATCON_VECTORS
-/// The law of one bond; for vectors of bonds see lanes.inc.
-inline double force_of_each(const CustomBond &law, double stretch)
-{
-  return law.force(stretch);
-}
-#endif
-
-/// psi'(lam) [Pa], bond by bond.
-template <class Number>
-inline Number force(const CustomBond &law, Number stretch, Number /*inverse*/)
-{
-  return force_of_each(law, stretch);
-}
-
-} // namespace latcon::lattice::LATCON_FORMULAS
-#endif

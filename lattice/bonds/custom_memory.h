@@ -1,10 +1,10 @@
+#pragma once
+
 #include <cstddef>
 #include <memory>
 
-#include "lattice/bonds/formulas.h"
 #include "lattice/bonds/memory_limits.h"
 
-#ifndef LATCON_LATTICE_CUSTOM_MEMORY
 namespace latcon::lattice
 {
 
@@ -76,35 +76,3 @@ private:
 };
 
 } // namespace latcon::lattice
-#endif
-
-#if !defined(LATCON_LATTICE_CUSTOM_MEMORY) || defined(LATCON_VECTORS)
-#define LATCON_LATTICE_CUSTOM_MEMORY
-namespace latcon::lattice::LATCON_FORMULAS
-{
-
-#ifndef LATCON_VECTORS
-/// The law of one bond; for vectors of bonds see lanes.inc. Absent bonds have no length.
-inline double advance_each(const CustomMemory::Step &step, double before, double now, double *variables,
-                           double &dissipation)
-{
-  dissipation = 0.;
-  if (!(now > 0.))
-    return 0.;
-  const double earlier = step.dissipates_energy ? step.law->dissipation(before, variables) : 0.;
-  const double overstress = step.law->advance(step.duration, before, now, variables);
-  dissipation = step.law->dissipation(now, variables) - earlier;
-  return overstress;
-}
-#endif
-
-/// Updates the variables of a bond while its stretch changes from `before` to `now`.
-/// @param dissipation at the end [Pa/s], or meanwhile [Pa] @return overstress at the end [Pa]
-template <class Number>
-inline Number advance(const CustomMemory::Step &step, Number before, Number now, Number *variables, Number *dissipation)
-{
-  return advance_each(step, before, now, variables, *dissipation);
-}
-
-} // namespace latcon::lattice::LATCON_FORMULAS
-#endif

@@ -1,10 +1,9 @@
 #include "lattice/bonds/expression_law.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
-
-#include "lattice/bonds/law_check.h"
 
 namespace latcon::lattice
 {
@@ -14,13 +13,35 @@ namespace
 using support::Expression;
 using Operation = Expression::Operation;
 
-constexpr std::size_t most_stretches = CustomBond::max_bonds; // of one call
-
 // Nodes of an expression, without operations that change nothing.
 class Builder
 {
 public:
   explicit Builder(Expression &expression) : e_(expression) {}
+
+  // An operation as the loop computes it, with quotients by inverses and powers by products.
+  std::size_t apply(const Expression::Node &operation, std::size_t a, std::size_t b)
+  {
+    switch (operation.operation)
+    {
+    case Operation::variable:
+      return e_.variable();
+    case Operation::constant:
+      return number(operation.value);
+    case Operation::add:
+      return sum(a, b);
+    case Operation::subtract:
+      return difference(a, b);
+    case Operation::multiply:
+      return product(a, b);
+    case Operation::divide:
+      return quotient(a, b);
+    case Operation::power:
+      return power(a, operation.value);
+    default:
+      return e_.apply(operation.operation, a);
+    }
+  }
 
   std::size_t number(double value) { return e_.constant(value); }
   std::size_t sum(std::size_t a, std::size_t b)
@@ -71,39 +92,21 @@ private:
   Expression &e_;
 };
 
-// Copies the operations that a function needs, with quotients and powers as the loop computes them.
+// Copies the operations that a function needs, as the loop computes them.
 Expression lowered(const Expression &function)
 {
+  const std::vector<Expression::Node> &nodes = function.nodes();
+  std::vector<bool> needed(nodes.size(), false);
+  needed[function.result] = true;
+  for (std::size_t i = nodes.size(); i-- > 0;)
+    if (needed[i])
+      needed[nodes[i].left] = needed[nodes[i].right] = true;
   Expression result;
   Builder b(result);
-  std::vector<std::size_t> copy;
-  for (const Expression::Node &node : function.nodes())
-    switch (node.operation)
-    {
-    case Operation::variable:
-      copy.push_back(result.variable());
-      break;
-    case Operation::constant:
-      copy.push_back(result.constant(node.value));
-      break;
-    case Operation::add:
-      copy.push_back(b.sum(copy[node.left], copy[node.right]));
-      break;
-    case Operation::subtract:
-      copy.push_back(b.difference(copy[node.left], copy[node.right]));
-      break;
-    case Operation::multiply:
-      copy.push_back(b.product(copy[node.left], copy[node.right]));
-      break;
-    case Operation::divide:
-      copy.push_back(b.quotient(copy[node.left], copy[node.right]));
-      break;
-    case Operation::power:
-      copy.push_back(b.power(copy[node.left], node.value));
-      break;
-    default:
-      copy.push_back(result.apply(node.operation, copy[node.left]));
-    }
+  std::vector<std::size_t> copy(nodes.size(), 0);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (needed[i])
+      copy[i] = b.apply(nodes[i], copy[nodes[i].left], copy[nodes[i].right]);
   result.result = copy[function.result];
   return result;
 }
@@ -114,177 +117,128 @@ Expression derivative(const Expression &function)
   Expression result = function;
   Builder b(result);
   std::vector<std::size_t> slope;
-  for (std::size_t i = 0; i < function.nodes().size(); ++i)
+  const auto slope_of = [&](std::size_t i)
   {
     const auto [operation, value, left, right] = function.nodes()[i];
     switch (operation)
     {
     case Operation::variable:
-      slope.push_back(b.number(1.));
-      break;
+      return b.number(1.);
     case Operation::constant:
-      slope.push_back(b.number(0.));
-      break;
+      return b.number(0.);
     case Operation::add:
-      slope.push_back(b.sum(slope[left], slope[right]));
-      break;
+      return b.sum(slope[left], slope[right]);
     case Operation::subtract:
-      slope.push_back(b.difference(slope[left], slope[right]));
-      break;
+      return b.difference(slope[left], slope[right]);
     case Operation::multiply:
-      slope.push_back(b.sum(b.product(slope[left], right), b.product(left, slope[right])));
-      break;
+      return b.sum(b.product(slope[left], right), b.product(left, slope[right]));
     case Operation::divide:
-      slope.push_back(b.quotient(b.difference(slope[left], b.product(i, slope[right])), right));
-      break;
+      return b.quotient(b.difference(slope[left], b.product(i, slope[right])), right);
     case Operation::power:
-      slope.push_back(b.product(b.product(b.number(value), b.power(left, value - 1.)), slope[left]));
-      break;
+      return b.product(b.product(b.number(value), b.power(left, value - 1.)), slope[left]);
     case Operation::square_root:
-      slope.push_back(b.quotient(slope[left], b.product(b.number(2.), i)));
-      break;
+      return b.quotient(slope[left], b.product(b.number(2.), i));
     case Operation::exponential:
-      slope.push_back(b.product(i, slope[left]));
-      break;
+      return b.product(i, slope[left]);
     case Operation::logarithm:
-      slope.push_back(b.quotient(slope[left], left));
-      break;
+      return b.quotient(slope[left], left);
     }
-  }
+    throw std::logic_error("an operation without a derivative");
+  };
+  for (std::size_t i = 0; i < function.nodes().size(); ++i)
+    slope.push_back(slope_of(i));
   result.result = slope[function.result];
   return result;
 }
 
-template <std::size_t n, class Function>
-void for_each(const double *left, const double *right, double *to, const Function &function)
+// Values of a function at n stretches, operation by operation.
+template <std::size_t n>
+void run(const Expression &function, const double *stretches, double *values)
 {
-  for (std::size_t i = 0; i < n; ++i)
-    to[i] = function(left[i], right[i]);
+  alignas(64) double of_nodes[Expression::max_nodes][n];
+  double *to = of_nodes[0];
+  for (const auto &[operation, value, left_node, right_node] : function.nodes())
+  {
+    const double *const left = of_nodes[left_node], *const right = of_nodes[right_node];
+    switch (operation)
+    {
+    case Operation::variable:
+      std::copy_n(stretches, n, to);
+      break;
+    case Operation::constant:
+      std::fill_n(to, n, value);
+      break;
+    case Operation::add:
+      std::transform(left, left + n, right, to, std::plus());
+      break;
+    case Operation::subtract:
+      std::transform(left, left + n, right, to, std::minus());
+      break;
+    case Operation::multiply:
+      std::transform(left, left + n, right, to, std::multiplies());
+      break;
+    case Operation::divide:
+      std::transform(left, left + n, right, to, std::divides());
+      break;
+    case Operation::square_root:
+      std::transform(left, left + n, to, [](double a) { return std::sqrt(a); });
+      break;
+    default:
+      for (std::size_t i = 0; i < n; ++i)
+        to[i] = support::evaluate(operation, value, left[i], 0.);
+    }
+    to += n;
+  }
+  std::copy_n(of_nodes[function.result], n, values);
+}
+
+double at(const Expression &function, double stretch)
+{
+  double value;
+  run<1>(function, &stretch, &value);
+  return value;
 }
 
 } // namespace
 
-ExpressionLaw::Program::Program(const Expression &function)
-{
-  const std::vector<Expression::Node> &nodes = function.nodes();
-  std::vector<bool> needed(nodes.size(), false);
-  needed[function.result] = true;
-  std::size_t n_constants = 0;
-  for (std::size_t i = nodes.size(); i-- > 0;)
-    if (needed[i])
-    {
-      needed[nodes[i].left] = needed[nodes[i].right] = true;
-      n_constants += nodes[i].operation == Operation::constant ? 1 : 0;
-    }
-  std::vector<std::size_t> place(nodes.size(), 0);
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-  {
-    const auto &[operation, value, left, right] = nodes[i];
-    if (!needed[i])
-      continue;
-    if (operation == Operation::constant)
-    {
-      place[i] = constants_.size() / most_stretches;
-      constants_.insert(constants_.end(), most_stretches, value);
-      continue;
-    }
-    place[i] = n_constants + steps_.size();
-    steps_.push_back({operation, value, place[left], place[right]});
-  }
-  result_ = place[function.result];
-}
-
-template <std::size_t n>
-void ExpressionLaw::Program::run(const double *stretches, double *values) const
-{
-  alignas(64) double of_steps[Expression::max_nodes * n];
-  const std::size_t n_constants = constants_.size() / most_stretches;
-  const auto at = [&](std::size_t place) -> const double *
-  { return place < n_constants ? &constants_[place * most_stretches] : of_steps + (place - n_constants) * n; };
-  double *to = of_steps;
-  for (const Step &step : steps_)
-  {
-    const double *const left = at(step.left), *const right = at(step.right);
-    switch (step.operation)
-    {
-    case Operation::variable:
-      for_each<n>(stretches, stretches, to, [](double a, double) { return a; });
-      break;
-    case Operation::add:
-      for_each<n>(left, right, to, [](double a, double b) { return a + b; });
-      break;
-    case Operation::subtract:
-      for_each<n>(left, right, to, [](double a, double b) { return a - b; });
-      break;
-    case Operation::multiply:
-      for_each<n>(left, right, to, [](double a, double b) { return a * b; });
-      break;
-    case Operation::divide:
-      for_each<n>(left, right, to, [](double a, double b) { return a / b; });
-      break;
-    case Operation::square_root:
-      for_each<n>(left, right, to, [](double a, double) { return std::sqrt(a); });
-      break;
-    default:
-      for_each<n>(left, right, to,
-                  [&step](double a, double) { return support::evaluate(step.operation, step.value, a, 0.); });
-    }
-    to += n;
-  }
-  const double *const result = at(result_);
-  for (std::size_t i = 0; i < n; ++i)
-    values[i] = result[i];
-}
-
 ExpressionLaw::ExpressionLaw(Expression psi, double longest) : psi_(std::move(psi))
 {
   const Expression force = derivative(psi_);
-  energy_ = Program(lowered(psi_));
-  force_ = Program(lowered(force));
-  stiffness_ = Program(lowered(derivative(force)));
-  energy_.run<1>(std::array{1.}.data(), &at_rest_);
+  energy_ = lowered(psi_);
+  force_ = lowered(force);
+  stiffness_ = lowered(derivative(force));
+  at_rest_ = at(energy_, 1.);
   check_law({[this](double l) { return energy(l); }, [this](double l) { return ExpressionLaw::force(l); },
              [this](double l) { return stiffness(l); }},
             smallest_checked_stretch, longest);
-  bound_ = std::make_unique<StiffnessBound>(*this, longest);
+  bound_stiffness(longest);
 }
 
 double ExpressionLaw::energy(double stretch) const noexcept
 {
-  double value;
-  energy_.run<1>(&stretch, &value);
-  return value - at_rest_;
+  return at(energy_, stretch) - at_rest_;
 }
 
 double ExpressionLaw::force(double stretch) const noexcept
 {
-  double value;
-  force_.run<1>(&stretch, &value);
-  return value;
+  return at(force_, stretch);
 }
 
 double ExpressionLaw::stiffness(double stretch) const noexcept
 {
-  double value;
-  stiffness_.run<1>(&stretch, &value);
-  return value;
+  return at(stiffness_, stretch);
 }
 
 void ExpressionLaw::forces(std::size_t n, const double *stretches, double *forces) const noexcept
 {
   if (n == 8)
-    force_.run<8>(stretches, forces);
+    run<8>(force_, stretches, forces);
   else if (n == 4)
-    force_.run<4>(stretches, forces);
+    run<4>(force_, stretches, forces);
   else if (n == 2)
-    force_.run<2>(stretches, forces);
+    run<2>(force_, stretches, forces);
   else
     CustomBondLaw::forces(n, stretches, forces);
-}
-
-double ExpressionLaw::largest_stiffness(double smallest_stretch) const noexcept
-{
-  return bound_->from(*this, smallest_stretch);
 }
 
 } // namespace latcon::lattice

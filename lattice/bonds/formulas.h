@@ -1,14 +1,48 @@
-// No #pragma once: see below.
+#pragma once
 
-/// @file
-/// Namespace of the formulas of bond laws, LATCON_FORMULAS.
-///
-/// A formula is a template over the type of its numbers: double, or the vectors of an instruction set. A compiler fixes
-/// the instruction set of a function where the function is defined. The kernels therefore include the laws once more
-/// for each set, with LATCON_VECTORS defined and LATCON_FORMULAS a namespace of that set (formulas_for_vectors.inc). A
-/// formula may use +, -, * and the numbers given to it. It may not use exp or log, whose bits differ between
-/// instruction sets.
-#ifndef LATCON_FORMULAS
-/// Namespace of the formulas for one double.
-#define LATCON_FORMULAS formulas
-#endif
+#include <cmath>
+
+#include "lattice/bonds/custom_bond.h"
+#include "lattice/bonds/custom_memory.h"
+#include "lattice/bonds/linear_bond.h"
+#include "lattice/bonds/maxwell_memory.h"
+#include "lattice/bonds/mooney_rivlin_bond.h"
+#include "lattice/bonds/plastic_memory.h"
+
+/// Formulas of bonds for one double.
+namespace latcon::lattice::formulas
+{
+
+/// Magnitude beyond a limit > 0.
+inline double excess(double value, double limit)
+{
+  const double beyond = std::abs(value) - limit;
+  return beyond > 0. ? beyond : 0.;
+}
+/// The value within a limit > 0.
+inline double clamped(double value, double limit)
+{
+  return value > limit ? limit : value < -limit ? -limit : value;
+}
+
+/// User-defined law.
+inline double force_of_each(const CustomBond &law, double stretch)
+{
+  return law.force(stretch);
+}
+/// User-defined memory. Absent bonds have no length.
+inline double advance_each(const CustomMemory::Step &step, double before, double now, double *variables,
+                           double &dissipation)
+{
+  dissipation = 0.;
+  if (!(now > 0.))
+    return 0.;
+  const double earlier = step.dissipates_energy ? step.law->dissipation(before, variables) : 0.;
+  const double overstress = step.law->advance(step.duration, before, now, variables);
+  dissipation = step.law->dissipation(now, variables) - earlier;
+  return overstress;
+}
+
+#include "lattice/bonds/formulas.inc"
+
+} // namespace latcon::lattice::formulas

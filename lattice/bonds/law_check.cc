@@ -11,7 +11,6 @@ namespace latcon::lattice
 namespace
 {
 
-constexpr double step = 0.01;            // between two stretches of the check, relative
 constexpr double difference_step = 1e-4; // of differences, relative; the wider ones reach twice as far
 
 std::string text(double number)
@@ -52,6 +51,23 @@ void check_slope(const std::function<double(double)> &function, const std::funct
                          ", but differences of " + name(derivative - 1) + " give " + text(difference) + " Pa");
 }
 
+double bound_at(const CustomBondLaw &law, double stretch)
+{
+  const double bound = std::max(law.stiffness(stretch), law.force(stretch) / stretch);
+  const bool has_value = !std::isnan(bound + law.force(stretch) + law.energy(stretch));
+  return has_value ? bound : std::numeric_limits<double>::infinity();
+}
+
+// Stretches from `shortest` to `longest`, each farther from the one before by a relative step.
+std::vector<double> grid(double shortest, double longest, double step)
+{
+  std::vector<double> stretches;
+  for (double stretch = shortest; stretch < longest; stretch *= 1. + step)
+    stretches.push_back(stretch);
+  stretches.push_back(longest);
+  return stretches;
+}
+
 } // namespace
 
 void check_law(const std::vector<std::function<double(double)>> &functions, double shortest, double longest)
@@ -61,10 +77,7 @@ void check_law(const std::vector<std::function<double(double)>> &functions, doub
     throw InvalidBondLaw("psi''(1) is " + text(stiffness) + " Pa; a bond at rest needs a stiffness > 0");
   if (!(std::abs(functions[1](1.)) <= 1e-12 * stiffness))
     throw InvalidBondLaw("psi'(1) is " + text(functions[1](1.)) + " Pa; a bond at rest has no force");
-  std::vector<double> stretches;
-  for (double stretch = shortest; stretch < longest; stretch *= 1. + step)
-    stretches.push_back(stretch);
-  stretches.push_back(longest);
+  const std::vector<double> stretches = grid(shortest, longest, 0.01);
   for (std::size_t derivative = 0; derivative < functions.size(); ++derivative)
     for (const double stretch : stretches)
       if (const double value = functions[derivative](stretch); !std::isfinite(value))
@@ -75,6 +88,25 @@ void check_law(const std::vector<std::function<double(double)>> &functions, doub
     for (const double stretch : stretches)
       if (stretch * (1. + 2. * difference_step) <= longest && stretch * (1. - 2. * difference_step) >= shortest)
         check_slope(functions[derivative - 1], functions[derivative], derivative, stretch);
+}
+
+// Between two stretches of the grid a smooth law differs from them by (step^2 / 8) lam^2 psi'''', less than 1e-4 of
+// psi'' for powers up to the 10th; automatic time steps have a larger margin.
+void CheckedLaw::bound_stiffness(double longest)
+{
+  stretches_ = grid(0.05, longest, 0.003);
+  for (const double stretch : stretches_)
+    largest_.push_back(bound_at(*this, stretch));
+  for (std::size_t i = largest_.size() - 1; i-- > 0;)
+    largest_[i] = std::max(largest_[i], largest_[i + 1]);
+}
+
+double CheckedLaw::largest_stiffness(double smallest_stretch) const noexcept
+{
+  const auto next = std::lower_bound(stretches_.begin(), stretches_.end(), smallest_stretch);
+  const double there = bound_at(*this, smallest_stretch);
+  return next == stretches_.end() ? there
+                                  : std::max(there, largest_[static_cast<std::size_t>(next - stretches_.begin())]);
 }
 
 } // namespace latcon::lattice

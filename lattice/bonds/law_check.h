@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "lattice/bonds/custom_bond.h"
+
 namespace latcon::lattice
 {
 
@@ -22,5 +24,21 @@ inline constexpr double smallest_checked_stretch = 0.3;
 /// to 1e-12 psi''(1), and psi''(1) > 0.
 /// @throws InvalidBondLaw
 void check_law(const std::vector<std::function<double(double)>> &functions, double shortest, double longest);
+
+/// A law without a closed form of the bound on psi'' and psi' / lam: it is the largest value on a grid of stretches.
+class CheckedLaw : public CustomBondLaw
+{
+public:
+  /// Infinity if the law has no value there.
+  double largest_stiffness(double smallest_stretch) const noexcept override;
+
+protected:
+  /// Before largest_stiffness(). @param longest largest stretch of an unbroken bond [-], > 1
+  void bound_stiffness(double longest);
+
+private:
+  std::vector<double> stretches_; // [-], increasing
+  std::vector<double> largest_;   // [Pa], from each stretch to the last
+};
 
 } // namespace latcon::lattice

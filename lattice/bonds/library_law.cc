@@ -6,8 +6,6 @@
 
 #include <dlfcn.h>
 
-#include "lattice/bonds/law_check.h"
-
 namespace latcon::lattice
 {
 namespace
@@ -58,7 +56,7 @@ LibraryLaw::LibraryLaw(LawLibrary library, std::vector<double> parameters, doubl
   check_law({derivative(0), force, derivative(2)}, smallest_checked_stretch, longest);
   check_law({derivative(0), derivative(1), derivative(2), derivative(3), derivative(4)}, smallest_checked_stretch,
             longest);
-  bound_ = std::make_unique<StiffnessBound>(*this, longest);
+  bound_stiffness(longest);
 }
 
 std::array<double, 5> LibraryLaw::derivatives(double stretch) const noexcept

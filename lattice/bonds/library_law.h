@@ -1,14 +1,12 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "lattice/bonds/bond_law_library.h"
-#include "lattice/bonds/custom_bond.h"
-#include "lattice/bonds/stiffness_bound.h"
+#include "lattice/bonds/law_check.h"
 
 namespace latcon::lattice
 {
@@ -39,7 +37,7 @@ private:
 };
 
 /// Bond law of a shared library.
-class LibraryLaw : public CustomBondLaw
+class LibraryLaw : public CheckedLaw
 {
 public:
   /// @param parameters values [SI], one for each name in library.parameters()
@@ -50,10 +48,6 @@ public:
   double energy(double stretch) const noexcept override { return derivatives(stretch)[0]; }
   double force(double stretch) const noexcept override { return library_.force_(stretch, parameters_.data()); }
   double stiffness(double stretch) const noexcept override { return derivatives(stretch)[2]; }
-  double largest_stiffness(double smallest_stretch) const noexcept override
-  {
-    return bound_->from(*this, smallest_stretch);
-  }
 
   /// psi and its first four derivatives [Pa], with psi(1) = 0.
   std::array<double, 5> derivatives(double stretch) const noexcept;
@@ -62,7 +56,6 @@ private:
   LawLibrary library_;
   std::vector<double> parameters_;
   double at_rest_ = 0.; // [Pa], psi(1) as the library gives it
-  std::unique_ptr<const StiffnessBound> bound_;
 };
 
 } // namespace latcon::lattice

@@ -1,9 +1,8 @@
+#pragma once
+
 #include <limits>
 #include <stdexcept>
 
-#include "lattice/bonds/formulas.h"
-
-#ifndef LATCON_LATTICE_LINEAR_BOND
 namespace latcon::lattice
 {
 
@@ -32,19 +31,3 @@ struct LinearBond
 };
 
 } // namespace latcon::lattice
-#endif
-
-#if !defined(LATCON_LATTICE_LINEAR_BOND) || defined(LATCON_VECTORS)
-#define LATCON_LATTICE_LINEAR_BOND
-namespace latcon::lattice::LATCON_FORMULAS
-{
-
-/// psi'(lam) [Pa].
-template <class Number>
-inline Number force(const LinearBond &law, Number stretch, Number /*inverse*/)
-{
-  return law.modulus * (stretch - 1.);
-}
-
-} // namespace latcon::lattice::LATCON_FORMULAS
-#endif

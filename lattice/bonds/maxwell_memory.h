@@ -1,10 +1,10 @@
+#pragma once
+
 #include <array>
 #include <vector>
 
-#include "lattice/bonds/formulas.h"
 #include "lattice/bonds/memory_limits.h"
 
-#ifndef LATCON_LATTICE_MAXWELL_MEMORY
 namespace latcon::lattice
 {
 
@@ -54,33 +54,3 @@ private:
 };
 
 } // namespace latcon::lattice
-#endif
-
-#if !defined(LATCON_LATTICE_MAXWELL_MEMORY) || defined(LATCON_VECTORS)
-#define LATCON_LATTICE_MAXWELL_MEMORY
-namespace latcon::lattice::LATCON_FORMULAS
-{
-
-/// Updates the overstresses of a bond while its stretch changes from `before` to `now`.
-/// @param dissipation power of the dashpot of each branch per reference volume of the bond at the end,
-/// q_i^2 / (E_i tau_i) [Pa/s]
-/// @return sum q_i [Pa]
-template <class Number>
-inline Number advance(const MaxwellMemory::Step &step, Number before, Number now, Number *overstress,
-                      Number *dissipation)
-{
-  const Number change = now - before;
-  overstress[0] = step.decay[0] * overstress[0] + step.gain[0] * change;
-  Number sum = overstress[0];
-  dissipation[0] = step.fluency[0] * (overstress[0] * overstress[0]);
-  for (std::size_t i = 1; i < step.n; ++i)
-  {
-    overstress[i] = step.decay[i] * overstress[i] + step.gain[i] * change;
-    sum = sum + overstress[i];
-    dissipation[i] = step.fluency[i] * (overstress[i] * overstress[i]);
-  }
-  return sum;
-}
-
-} // namespace latcon::lattice::LATCON_FORMULAS
-#endif

@@ -1,9 +1,8 @@
+#pragma once
+
 #include <limits>
 #include <stdexcept>
 
-#include "lattice/bonds/formulas.h"
-
-#ifndef LATCON_LATTICE_MOONEY_RIVLIN_BOND
 namespace latcon::lattice
 {
 
@@ -46,20 +45,3 @@ struct MooneyRivlinBond
 };
 
 } // namespace latcon::lattice
-#endif
-
-#if !defined(LATCON_LATTICE_MOONEY_RIVLIN_BOND) || defined(LATCON_VECTORS)
-#define LATCON_LATTICE_MOONEY_RIVLIN_BOND
-namespace latcon::lattice::LATCON_FORMULAS
-{
-
-/// psi'(lam) [Pa], axial force per reference cross-section, tension positive.
-template <class Number>
-inline Number force(const MooneyRivlinBond &law, Number stretch, Number inverse)
-{
-  const Number inverse_square = inverse * inverse;
-  return law.a * (stretch - inverse_square) + law.b * (1. - inverse_square * inverse);
-}
-
-} // namespace latcon::lattice::LATCON_FORMULAS
-#endif

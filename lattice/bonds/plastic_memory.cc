@@ -1,5 +1,6 @@
 #include "lattice/bonds/plastic_memory.h"
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 

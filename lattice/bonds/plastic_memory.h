@@ -1,8 +1,8 @@
-#include "lattice/bonds/formulas.h"
-#include "lattice/bonds/memory_limits.h"
+#pragma once
 
-#ifndef LATCON_LATTICE_PLASTIC_MEMORY
-#include <cmath>
+#include <cstddef>
+
+#include "lattice/bonds/memory_limits.h"
 
 namespace latcon::lattice
 {
@@ -45,42 +45,3 @@ private:
 };
 
 } // namespace latcon::lattice
-#endif
-
-#if !defined(LATCON_LATTICE_PLASTIC_MEMORY) || defined(LATCON_VECTORS)
-#define LATCON_LATTICE_PLASTIC_MEMORY
-namespace latcon::lattice::LATCON_FORMULAS
-{
-
-#ifndef LATCON_VECTORS
-/// For vectors see lanes.inc.
-inline double excess(double value, double limit)
-{
-  const double beyond = std::abs(value) - limit;
-  return beyond > 0. ? beyond : 0.;
-}
-inline double clamped(double value, double limit)
-{
-  return value > limit ? limit : value < -limit ? -limit : value;
-}
-#endif
-
-/// Updates the variables of a bond while its stretch changes from `before` to `now`.
-/// @param dissipation energy that the slider dissipates meanwhile per reference volume of the bond, eq. (L.43) [Pa]
-/// @return q at the end [Pa]; beyond the yield stress it is that of the new alpha to the bit, so that nothing slips
-/// further while the stretch stays
-template <class Number>
-inline Number advance(const PlasticMemory::Step &step, Number before, Number now, Number *variables,
-                      Number *dissipation)
-{
-  const Number trial = variables[0] + step.modulus * (now - before);
-  const Number yield = step.yield_stress + step.hardening * variables[1];
-  const Number slipped = step.slip * excess(trial, yield);
-  dissipation[0] = slipped * (yield + (0.5 * step.hardening) * slipped);
-  variables[1] = variables[1] + slipped;
-  variables[0] = clamped(trial, step.yield_stress + step.hardening * variables[1]);
-  return variables[0];
-}
-
-} // namespace latcon::lattice::LATCON_FORMULAS
-#endif

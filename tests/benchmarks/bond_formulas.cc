@@ -13,13 +13,6 @@ namespace latcon::lattice::kernels::HWY_NAMESPACE
 
 #include "lattice/lanes.inc"
 
-} // namespace latcon::lattice::kernels::HWY_NAMESPACE
-
-#include "lattice/bonds/formulas_for_vectors.inc"
-
-namespace latcon::lattice::kernels::HWY_NAMESPACE
-{
-
 double BondFormulas(const MooneyRivlinBond &given_law, const BondConstants &given_bond, std::size_t n, const double *dx,
                     const double *dy, const double *dvx, const double *dvy, double *fx, double *fy)
 {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lattice/stencil_kernels.h"
+#include "lattice/row_kernels.h"
 
 /// @file
 /// Square root, quotient and law of a bond alone, for each instruction set as in lattice/row_kernels.h: the least that

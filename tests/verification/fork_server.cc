@@ -10,6 +10,8 @@
 
 #include <dlfcn.h>
 #include <mpi.h>
+#include <sched.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "support/mpi_session.h"
@@ -85,6 +87,14 @@ int execve(const char *path, char *const argv[], char *const environment[])
 int execv(const char *path, char *const argv[])
 {
   return execve(path, argv, environ);
+}
+
+// Ranks that wait for others (OMPI_MCA_mpi_yield_when_idle) sleep: tests share the cores, and one that yields gets its core back
+// only when the others' slices have ended, at each of its messages.
+int sched_yield() noexcept
+{
+  const timespec duration{0, 20000}; // 20 us
+  return nanosleep(&duration, nullptr);
 }
 
 // A fork cannot end MPI, as latcon does before it becomes Python.

@@ -35,7 +35,7 @@ void set_up_threads(const input::Options &options)
     omp_set_num_threads(static_cast<int>(threads));
   try
   {
-    lattice::kernels::limit_instruction_sets();
+    lattice::kernels::instruction_sets();
   }
   catch (const std::invalid_argument &error)
   {
