@@ -37,12 +37,13 @@ void archive_rows(Archive &archive, const std::string &name, Vector &field, cons
   archive(name, values);
   if constexpr (Archive::loads)
   {
-    std::vector<std::size_t> first{0}; // value of each row
-    for (std::size_t row = 0; row < lattice.rows(); ++row)
-      first.push_back(first.back() + lattice.sites_in_row(row));
-    require_archived(values.size() == first.back(), "`" + name + "` is of a sheet of another size");
+    require_archived(values.size() == lattice.n_sites(), "`" + name + "` is of a sheet of another size");
     for (const std::size_t row : rows)
-      std::copy(&values[first[row]], &values[first[row]] + lattice.sites_in_row(row), &field[lattice.index(row, 0)]);
+    {
+      const std::size_t place = lattice.index(row, 0);
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(lattice.site_number(place)), lattice.sites_in_row(row),
+                  &field[place]);
+    }
   }
 }
 

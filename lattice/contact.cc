@@ -1,7 +1,6 @@
 #include "lattice/contact.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -19,31 +18,6 @@ constexpr double skin_over_distance = 1.;
 
 // Candidates below which one thread is faster.
 constexpr std::size_t min_candidates_for_threads = 512;
-
-// Calls work(begin, end, part) for shares of 0 ... n - 1 that follow each other, each by another thread, and appends
-// the parts to `all` in the order of the shares, which does not depend on their number.
-// @param parts scratch
-template <class Item, class Work>
-void in_shares(std::size_t n, std::vector<std::vector<Item>> &parts, std::vector<Item> &all, const Work &work)
-{
-  if (n < min_candidates_for_threads)
-  {
-    work(std::size_t{0}, n, all);
-    return;
-  }
-  parts.resize(static_cast<std::size_t>(omp_get_max_threads()));
-#pragma omp parallel
-  {
-    const auto count = static_cast<std::size_t>(omp_get_num_threads()),
-               i = static_cast<std::size_t>(omp_get_thread_num());
-    parts[i].clear();
-    work(n * i / count, n * (i + 1) / count, parts[i]);
-#pragma omp barrier
-#pragma omp single
-    for (std::size_t part = 0; part < count; ++part)
-      all.insert(all.end(), parts[part].begin(), parts[part].end());
-  }
-}
 
 constexpr double nowhere = std::numeric_limits<double>::infinity();
 
@@ -142,18 +116,13 @@ void Contact::update_lists(const State &state)
     list(state, index);
   }
   n_listings_ += all.size();
-  sort_candidates();
-  if (band_.is_shared() && !all.empty())
-    find_exchanged_sites();
-}
-
-// Sorts those added since it was called last into the others.
-void Contact::sort_candidates()
-{
+  // Those added since then into the others.
   const auto is_before = [this](std::size_t first, std::size_t second) { return places_[first] < places_[second]; };
   const auto added = std::is_sorted_until(order_.begin(), order_.end(), is_before);
   std::sort(added, order_.end(), is_before);
   std::inplace_merge(order_.begin(), added, order_.end(), is_before);
+  if (band_.is_shared() && !all.empty())
+    find_exchanged_sites();
 }
 
 void Contact::list(const State &state, std::size_t index)
@@ -237,12 +206,18 @@ const std::vector<SiteForce> &Contact::evaluate(State &state, Field &vx, Field &
 {
   update_lists(state);
   band_.exchange(sent_, received_, {&state.x, &state.y, &vx, &vy});
-  forces_.clear();
-  std::atomic<std::size_t> n_touching{0};
-  const auto push_apart = [&](std::size_t begin, std::size_t end, std::vector<SiteForce> &forces)
+  const std::size_t n_shares =
+    order_.size() < min_candidates_for_threads ? 1 : static_cast<std::size_t>(omp_get_max_threads());
+  const auto n = static_cast<std::ptrdiff_t>(n_shares);
+  forces_of_shares_.resize(n_shares);
+  std::size_t touching = 0;
+#pragma omp parallel for schedule(static) reduction(+ : touching) if (n_shares > 1)
+  for (std::ptrdiff_t i = 0; i < n; ++i)
   {
-    std::size_t touching = 0;
-    for_each_pair(begin, end,
+    const auto share = static_cast<std::size_t>(i);
+    std::vector<SiteForce> &forces = forces_of_shares_[share];
+    forces.clear();
+    for_each_pair(order_.size() * share / n_shares, order_.size() * (share + 1) / n_shares,
                   [&](std::size_t first, std::size_t second)
                   {
                     const Eigen::Vector2d between(state.x[second] - state.x[first], state.y[second] - state.y[first]);
@@ -264,10 +239,11 @@ const std::vector<SiteForce> &Contact::evaluate(State &state, Field &vx, Field &
                     if (band_.owns(second))
                       forces.push_back({second, force});
                   });
-    n_touching += touching;
-  };
-  in_shares(order_.size(), forces_of_threads_, forces_, push_apart);
-  n_touching_ = n_touching;
+  }
+  n_touching_ = touching;
+  forces_.clear();
+  for (const std::vector<SiteForce> &of_share : forces_of_shares_) // the order of pairs, however many shares
+    forces_.insert(forces_.end(), of_share.begin(), of_share.end());
   return forces_;
 }
 

@@ -67,7 +67,6 @@ public:
 private:
   void add_candidate(std::size_t place);
   void update_lists(const State &state);
-  void sort_candidates();
   void list(const State &state, std::size_t index);
   bool may_touch(const State &state, std::size_t first, std::size_t second) const;
   // Calls visit(first, second) for each pair of which one of order_[begin] ... order_[end - 1] is the first: the place
@@ -100,7 +99,7 @@ private:
   std::vector<std::uint32_t, ZeroPages<std::uint32_t>> number_; // by place: index of the candidate + 1; 0: none
   std::vector<std::size_t> own_;                                // indices of candidates in the band
   std::vector<std::size_t> order_;                              // indices of all candidates, by increasing places
-  std::vector<std::vector<SiteForce>> forces_of_threads_;       // scratch
+  std::vector<std::vector<SiteForce>> forces_of_shares_;        // scratch
   std::vector<std::size_t> found_;                              // scratch
   SitesOfRanks sent_, received_;
   std::size_t n_touching_ = 0;

@@ -34,18 +34,16 @@ template <class SiteOperation>
 Sums over_free_sites(const State &state, const TriangularLattice &lattice, const SiteOperation &operation)
 {
   std::vector<Sums> rows(lattice.rows());
-  const auto n_rows = static_cast<std::ptrdiff_t>(lattice.rows());
-#pragma omp parallel for schedule(static) if (lattice.n_places() >= min_places_for_threads)
-  for (std::ptrdiff_t r = 0; r < n_rows; ++r)
+  const auto of_row = [&](std::size_t row)
   {
-    const auto row = static_cast<std::size_t>(r);
     const std::size_t first = lattice.index(row, 0);
     Sums sums; // not in place: neighbouring rows share cache lines
     for (std::size_t i = first; i < first + lattice.columns(); ++i)
       if (state.inverse_mass[i] > 0.)
         operation(i, sums);
     rows[row] = sums;
-  }
+  };
+  for_each_row(lattice, {0, lattice.rows()}, of_row);
   Sums total;
   for (const Sums &sums : rows)
     total.add(sums);

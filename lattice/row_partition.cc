@@ -93,30 +93,15 @@ SitesOfRanks RowPartition::halo_sites(bool own) const
 
 bool RowPartition::is_relevant_to(std::size_t rank, std::size_t place) const
 {
-  const auto begin = static_cast<std::ptrdiff_t>(first_rows_[rank]);
-  const auto end = static_cast<std::ptrdiff_t>(first_rows_[rank + 1]);
-  const auto n_rows = static_cast<std::ptrdiff_t>(lattice_->rows());
-  const auto reach = static_cast<std::ptrdiff_t>(lattice_->reach());
-  std::ptrdiff_t row = static_cast<std::ptrdiff_t>(lattice_->row_of(place)) - (begin - reach);
-  if (rows_repeat())
-    row = (row + n_rows) % n_rows;
-  return begin < end && row >= 0 && row < end - begin + 2 * reach;
+  const std::size_t begin = first_rows_[rank], end = first_rows_[rank + 1], row = lattice_->row_of(place);
+  return begin < end && row + lattice_->reach() >= begin && row < end + lattice_->reach();
 }
 
-double RowPartition::sum(std::vector<double> values) const
+double RowPartition::sum(const std::vector<double> &values) const
 {
-  if (is_shared())
-  {
-    std::vector<int> counts, offsets;
-    for (std::size_t r = 0; r < n_ranks(); ++r)
-    {
-      offsets.push_back(static_cast<int>(first_rows_[r]));
-      counts.push_back(static_cast<int>(first_rows_[r + 1] - first_rows_[r]));
-    }
-    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values.data(), counts.data(), offsets.data(), MPI_DOUBLE,
-                   communicator_);
-  }
-  return std::accumulate(values.begin(), values.end(), 0.);
+  const std::vector<double> all =
+    all_gather(std::vector<double>(&values[0] + rows().begin, &values[0] + rows().end));
+  return std::accumulate(all.begin(), all.end(), 0.);
 }
 
 std::vector<char> RowPartition::all_gather_bytes(const char *own, std::size_t size, int *number) const

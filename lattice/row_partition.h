@@ -49,7 +49,8 @@ public:
   Rows rows() const { return {first_rows_[rank_], first_rows_[rank_ + 1]}; } ///< that this rank moves
   bool owns(std::size_t place) const; ///< whether a place, margin included, is in one of its rows
   bool is_relevant(std::size_t place) const { return is_relevant_[padded_row(place)] != 0; } ///< or in its halo
-  bool is_relevant_to(std::size_t rank, std::size_t place) const; ///< whether it is in a row of a rank or in its halo
+  /// Returns whether a site of a sheet that is not periodic is in a row of a rank or in its halo.
+  bool is_relevant_to(std::size_t rank, std::size_t place) const;
   std::vector<std::size_t> known_rows() const; ///< own ones and halo, by increasing number
 
   bool is_first() const { return rank_ == 0; } ///< whether this is the first rank, which gathers
@@ -64,7 +65,7 @@ public:
 
   /// Sum of the values of all rows from the lowest up, whoever has them: the same bits for any number of ranks.
   /// Collective. @param values one a row of the sheet; those of own rows are read
-  double sum(std::vector<double> values) const;
+  double sum(const std::vector<double> &values) const;
 
   /// The lists of all ranks one after the other. Collective; costs one short message where all lists are empty.
   /// @param number in: of this rank, out: the largest over all ranks, sent with the same message; nullptr: none
@@ -81,7 +82,6 @@ public:
 
 private:
   std::size_t padded_row(std::size_t place) const { return place / lattice_->stride(); }
-  bool rows_repeat() const { return lattice_->is_occupied(lattice_->index(0, 0) - lattice_->stride()); }
   std::vector<char> all_gather_bytes(const char *own, std::size_t size, int *number) const;
   void gather_bytes(void *field, std::size_t bytes_of_place, Rows rows) const;
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <Eigen/Geometry>
+
 #include "lattice/row_partition.h"
 
 namespace latcon::lattice
@@ -14,25 +16,8 @@ namespace
 // Lengths are compared with some room, so that whole spacings mean the same on every machine.
 constexpr double relative_room = 1e-9;
 
-struct Site
-{
-  std::size_t place;
-  Eigen::Vector2d X;
-};
-
 // Lists of more sites would take more memory than a check may.
 constexpr double most_sites = 1e7;
-
-// A closed rectangle.
-struct Box
-{
-  Eigen::Vector2d lower, upper;
-
-  bool contains(const Eigen::Vector2d &X) const
-  {
-    return (X.array() >= lower.array()).all() && (X.array() <= upper.array()).all();
-  }
-};
 
 // The rows, or the columns, that have sites between two distances from the first; one more at either end, since odd
 // rows are shifted.
@@ -43,11 +28,11 @@ Rows numbers_between(double from, double to, double pitch, std::size_t n)
 }
 
 // All sites in the box, by increasing X, then Y.
-std::vector<Site> sites_in(const Box &box, const TriangularLattice &lattice)
+std::vector<std::size_t> sites_in(const Eigen::AlignedBox2d &box, const TriangularLattice &lattice)
 {
   const bool along_x = lattice.orientation() == Orientation::rows_along_crack;
   const Eigen::Vector2d first = lattice.reference(lattice.index(0, 0));
-  const Eigen::Vector2d from = box.lower - first, to = box.upper - first;
+  const Eigen::Vector2d from = box.min() - first, to = box.max() - first;
   const double pitch = lattice.site_area() / lattice.spacing();
   const auto [along, across] = along_x ? std::pair(0, 1) : std::pair(1, 0);
   const Rows rows = numbers_between(from[across], to[across], pitch, lattice.rows());
@@ -55,19 +40,18 @@ std::vector<Site> sites_in(const Box &box, const TriangularLattice &lattice)
   if (double(rows.end - rows.begin) * double(columns.end - columns.begin) > most_sites)
     throw std::invalid_argument("it takes more than 1e7 sites");
 
-  std::vector<Site> sites;
+  std::vector<std::size_t> sites;
   for (std::size_t row = rows.begin; row < rows.end; ++row)
     for (std::size_t column = columns.begin; column < std::min(columns.end, lattice.sites_in_row(row)); ++column)
-    {
-      const std::size_t place = lattice.index(row, column);
-      const Eigen::Vector2d X = lattice.reference(place);
-      if (box.contains(X))
-        sites.push_back({place, X});
-    }
+      if (box.contains(lattice.reference(lattice.index(row, column))))
+        sites.push_back(lattice.index(row, column));
   const double room = relative_room * lattice.spacing();
   std::sort(sites.begin(), sites.end(),
-            [room](const Site &a, const Site &b)
-            { return std::abs(a.X.x() - b.X.x()) > room ? a.X.x() < b.X.x() : a.X.y() < b.X.y(); });
+            [&](std::size_t a, std::size_t b)
+            {
+              const Eigen::Vector2d A = lattice.reference(a), B = lattice.reference(b);
+              return std::abs(A.x() - B.x()) > room ? A.x() < B.x() : A.y() < B.y();
+            });
   return sites;
 }
 
@@ -85,15 +69,15 @@ std::vector<double> lines_of_sites(const TriangularLattice &lattice)
   return lines;
 }
 
-std::vector<Site> sites_of(const SeedSlit &slit, const TriangularLattice &lattice)
+std::vector<std::size_t> sites_of(const SeedSlit &slit, const TriangularLattice &lattice)
 {
   const double room = relative_room * lattice.spacing();
-  return sites_in({{slit.position - room, slit.offset - 0.5 * slit.height - room},
-                   {slit.position + slit.length + room, slit.offset + 0.5 * slit.height + room}},
-                  lattice);
+  const Eigen::Vector2d lower(slit.position - room, slit.offset - 0.5 * slit.height - room),
+    upper(slit.position + slit.length + room, slit.offset + 0.5 * slit.height + room);
+  return sites_in({lower, upper}, lattice);
 }
 
-std::vector<Site> sites_of(const SeedLine &line, const TriangularLattice &lattice)
+std::vector<std::size_t> sites_of(const SeedLine &line, const TriangularLattice &lattice)
 {
   const double room = relative_room * lattice.spacing();
   // Of two equally near ones the larger is taken.
@@ -107,11 +91,13 @@ std::vector<Site> sites_of(const SeedLine &line, const TriangularLattice &lattic
       nearest_y = y;
     }
   }
-  const std::vector<Site> candidates = sites_in(
-    {{-lattice.spacing(), nearest_y - room}, {lattice.length() + lattice.spacing(), nearest_y + room}}, lattice);
+  const Eigen::Vector2d lower(-lattice.spacing(), nearest_y - room),
+    upper(lattice.length() + lattice.spacing(), nearest_y + room);
+  const std::vector<std::size_t> candidates = sites_in({lower, upper}, lattice);
+  const auto distance = [&](std::size_t i) { return std::abs(lattice.reference(candidates[i]).x() - line.position); };
   std::size_t first = 0;
   for (std::size_t i = 1; i < candidates.size(); ++i)
-    if (std::abs(candidates[i].X.x() - line.position) <= std::abs(candidates[first].X.x() - line.position) + room)
+    if (distance(i) <= distance(first) + room)
       first = i;
   if (first + line.n > candidates.size())
     throw std::invalid_argument("it goes beyond the right end of the sheet");
@@ -142,17 +128,13 @@ std::vector<std::pair<std::size_t, std::size_t>> bonds_across(const TriangularLa
 
 std::vector<std::size_t> seed_sites(const TriangularLattice &lattice, const Seed &seed)
 {
-  const std::vector<Site> sites = std::visit([&](const auto &shape) { return sites_of(shape, lattice); }, seed);
-  if (sites.empty())
+  std::vector<std::size_t> places = std::visit([&](const auto &shape) { return sites_of(shape, lattice); }, seed);
+  if (places.empty())
     throw std::invalid_argument("there is no site in it");
   const double highest = 0.5 * lattice.height() - 2. * lattice.spacing();
-  std::vector<std::size_t> places;
-  for (const Site &site : sites)
-  {
-    if (std::abs(site.X.y()) > highest)
+  for (const std::size_t place : places)
+    if (std::abs(lattice.reference(place).y()) > highest)
       throw std::invalid_argument("it comes within two spacings of the lower or the upper edge of the sheet");
-    places.push_back(site.place);
-  }
   return places;
 }
 

@@ -295,22 +295,19 @@ void Simulation::update_rollers()
 const std::vector<BrokenBond> &Simulation::step()
 {
   const double h = time_stepping_.step, end = state_.time + h;
-  if (parts_ == 1)
-    return advance(h, end);
-  broken_in_parts_.clear();
+  broken_bonds_.clear();
+  n_divided_steps_ += parts_ > 1 ? 1 : 0;
   // Shares are powers of two, so that their sum is exact. After each part the rest is divided anew.
   for (double left = 1.; left > 0.;)
   {
     const double share = std::min(left, 1. / parts_);
     left -= share;
-    const std::vector<BrokenBond> &broken = advance(share * h, end - left * h);
-    broken_in_parts_.insert(broken_in_parts_.end(), broken.begin(), broken.end());
+    advance(share * h, end - left * h);
   }
-  ++n_divided_steps_;
-  return broken_in_parts_;
+  return broken_bonds_;
 }
 
-const std::vector<BrokenBond> &Simulation::advance(double duration, double end)
+void Simulation::advance(double duration, double end)
 {
   prescribe_motion(duration);
   integrator_->set_time_step(duration);
@@ -325,7 +322,7 @@ const std::vector<BrokenBond> &Simulation::advance(double duration, double end)
   if (!fracture_)
   {
     band_.all_gather(std::vector<char>(), &parts_);
-    return no_bonds_;
+    return;
   }
 
   // Long steps would break bonds late; those of velocity Verlet are so short that they need not look ahead.
@@ -333,24 +330,24 @@ const std::vector<BrokenBond> &Simulation::advance(double duration, double end)
     fracture_->set_lookahead(0.5 * duration);
   const std::vector<BrokenBond> &broken =
     fracture_->apply(state_, forces_, integrator_->evaluated_vx(state_), integrator_->evaluated_vy(state_), &parts_);
-  if (!broken.empty())
+  if (broken.empty())
+    return;
+  broken_bonds_.insert(broken_bonds_.end(), broken.begin(), broken.end());
+  n_broken_ += broken.size();
+  std::vector<std::size_t> ends;
+  for (const BrokenBond &bond : broken)
   {
-    for (const BrokenBond &bond : broken)
-      broken_ += bond.energy;
-    n_broken_ += broken.size();
-    std::vector<std::size_t> ends;
-    for (const BrokenBond &bond : broken)
-      ends.insert(ends.end(), {bond.near, bond.far});
-    if (contact_)
-    {
-      // From this instant on, as the bonds are gone from it.
-      contact_->add_broken_bonds(broken);
-      integrator_->evaluate_site_forces(state_);
-    }
-    integrator_->update_accelerations(state_, ends);
-    update_powers();
+    broken_ += bond.energy;
+    ends.insert(ends.end(), {bond.near, bond.far});
   }
-  return broken;
+  if (contact_)
+  {
+    // From this instant on, as the bonds are gone from it.
+    contact_->add_broken_bonds(broken);
+    integrator_->evaluate_site_forces(state_);
+  }
+  integrator_->update_accelerations(state_, ends);
+  update_powers();
 }
 
 void Simulation::save(Snapshot &snapshot)

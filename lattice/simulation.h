@@ -140,7 +140,7 @@ private:
   void update_rollers();
   void update_powers();
   void add_work(const Ledger &before, double duration);
-  const std::vector<BrokenBond> &advance(double duration, double end);
+  void advance(double duration, double end);
   int needed_parts() const;
   /// Refuses a loaded state that cannot have followed from the one set up, of which these were bonds and energy.
   /// @throws std::invalid_argument
@@ -158,8 +158,7 @@ private:
   std::vector<std::unique_ptr<SiteForces>> added_forces_;
   bool has_end_loads_ = false;
   std::vector<PrescribedMotion> constraints_;
-  std::vector<BrokenBond> no_bonds_;
-  std::vector<BrokenBond> broken_in_parts_;
+  std::vector<BrokenBond> broken_bonds_; // in the last step
 
   int parts_ = 1; // that the next step needs, a power of two: the same on all ranks
   std::size_t n_divided_steps_ = 0;

@@ -35,10 +35,13 @@ public:
     {
       if constexpr (std::is_trivially_copyable_v<T>)
         values(&value, 1);
-      else if constexpr (IsVector<T>::value)
-        values(value.data(), value.size());
       else
         value.archive(*this);
+    }
+    template <class T, class Allocator>
+    void operator()(const std::string & /*name*/, std::vector<T, Allocator> &value)
+    {
+      values(value.data(), value.size());
     }
 
     /// Archives n numbers. @throws std::invalid_argument as above
@@ -66,15 +69,6 @@ public:
     }
 
   private:
-    template <class T>
-    struct IsVector : std::false_type
-    {
-    };
-    template <class T, class Allocator>
-    struct IsVector<std::vector<T, Allocator>> : std::true_type
-    {
-    };
-
     Stored &snapshot_;
     std::size_t n_chunks_ = 0; // saved or loaded so far
   };

@@ -30,15 +30,6 @@ bool reaches_beyond(const TriangularLattice &lattice, const Material &material, 
   return false;
 }
 
-// Adds the bonds that start at a site.
-void add_bonds(State &state, const TriangularLattice &lattice, const Material &material, std::size_t place)
-{
-  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
-    if (material.shell(lattice, kind) != nullptr && lattice.has_bond(place, kind) &&
-        lattice.is_occupied(lattice.bond(place, kind).far))
-      state.bonds.add(place, kind);
-}
-
 // Returns whether all bonds of a site end within the sheet, whatever its edges.
 bool is_interior(const TriangularLattice &lattice, std::size_t row, std::size_t column)
 {
@@ -101,23 +92,20 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
   }
 
   state.stiffness = bond_factors(band, material, BondProperty::stiffness);
+  // In all rows, as a crack tip may come to any. No other values are written in rows that are not known.
+  for (const std::size_t place : sites_at(lattice, material, edges))
+    state.held[place] = 1;
   const double inverse_mass = 1. / site_mass(material, lattice);
-  for (std::size_t row = 0; row < lattice.rows(); ++row)
-  {
-    const bool is_relevant = band.is_relevant(lattice.index(row, 0));
+  for (const std::size_t row : band.known_rows())
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
-      const bool held = !is_interior(lattice, row, column) && reaches_beyond(lattice, material, place, edges);
-      // In all rows, as a crack tip may come to any. No other values are written in rows that are not relevant.
-      if (held)
-        state.held[place] = 1;
-      if (!is_relevant)
-        continue;
-      add_bonds(state, lattice, material, place);
-      state.inverse_mass[place] = held ? 0. : inverse_mass;
+      for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+        if (material.shell(lattice, kind) != nullptr && lattice.has_bond(place, kind) &&
+            lattice.is_occupied(lattice.bond(place, kind).far))
+          state.bonds.add(place, kind);
+      state.inverse_mass[place] = state.held[place] != 0 ? 0. : inverse_mass;
     }
-  }
   update_images(state, band);
   return state;
 }

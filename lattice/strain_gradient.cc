@@ -7,12 +7,12 @@
 namespace latcon::lattice
 {
 
-const StrainGradientFit::Entry &StrainGradientFit::entry(unsigned int bonds)
+const std::optional<StrainGradientFit::Weights> &StrainGradientFit::weights(unsigned int bonds)
 {
-  std::unique_ptr<Entry> &entry = entries_[bonds];
-  if (entry)
-    return *entry;
-  entry = std::make_unique<Entry>(Entry{false, Weights::Zero()});
+  const auto [found, is_missing] = weights_.try_emplace(bonds);
+  std::optional<Weights> &weights = found->second;
+  if (!is_missing)
+    return weights;
 
   std::vector<std::size_t> neighbours;
   for (std::size_t n = 0; n < n_neighbours; ++n)
@@ -21,7 +21,7 @@ const StrainGradientFit::Entry &StrainGradientFit::entry(unsigned int bonds)
   constexpr Eigen::Index unknowns = 5; // F_x, F_y, G_xx, G_xy, G_yy of one component, in units of d
   const auto n_equations = static_cast<Eigen::Index>(neighbours.size());
   if (n_equations < unknowns)
-    return *entry;
+    return weights;
   const double d = lattice_.spacing();
   Eigen::MatrixXd equations(n_equations, unknowns);
   for (Eigen::Index i = 0; i < n_equations; ++i)
@@ -33,12 +33,12 @@ const StrainGradientFit::Entry &StrainGradientFit::entry(unsigned int bonds)
   // Neighbours stand at distances of the order of d, so that a set either fixes all five well or not at all.
   const std::optional<Eigen::MatrixXd> inverse = support::left_inverse(equations, 1e-6);
   if (!inverse)
-    return *entry;
+    return weights;
+  weights = Weights::Zero();
   for (Eigen::Index i = 0; i < n_equations; ++i)
-    entry->weights.col(static_cast<Eigen::Index>(neighbours[static_cast<std::size_t>(i)])) =
+    weights->col(static_cast<Eigen::Index>(neighbours[static_cast<std::size_t>(i)])) =
       inverse->col(i).tail<3>() / (d * d);
-  entry->fixed = true;
-  return *entry;
+  return weights;
 }
 
 std::optional<StrainGradient> StrainGradientFit::at(const State &state, std::size_t place)
@@ -60,10 +60,10 @@ std::optional<StrainGradient> StrainGradientFit::at(const State &state, std::siz
                           positions(static_cast<Eigen::Index>(n), 0) = sign * (state.x[far] - state.x[near]);
                           positions(static_cast<Eigen::Index>(n), 1) = sign * (state.y[far] - state.y[near]);
                         });
-  const Entry &fit = entry(bonds);
-  if (!fit.fixed)
+  const std::optional<Weights> &of_bonds = weights(bonds);
+  if (!of_bonds)
     return std::nullopt;
-  const Eigen::Matrix<double, 3, 2> G = fit.weights * positions;
+  const Eigen::Matrix<double, 3, 2> G = *of_bonds * positions;
   StrainGradient gradient;
   gradient.x << G(0, 0), G(1, 0), G(1, 0), G(2, 0);
   gradient.y << G(0, 1), G(1, 1), G(1, 1), G(2, 1);

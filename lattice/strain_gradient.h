@@ -1,8 +1,7 @@
 #pragma once
 
-#include <array>
-#include <memory>
 #include <optional>
+#include <unordered_map>
 
 #include "lattice/state.h"
 
@@ -42,15 +41,11 @@ private:
   /// missing.
   using Weights = Eigen::Matrix<double, 3, n_neighbours>;
 
-  struct Entry
-  {
-    bool fixed; // whether the bonds fix a quadratic
-    Weights weights;
-  };
-  const Entry &entry(unsigned int bonds);
+  /// None if the bonds do not fix a quadratic.
+  const std::optional<Weights> &weights(unsigned int bonds);
 
   const TriangularLattice &lattice_;
-  std::array<std::unique_ptr<Entry>, 1u << n_neighbours> entries_;
+  std::unordered_map<unsigned int, std::optional<Weights>> weights_;
 };
 
 } // namespace latcon::lattice

@@ -98,21 +98,17 @@ using Slots = std::vector<std::size_t>; // of the points, in their order
 void add_fields(vtkPolyData &frame, const lattice::State &state, const lattice::TriangularLattice &sheet,
                 const lattice::Material &material, const Slots &slots)
 {
-  const lattice::SiteEvaluator evaluator(sheet, material);
-  std::vector<lattice::SiteValues> values;
-  values.reserve(slots.size());
+  const std::vector<lattice::SiteValues> values = site_fields(state, sheet, material);
   const analysis::Fragments fragments = analysis::find_fragments(state, sheet);
   lattice::StrainGradientFit gradient_fit(sheet);
   std::vector<lattice::StrainGradient> gradients;
   const Eigen::Matrix2d unknown = Eigen::Matrix2d::Constant(std::numeric_limits<double>::quiet_NaN());
-  for (const std::size_t slot : slots)
-    values.push_back(evaluator.at(state, slot));
   for (const std::size_t slot : sheet.is_triangular() ? slots : Slots())
     gradients.push_back(gradient_fit.at(state, slot).value_or(lattice::StrainGradient{unknown, unknown}));
   vtkPointData &data = *frame.GetPointData();
   const std::size_t n = slots.size();
   const auto add = [&](const char *name, const char *unit, const auto &of_site)
-  { add_field<vtkDoubleArray>(data, name, unit, n, [&](std::size_t i) { return values[i].*of_site; }); };
+  { add_field<vtkDoubleArray>(data, name, unit, n, [&](std::size_t i) { return values[slots[i]].*of_site; }); };
   add("deformation_gradient", "1", &lattice::SiteValues::deformation_gradient);
   add("first_piola_stress", "Pa", &lattice::SiteValues::first_piola_stress);
   add("cauchy_stress", "Pa", &lattice::SiteValues::cauchy_stress);
