@@ -134,8 +134,7 @@ void PrescribedMotion::append_rollers(const State &state, std::vector<RollerVelo
 }
 
 void PrescribedMotion::add_power(const State &state, const Forces &forces, const Field &vx, const Field &vy,
-                                 const std::vector<const SiteForces *> &site_forces,
-                                 std::vector<double> &of_rows) const
+                                 const std::vector<const SiteForces *> &site_forces, std::vector<double> &of_rows) const
 {
   if (released_ != 0 || velocity_.is_zero())
     return;

@@ -99,8 +99,7 @@ bool RowPartition::is_relevant_to(std::size_t rank, std::size_t place) const
 
 double RowPartition::sum(const std::vector<double> &values) const
 {
-  const std::vector<double> all =
-    all_gather(std::vector<double>(&values[0] + rows().begin, &values[0] + rows().end));
+  const std::vector<double> all = all_gather(std::vector<double>(&values[0] + rows().begin, &values[0] + rows().end));
   return std::accumulate(all.begin(), all.end(), 0.);
 }
 

@@ -33,9 +33,9 @@ void RungeKuttaChebyshev::step(State &state)
     const double duration = h * stages_.first();
     const std::size_t i = lattice_.index(row, 0), n = lattice_.columns();
     kernels::loops().first_stage(duration, n, &state.ax[i], &state.x[i], &state.vx[i], &start_.x[i], &start_.vx[i],
-                         &previous_.x[i], &previous_.vx[i]);
+                                 &previous_.x[i], &previous_.vx[i]);
     kernels::loops().first_stage(duration, n, &state.ay[i], &state.y[i], &state.vy[i], &start_.y[i], &start_.vy[i],
-                         &previous_.y[i], &previous_.vy[i]);
+                                 &previous_.y[i], &previous_.vy[i]);
   };
   Forces::RowCallbacks work = move_rows(state, first_stage);
   touched_ = {&state.x,  &state.y,   &state.vx,  &state.vy,    &state.ax,    &state.ay,     &start_.x,
@@ -48,9 +48,9 @@ void RungeKuttaChebyshev::step(State &state)
       const std::size_t i = lattice_.index(row, 0), n = lattice_.columns();
       const double *const inverse_mass = &state.inverse_mass[i];
       kernels::loops().next_stage(stage, h, n, fx, inverse_mass, &state.ax[i], &start_.x[i], &start_.vx[i], &state.x[i],
-                          &state.vx[i], &previous_.x[i], &previous_.vx[i]);
+                                  &state.vx[i], &previous_.x[i], &previous_.vx[i]);
       kernels::loops().next_stage(stage, h, n, fy, inverse_mass, &state.ay[i], &start_.y[i], &start_.vy[i], &state.y[i],
-                          &state.vy[i], &previous_.y[i], &previous_.vy[i]);
+                                  &state.vy[i], &previous_.y[i], &previous_.vy[i]);
     };
     forces_.set_elapsed(stage.elapsed * h);
     work.post_force = std::ref(next);

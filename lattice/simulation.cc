@@ -44,8 +44,7 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
                        std::optional<Fracture> fracture)
   : band_(band), lattice_(band.lattice()), material_(material), state_(std::move(initial)),
     time_stepping_(time_stepping), forces_(band, material), integrator_(integrator(band, forces_, time_stepping)),
-    fracture_(std::move(fracture)), powers_(of_constraint(0), std::vector<double>(lattice_.rows(), 0.)),
-    work_(powers_)
+    fracture_(std::move(fracture)), powers_(of_constraint(0), std::vector<double>(lattice_.rows(), 0.)), work_(powers_)
 {
   if (material_.has_memory() && state_.history.empty())
     relax_memory(state_, band_, material_);

@@ -59,9 +59,8 @@ struct State
 template <class Visitor>
 void for_each_field(State &state, const TriangularLattice &lattice, const Visitor &visit)
 {
-  for (const auto &[name, field] :
-       {std::pair("x", &state.x), std::pair("y", &state.y), std::pair("vx", &state.vx), std::pair("vy", &state.vy),
-        std::pair("ax", &state.ax), std::pair("ay", &state.ay)})
+  for (const auto &[name, field] : {std::pair("x", &state.x), std::pair("y", &state.y), std::pair("vx", &state.vx),
+                                    std::pair("vy", &state.vy), std::pair("ax", &state.ax), std::pair("ay", &state.ay)})
     visit(std::string(name), *field);
   for (std::size_t word = 0; word < state.bonds.storage().size(); ++word)
     visit(word == 0                 ? "bonds"

@@ -35,8 +35,8 @@ struct TimeStepLimits
 /// of nearest neighbours the true limit is larger by a factor of 2 for the dashpots (attained by the shortest waves),
 /// of sqrt2 for the springs.
 /// In a sheet whose sites may touch (theory.md, eq. (L.14)) the bound is for a site with all its bonds, as they are in
-/// the undeformed lattice, and six contacts around it too. It differs only for contacts that are stiffer or more viscous
-/// than the bonds that they replace.
+/// the undeformed lattice, and six contacts around it too. It differs only for contacts that are stiffer or more
+/// viscous than the bonds that they replace.
 /// @param smallest_stretch lam_min [-] in (0, 1] @param contact none: sites do not touch
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
                                 const std::optional<ContactLaw> &contact = std::nullopt);

@@ -120,8 +120,9 @@ void TriangularLattice::find_images()
 {
   if (!periodic_along_ && !periodic_across_)
     return;
-  const auto turns = [](std::ptrdiff_t number, std::size_t n)
-  { return number < 0 ? -1 : number < static_cast<std::ptrdiff_t>(n) ? 0 : 1; };
+  const auto turns = [](std::ptrdiff_t number, std::size_t n) {
+    return number < 0 ? -1 : number < static_cast<std::ptrdiff_t>(n) ? 0 : 1;
+  };
   const auto rows = static_cast<std::ptrdiff_t>(rows_), columns = static_cast<std::ptrdiff_t>(columns_);
   const auto rows_beyond = static_cast<std::ptrdiff_t>(reach_), beyond = static_cast<std::ptrdiff_t>(column_reach_);
   const auto place = [&](std::ptrdiff_t row, std::ptrdiff_t column)
@@ -135,9 +136,9 @@ void TriangularLattice::find_images()
       else if ((across == 0 || periodic_across_) && (along == 0 || periodic_along_))
         // Not the missing end of an odd row.
         if (const std::size_t site = place(row - across * rows, column - along * columns); is_site(site))
-          images_.push_back({place(row, column), site,
-                             grid_.from_row_frame(along * static_cast<double>(columns_),
-                                                  across * static_cast<double>(rows_))});
+          images_.push_back(
+            {place(row, column), site,
+             grid_.from_row_frame(along * static_cast<double>(columns_), across * static_cast<double>(rows_))});
     }
 }
 

@@ -89,8 +89,8 @@ int execv(const char *path, char *const argv[])
   return execve(path, argv, environ);
 }
 
-// Ranks that wait for others (OMPI_MCA_mpi_yield_when_idle) sleep: tests share the cores, and one that yields gets its core back
-// only when the others' slices have ended, at each of its messages.
+// Ranks that wait for others (OMPI_MCA_mpi_yield_when_idle) sleep: tests share the cores, and one that yields gets its
+// core back only when the others' slices have ended, at each of its messages.
 int sched_yield() noexcept
 {
   const timespec duration{0, 20000}; // 20 us

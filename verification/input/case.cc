@@ -247,9 +247,8 @@ lattice::ContactLaw Case::contact_law() const
 
 double Case::chebyshev_step(const bool breaks) const
 {
-  return safety_factor *
-         lattice::chebyshev_step(sheet(), material(), smallest_chebyshev_stretch,
-                                 breaks && has_contact ? std::optional(contact_law()) : std::nullopt);
+  return safety_factor * lattice::chebyshev_step(sheet(), material(), smallest_chebyshev_stretch,
+                                                 breaks && has_contact ? std::optional(contact_law()) : std::nullopt);
 }
 
 lattice::TimeStepping Case::time_stepping(const bool breaks) const

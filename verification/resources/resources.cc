@@ -182,8 +182,8 @@ double parts_of_first_step(const input::Case &input, const lattice::TimeStepping
     if (shell == nullptr || std::holds_alternative<lattice::LinearBond>(shell->law) ||
         stretch >= lattice::short_stretch)
       continue;
-    const double longest = lattice::recoil_step(
-      stepping, sheet, material, kind, std::max(stretch, lattice::Simulation::shortest), contact);
+    const double longest =
+      lattice::recoil_step(stepping, sheet, material, kind, std::max(stretch, lattice::Simulation::shortest), contact);
     parts = std::max(parts, std::exp2(std::ceil(std::log2(stepping.step / longest))));
   }
   return std::min(parts, static_cast<double>(lattice::Simulation::most_parts));
