@@ -38,9 +38,15 @@ public:
   {
     if (id >= where_.size())
       where_.resize(id + 1, points_.end());
+    const bool is_inside = inside(x, y);
+    const Cell cell = is_inside ? Cell(number(x), number(y)) : Cell();
     if (where_[id] != points_.end())
+    {
+      if (is_inside && where_[id]->first == cell) // as for most that have moved
+        return;
       points_.erase(where_[id]);
-    where_[id] = inside(x, y) ? points_.emplace(Cell(number(x), number(y)), id) : points_.end();
+    }
+    where_[id] = is_inside ? points_.emplace(cell, id) : points_.end();
   }
 
   /// Calls visit(id) once for every point that is at `reach` or less from (x, y), and for some that are farther: all in
