@@ -57,7 +57,7 @@ public:
   /// Energy stored in the springs of the pairs whose first site is in the band, per sheet thickness [J/m].
   double elastic_energy(const State &state) const;
 
-  const ContactLaw &law() const { return law_; }
+  const ContactLaw &law() const { return law_; } ///< as given
   std::size_t n_candidates() const { return places_.size(); }
   /// Pairs that overlapped at the last evaluation, those whose first site is in the band.
   std::size_t n_touching() const { return n_touching_; }
