@@ -115,11 +115,13 @@ void Integrator::evaluate_site_forces(State &state)
     forces->evaluate(state, *fields[2], *fields[3]);
 }
 
-void Integrator::accelerate_sites(State &state) const
+void Integrator::accelerate_sites(State &state)
 {
+  of_bonds_.clear();
   for_each_acceleration(state, site_forces_,
                         [&](std::size_t place, const Eigen::Vector2d &acceleration)
                         {
+                          of_bonds_.push_back({place, state.ax[place], state.ay[place]});
                           state.ax[place] += acceleration.x();
                           state.ay[place] += acceleration.y();
                         });
@@ -139,27 +141,21 @@ void Integrator::kick_sites(State &state, double duration) const
     (roller.component == 0 ? state.vx : state.vy)[roller.place] = roller.velocity;
 }
 
-void Integrator::update_accelerations(State &state, const std::vector<std::size_t> &places) const
+void Integrator::update_accelerations(State &state, const std::vector<std::size_t> &places)
 {
-  const auto of_bonds = [&](std::size_t place)
+  // Where several forces act on a site, the first of these is what bonds alone give.
+  for (auto site = of_bonds_.rbegin(); site != of_bonds_.rend(); ++site)
   {
-    const Eigen::Vector2d force = forces_.on_site(state, evaluated_vx(state), evaluated_vy(state), place);
-    state.ax[place] = force.x() * state.inverse_mass[place];
-    state.ay[place] = force.y() * state.inverse_mass[place];
-  };
-  std::vector<std::size_t> changed; // each site once, however many bonds it lost and forces act on it
+    state.ax[site->place] = site->ax;
+    state.ay[site->place] = site->ay;
+  }
   for (const std::size_t place : places)
     if (band_.owns(place))
-      changed.push_back(place);
-  for (const SiteForces *forces : site_forces_)
-    for (const SiteForce &force : forces->last())
-      changed.push_back(force.place);
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-  const auto n = static_cast<std::ptrdiff_t>(changed.size());
-#pragma omp parallel for schedule(static) if (changed.size() >= min_sites_for_threads)
-  for (std::ptrdiff_t i = 0; i < n; ++i)
-    of_bonds(changed[static_cast<std::size_t>(i)]);
+    {
+      const Eigen::Vector2d force = forces_.on_site(state, evaluated_vx(state), evaluated_vy(state), place);
+      state.ax[place] = force.x() * state.inverse_mass[place];
+      state.ay[place] = force.y() * state.inverse_mass[place];
+    }
   accelerate_sites(state);
 }
 

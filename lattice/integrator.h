@@ -55,9 +55,9 @@ public:
   /// Evaluates the added forces anew, at the last positions and velocities. Collective.
   void evaluate_site_forces(State &state);
 
-  /// Accelerations at the end of the last step anew for those sites at `places` that are in the band, each of which
-  /// lost bonds then, and for those that site forces act on by now, which may have become more.
-  void update_accelerations(State &state, const std::vector<std::size_t> &places) const;
+  /// Accelerations at the end of the last step anew: for those sites at `places` that are in the band, which lost bonds
+  /// then, and with the site forces as last evaluated.
+  void update_accelerations(State &state, const std::vector<std::size_t> &places);
 
 protected:
   /// Brings what forces are evaluated at up to date in the halo and at images. Collective.
@@ -72,7 +72,7 @@ protected:
   /// @param history of the state, to be updated; nullptr: none
   void accelerate(State &state, BondHistory *history = nullptr);
   /// Adds the accelerations by site forces to those of a state; along a roller's fixed component there is none.
-  void accelerate_sites(State &state) const;
+  void accelerate_sites(State &state);
   /// Adds to the velocities what site forces change of them in `duration` [s].
   void kick_sites(State &state, double duration) const;
 
@@ -90,6 +90,12 @@ private:
   double time_step_;
   std::vector<SiteForces *> site_forces_;
   std::vector<RollerVelocity> rollers_;
+  struct Acceleration
+  {
+    std::size_t place;
+    double ax, ay; // [m/s^2]
+  };
+  std::vector<Acceleration> of_bonds_; // before each of the site forces was added
 };
 
 } // namespace latcon::lattice

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
+#include <limits>
 #include <stdexcept>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -22,31 +24,32 @@ public:
     if (!(reach > 0.))
       throw std::invalid_argument("link cells need a positive reach");
   }
-  LinkCells(const LinkCells &) = delete; // remembers where its points are
-  LinkCells &operator=(const LinkCells &) = delete;
 
   /// Removes all points.
   void clear()
   {
     points_.clear();
-    where_.clear();
+    cell_of_.clear();
   }
 
   /// Puts the point `id` at (x, y) [m], wherever it was before. A point whose position is not finite is near nothing.
   /// @param id small number, to which memory grows
   void put(std::size_t id, double x, double y)
   {
-    if (id >= where_.size())
-      where_.resize(id + 1, points_.end());
-    const bool is_inside = inside(x, y);
-    const Cell cell = is_inside ? Cell(number(x), number(y)) : Cell();
-    if (where_[id] != points_.end())
+    if (id >= cell_of_.size())
+      cell_of_.resize(id + 1, nowhere);
+    const Cell from = std::exchange(cell_of_[id], cell(x, y)), to = cell_of_[id];
+    if (from == to) // as for most that have moved
+      return;
+    if (from != nowhere)
     {
-      if (is_inside && where_[id]->first == cell) // as for most that have moved
-        return;
-      points_.erase(where_[id]);
+      const auto others = points_.find(from);
+      others->second.erase(std::find(others->second.begin(), others->second.end(), id));
+      if (others->second.empty())
+        points_.erase(others);
     }
-    where_[id] = is_inside ? points_.emplace(cell, id) : points_.end();
+    if (to != nowhere)
+      points_[to].push_back(id);
   }
 
   /// Calls visit(id) once for every point that is at `reach` or less from (x, y), and for some that are farther: all in
@@ -54,34 +57,37 @@ public:
   template <class Visitor>
   void for_each_near(double x, double y, Visitor &&visit) const
   {
-    if (!inside(x, y))
+    const Cell here = cell(x, y);
+    if (here == nowhere)
       return;
-    for (std::int64_t column = number(x) - 1; column <= number(x) + 1; ++column)
-      for (auto point = points_.lower_bound({column, number(y) - 1});
-           point != points_.end() && point->first <= Cell(column, number(y) + 1); ++point)
-        visit(point->second);
+    for (const Cell column : {here - next_column, here, here + next_column})
+      for (const Cell near : {column - 1, column, column + 1})
+        if (const auto points = points_.find(near); points != points_.end())
+          for (const std::size_t id : points->second)
+            visit(id);
   }
 
 private:
-  using Cell = std::pair<std::int64_t, std::int64_t>; // column, row
+  using Cell = std::int64_t; // column times next_column, plus row
+  static constexpr Cell next_column = Cell{1} << 32;
+  static constexpr Cell nowhere = std::numeric_limits<Cell>::max();
 
   /// Two points at exactly `reach` must be in cells that touch, whatever the rounding of their quotients.
   static constexpr double room = 1. + 1e-6;
   /// Beyond this many cells from the origin rounding would eat the room, and nothing of a sheet is there.
   static constexpr double farthest_cell = 1e9;
 
-  bool inside(double x, double y) const
+  Cell cell(double x, double y) const
   {
-    return std::abs(x * inverse_size_) < farthest_cell && std::abs(y * inverse_size_) < farthest_cell;
-  }
-  std::int64_t number(double coordinate) const
-  {
-    return static_cast<std::int64_t>(std::floor(coordinate * inverse_size_));
+    const double column = std::floor(x * inverse_size_), row = std::floor(y * inverse_size_);
+    if (!(std::abs(column) < farthest_cell && std::abs(row) < farthest_cell))
+      return nowhere;
+    return static_cast<Cell>(column) * next_column + static_cast<Cell>(row);
   }
 
   double inverse_size_;
-  std::multimap<Cell, std::size_t> points_;
-  std::vector<std::multimap<Cell, std::size_t>::iterator> where_; // of each id; the end: nowhere
+  std::unordered_map<Cell, std::vector<std::size_t>> points_; // of each cell that has one
+  std::vector<Cell> cell_of_;                                 // by id
 };
 
 } // namespace latcon::lattice
