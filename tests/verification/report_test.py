@@ -6,6 +6,7 @@ import math
 import os
 import re
 import shutil
+import time
 from unittest import mock
 
 import numpy as np
@@ -153,6 +154,11 @@ def test_names_the_damaged_file(runs):
         assert "Holds: all" not in page.text
         (runs / name).write_bytes(intact[name])
     drawn(runs, "--quiet")
+
+
+def test_a_drawing_that_fails_in_another_process_fails_here():
+    with pytest.raises(ZeroDivisionError), report.drawn_meanwhile([lambda: 1 / 0]):
+        time.sleep(1)  # so that the other process takes it
 
 
 def test_animation_has_all_frames_and_is_small(runs):

@@ -2,6 +2,7 @@
 import json
 import os
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 from markupsafe import Markup
@@ -20,35 +21,66 @@ from .sheet_data import LARGEST_SHEETS, sheet_data
 from .summary import comparisons, percent, ratio_text, tallies, tally_of, text_summary, unpublished
 
 
-def draw_pictures(run, motion, folder):
-    """Draws the pictures of a fracture run for which it has files: {name: (picture, still picture for print or None)}.
+def pictures_of(run, motion, folder):
+    """Pictures of a fracture run for which it has files: {name: (picture, still picture for print or None, function that draws)}.
 
     motion: frames of the run to animate, or None. folder: where the pictures are written.
     """
-    drawn = {}
+    found = {}
 
-    def place(name, still=None):
-        drawn[name] = (folder / name, still)
-        return folder / name
+    def add(name, draw, *data, still=(), **options):
+        found[name] = (folder / name, *(still or [None]), lambda: draw(*data, folder / name, *still, **options))
 
     if motion is not None:
         from .animation import draw_animation
-        still = folder / "animation.png"
-        draw_animation(motion, place("animation.gif", still), still)
+        add("animation.gif", draw_animation, motion, still=[folder / "animation.png"])
     frame = read_last_frame(run.folder)
     if frame is not None:
-        draw_sheet(frame, run.input_number("Fracture/breaking stretch"), place("sheet.png"))
+        add("sheet.png", draw_sheet, frame, run.input_number("Fracture/breaking stretch"))
         if {"velocity", "cauchy_stress", "damage"} <= set(frame.fields):
-            draw_fields(frame, place("sheet_fields.png"))
+            add("sheet_fields.png", draw_fields, frame)
     if has_rows(run.tip, 2):
-        draw_crack_path(run, place("crack_path.png"))
+        add("crack_path.png", draw_crack_path, run)
     if has_rows(run.energy, 2):
-        draw_energy(run.energy, place("energy.png"))
+        add("energy.png", draw_energy, run.energy)
     means = run.folder / "near_tip_folded.vti"
     if means.exists():
-        velocity_picture(means, place("near_tip_velocity.png"), crack_speed=(run.crack or {}).get("speed_laboratory"))
-        opening_stress_picture(means, place("near_tip_stress.png"))
-    return drawn
+        add("near_tip_velocity.png", velocity_picture, means, crack_speed=(run.crack or {}).get("speed_laboratory"))
+        add("near_tip_stress.png", opening_stress_picture, means)
+    return found
+
+
+@contextmanager
+def drawn_meanwhile(draws):
+    """Calls functions that draw in processes of their own, one on each other core, while the body of `with` runs, then in this one
+    as well. If one of these processes fails, all are called here again, for the error."""
+    queue, numbers = os.pipe()  # one byte for each function, which one process takes
+    os.write(numbers, bytes(range(len(draws))))
+    os.close(numbers)
+
+    def draw_next():
+        while number := os.read(queue, 1):
+            draws[number[0]]()
+
+    processes = []
+    for _ in range(min(len(os.sched_getaffinity(0)) - 1, len(draws))):
+        processes.append(os.fork())
+        if processes[-1] == 0:
+            code = 1
+            try:
+                draw_next()
+                code = 0
+            finally:
+                os._exit(code)
+    try:
+        yield
+        draw_next()
+    finally:
+        os.close(queue)
+        codes = [os.waitpid(process, 0)[1] for process in processes]
+    if any(codes):
+        for draw in draws:
+            draw()
 
 
 def report(folder, output_dir=None, quiet=False, animated=False):
@@ -58,19 +90,22 @@ def report(folder, output_dir=None, quiet=False, animated=False):
     @return exit code: 0; 3 if a claim fails; 2 if a run cannot be read, which is listed with its error, while the others are shown
     """
     output = Path(output_dir or folder)
-    found, unreadable = find_runs(folder)
+    readable, unreadable = find_runs(folder)
     # By folder of the run: {name in CAPTIONS: (picture, still or None)}, {plot: (PNG, error metrics)}, data of the viewer or None.
     runs, pictures, plots, sheets = [], {}, {}, {}
-    most = LARGEST_SHEETS // max(1, sum(run.is_fracture for run in found))
-    for run in found:
+    most = LARGEST_SHEETS // max(1, sum(run.is_fracture for run in readable))
+    for run in readable:
         try:  # frames and fields are read here
-            motion = read_motion(run) if run.is_fracture else None
             place = output / run.folder.relative_to(folder)
             place.mkdir(parents=True, exist_ok=True)
-            pictures[run.folder] = draw_pictures(run, motion if animated else None, place) if run.is_fracture else {}
-            sheets[run.folder] = None if motion is None else sheet_data(run, motion, most)
-            pngs = {plot: place / f"{plot.name}.png" for plot in all_plots() if plot.name in run.tables}
-            plots[run.folder] = {plot.name: (png, plot.write(run.tables, png)) for plot, png in pngs.items()}
+            animation = read_motion(run) if run.is_fracture and animated else None
+            found = pictures_of(run, animation, place) if run.is_fracture else {}
+            pictures[run.folder] = {name: files for name, (*files, _) in found.items()}
+            with drawn_meanwhile([draw for *_, draw in found.values()]):
+                motion = animation or (read_motion(run) if run.is_fracture else None)
+                sheets[run.folder] = None if motion is None else sheet_data(run, motion, most)
+                pngs = {plot: place / f"{plot.name}.png" for plot in all_plots() if plot.name in run.tables}
+                plots[run.folder] = {plot.name: (png, plot.write(run.tables, png)) for plot, png in pngs.items()}
             runs.append(run)
         except UnreadableFile as error:
             unreadable.append(Unreadable(run.name, str(error)))
