@@ -55,16 +55,18 @@ void add_field(vtkFieldData &data, const char *name, const char *unit, std::size
   field->SetNumberOfComponents(is_tensor ? 9 : is_vector ? 3 : 1);
   field->SetNumberOfTuples(static_cast<vtkIdType>(n));
   set_unit(*field, unit);
+  auto to = field->GetPointer(0);
+  const auto append = [&to](auto... components)
+  { ((*to++ = static_cast<typename Array::ValueType>(components)), ...); };
   for (std::size_t i = 0; i < n; ++i)
   {
     const T v = value(i);
-    const auto id = static_cast<vtkIdType>(i);
     if constexpr (is_tensor)
-      field->SetTuple9(id, v(0, 0), v(0, 1), 0., v(1, 0), v(1, 1), 0., 0., 0., 0.);
+      append(v(0, 0), v(0, 1), 0., v(1, 0), v(1, 1), 0., 0., 0., 0.);
     else if constexpr (is_vector)
-      field->SetTuple3(id, v.x(), v.y(), 0.);
+      append(v.x(), v.y(), 0.);
     else
-      field->SetValue(id, static_cast<typename Array::ValueType>(v));
+      append(v);
   }
   data.AddArray(field);
 }
@@ -103,6 +105,7 @@ void add_fields(vtkPolyData &frame, const lattice::State &state, const lattice::
   lattice::StrainGradientFit gradient_fit(sheet);
   std::vector<lattice::StrainGradient> gradients;
   const Eigen::Matrix2d unknown = Eigen::Matrix2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  gradients.reserve(slots.size());
   for (const std::size_t slot : sheet.is_triangular() ? slots : Slots())
     gradients.push_back(gradient_fit.at(state, slot).value_or(lattice::StrainGradient{unknown, unknown}));
   vtkPointData &data = *frame.GetPointData();
