@@ -47,20 +47,4 @@ void archive_rows(Archive &archive, const std::string &name, Vector &field, cons
   }
 }
 
-/// Archives one value per row of the sheet; every rank has the values of its band.
-template <class Archive>
-void archive_rows(Archive &archive, const std::string &name, std::vector<double> &of_rows, const RowPartition &band)
-{
-  std::vector<double> values;
-  if constexpr (!Archive::loads)
-    values = band.all_gather(std::vector<double>(of_rows.begin() + static_cast<std::ptrdiff_t>(band.rows().begin),
-                                                 of_rows.begin() + static_cast<std::ptrdiff_t>(band.rows().end)));
-  archive(name, values);
-  if constexpr (Archive::loads)
-  {
-    require_archived(values.size() == of_rows.size(), "`" + name + "` is of a sheet of another size");
-    of_rows = values;
-  }
-}
-
 } // namespace latcon::lattice

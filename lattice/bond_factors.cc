@@ -6,21 +6,6 @@
 namespace latcon::lattice
 {
 
-bool BondFactors::empty() const
-{
-  for (const Field &factors : kinds)
-    if (!factors.empty())
-      return false;
-  return true;
-}
-
-void BondFactors::gather(const RowPartition &band, Rows rows)
-{
-  for (Field &factors : kinds)
-    if (!factors.empty())
-      band.gather(factors, rows);
-}
-
 BondFactors bond_factors(const RowPartition &band, const Material &material, BondProperty property)
 {
   const bool is_strength = property == BondProperty::strength;

@@ -14,18 +14,20 @@ struct Material;
 /// One factor per bond, by the place where it starts; nothing is stored if all are 1.
 struct BondFactors
 {
-  std::vector<Field> kinds; ///< empty: all 1, or no such bonds [-]
+  std::vector<Field> kinds; ///< by kind, empty where there are no such bonds; none: all factors are 1 [-]
 
+  bool empty() const { return kinds.empty(); } ///< whether all factors are 1
+  /// Factors of bonds of a kind from the one that starts at a place on; nullptr: all 1.
+  const double *from(std::size_t place, std::size_t kind) const
+  {
+    return kinds.empty() || kinds[kind].empty() ? nullptr : &kinds[kind][place];
+  }
   /// Factor of a bond [-].
   double of(std::size_t place, std::size_t kind) const
   {
-    return kinds.empty() || kinds[kind].empty() ? 1. : kinds[kind][place];
+    const double *const factor = from(place, kind);
+    return factor != nullptr ? *factor : 1.;
   }
-  /// Returns whether all factors are 1.
-  bool empty() const;
-
-  /// Gives the first rank the factors in `rows`. Collective.
-  void gather(const RowPartition &band, Rows rows);
 };
 
 /// Property of a bond that disorder multiplies; the stiffness also contains the weights of scattered points.

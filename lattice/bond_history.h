@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 #include "lattice/bonds/bond_memory.h"
@@ -28,20 +30,16 @@ struct BondHistory
   /// Returns whether no bond remembers anything.
   bool empty() const
   {
-    for (const Kind &kind : kinds)
-      if (!kind.variables.empty())
-        return false;
-    return true;
+    return std::all_of(kinds.begin(), kinds.end(), [](const Kind &kind) { return kind.variables.empty(); });
   }
 
-  /// Rows whose bonds a rank updates, by increasing number.
-  static std::vector<std::size_t> rows(const RowPartition &band);
-
-  /// Copies the variables of one bond to `to`, which has room for max_history_variables.
-  void variables_of(std::size_t place, std::size_t kind, double *to) const
+  /// Variables of one bond, 0 beyond.
+  std::array<double, max_history_variables> variables_of(std::size_t place, std::size_t kind) const
   {
-    for (const Field &variable : kinds[kind].variables)
-      *to++ = variable[place];
+    std::array<double, max_history_variables> variables{};
+    for (std::size_t v = 0; v < kinds[kind].variables.size(); ++v)
+      variables[v] = kinds[kind].variables[v][place];
+    return variables;
   }
 };
 

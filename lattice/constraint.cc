@@ -99,17 +99,36 @@ void PrescribedMotion::for_each_known(const State &state, const Visitor &visit) 
       visit(place);
 }
 
-bool PrescribedMotion::prescribe(State &state, double from, double to)
+bool PrescribedMotion::prescribe(State &state, const Material &material, double from, double to,
+                                 std::vector<double> &work)
 {
-  const AffineVelocity velocity =
-    constraint_.motion && released_ == 0 ? constraint_.motion(from, to) : AffineVelocity{};
-  if (released_ != 0 || velocity == velocity_)
+  if (released_ != 0)
+    return false;
+  const TriangularLattice &lattice = band_.lattice();
+  if (from >= constraint_.until)
+  {
+    released_ = 1;
+    free_if_released(state, material);
+    const double half_mass = 0.5 * site_mass(material, lattice);
+    for_each_known(state,
+                   [&](std::size_t place)
+                   {
+                     if (!band_.owns(place))
+                       return;
+                     const double vx = constraint_.along_x ? state.vx[place] : 0.;
+                     const double vy = constraint_.along_y ? state.vy[place] : 0.;
+                     work[lattice.row_of(place)] += half_mass * (vx * vx + vy * vy);
+                   });
+    return true;
+  }
+  const AffineVelocity velocity = constraint_.motion ? constraint_.motion(from, to) : AffineVelocity{};
+  if (velocity == velocity_)
     return false;
   velocity_ = velocity;
   for_each_known(state,
                  [&](std::size_t place)
                  {
-                   const Eigen::Vector2d v = velocity.at(band_.lattice().reference(place));
+                   const Eigen::Vector2d v = velocity.at(lattice.reference(place));
                    if (constraint_.along_x)
                      state.vx[place] = v.x();
                    if (constraint_.along_y)
@@ -159,8 +178,10 @@ void PrescribedMotion::add_power(const State &state, const Forces &forces, const
         of_rows[lattice.row_of(on.place)] -= power_of(on.place, on.force);
 }
 
-void PrescribedMotion::set_free(State &state, const Material &material) const
+void PrescribedMotion::free_if_released(State &state, const Material &material) const
 {
+  if (released_ == 0)
+    return;
   const double inverse_mass = 1. / site_mass(material, band_.lattice());
   for (const std::size_t place : constraint_.sites)
   {
@@ -171,28 +192,6 @@ void PrescribedMotion::set_free(State &state, const Material &material) const
     if (band_.is_relevant(place))
       state.inverse_mass[place] = inverse_mass;
   }
-}
-
-void PrescribedMotion::release(State &state, const Material &material, std::vector<double> &work)
-{
-  released_ = 1;
-  set_free(state, material);
-  const double half_mass = 0.5 * site_mass(material, band_.lattice());
-  for_each_known(state,
-                 [&](std::size_t place)
-                 {
-                   if (!band_.owns(place))
-                     return;
-                   const double vx = constraint_.along_x ? state.vx[place] : 0.;
-                   const double vy = constraint_.along_y ? state.vy[place] : 0.;
-                   work[band_.lattice().row_of(place)] += half_mass * (vx * vx + vy * vy);
-                 });
-}
-
-void PrescribedMotion::free_if_released(State &state, const Material &material) const
-{
-  if (released_ != 0)
-    set_free(state, material);
 }
 
 } // namespace latcon::lattice

@@ -63,15 +63,10 @@ public:
 
   void set_motion(Constraint::Motion motion) { constraint_.motion = std::move(motion); }
 
-  /// Returns whether the sites are to be let go at `time` [s].
-  bool ends(double time) const { return released_ == 0 && time >= constraint_.until; }
-  /// Lets the sites go with the velocity that they have. @param work their kinetic energy is added to that of each row
-  /// [J/m]
-  void release(State &state, const Material &material, std::vector<double> &work);
-
-  /// Gives the sites their velocity of a time interval [s]. @return whether it differs from the one before: the same on
-  /// all ranks
-  bool prescribe(State &state, double from, double to);
+  /// Gives the sites their velocity of a time interval [s], or lets them go with the velocity that they have.
+  /// @param work of each row [J/m], to which their kinetic energy is added then @return whether anything changed: the
+  /// same on all ranks
+  bool prescribe(State &state, const Material &material, double from, double to, std::vector<double> &work);
 
   /// Appends the single components of own sites that are prescribed while the other one is free.
   void append_rollers(const State &state, std::vector<RollerVelocity> &rollers) const;
@@ -96,13 +91,12 @@ public:
       velocity_.gradient << velocity[2], velocity[3], velocity[4], velocity[5];
     }
   }
-  /// After loading: frees the sites in a state that was set up with them constrained.
+  /// Frees the sites, if they were let go, in a state that was set up with them constrained.
   void free_if_released(State &state, const Material &material) const;
 
 private:
   template <class Visitor>
   void for_each_known(const State &state, const Visitor &visit) const;
-  void set_free(State &state, const Material &material) const;
 
   RowPartition band_;
   Constraint constraint_;

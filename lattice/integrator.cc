@@ -94,7 +94,7 @@ void Integrator::kick(State &state, std::size_t row, const double *fx, const dou
   kernels::loops().kick(duration, n, fy, inverse_mass, &state.ay[begin], &state.vy[begin]);
 }
 
-void Integrator::accelerate(State &state, BondHistory *history)
+void Integrator::accelerate(State &state)
 {
   // Threads may still read the velocities of rows next to theirs, so that only accelerations are written.
   const auto after = [&](std::size_t row, const double *fx, const double *fy)
@@ -103,7 +103,7 @@ void Integrator::accelerate(State &state, BondHistory *history)
     std::transform(fx, fx + n, &state.inverse_mass[begin], &state.ax[begin], std::multiplies());
     std::transform(fy, fy + n, &state.inverse_mass[begin], &state.ay[begin], std::multiplies());
   };
-  forces_.evaluate(state, evaluated_vx(state), evaluated_vy(state), {{}, nullptr, std::ref(after), history});
+  forces_.evaluate(state, evaluated_vx(state), evaluated_vy(state), {{}, {}, std::ref(after), &state.history});
   evaluate_site_forces(state);
   accelerate_sites(state);
 }

@@ -69,8 +69,8 @@ protected:
   /// Accelerations and velocities of a row after forces on its sites have acted for `duration` [s].
   void kick(State &state, std::size_t row, const double *fx, const double *fy, double duration) const;
   /// Forces of bonds and of all that was added, at the present positions and velocities, as accelerations.
-  /// @param history of the state, to be updated; nullptr: none
-  void accelerate(State &state, BondHistory *history = nullptr);
+  /// Updates the memory of bonds to these positions.
+  void accelerate(State &state);
   /// Adds the accelerations by site forces to those of a state; along a roller's fixed component there is none.
   void accelerate_sites(State &state) const;
   /// Adds to the velocities what site forces change of them in `duration` [s].

@@ -38,9 +38,8 @@ void RungeKuttaChebyshev::step(State &state)
                                  &previous_.y[i], &previous_.vy[i]);
   };
   Forces::RowCallbacks work = move_rows(state, first_stage);
-  touched_ = {&state.x,  &state.y,   &state.vx,  &state.vy,    &state.ax,    &state.ay,     &start_.x,
-              &start_.y, &start_.vx, &start_.vy, &previous_.x, &previous_.y, &previous_.vx, &previous_.vy};
-  work.fields = &touched_;
+  work.fields = {&state.x,  &state.y,   &state.vx,  &state.vy,    &state.ax,    &state.ay,     &start_.x,
+                 &start_.y, &start_.vx, &start_.vy, &previous_.x, &previous_.y, &previous_.vx, &previous_.vy};
   for (const ChebyshevStages::Stage &stage : stages_.stages())
   {
     const auto next = [&](std::size_t row, const double *fx, const double *fy)
@@ -65,7 +64,7 @@ void RungeKuttaChebyshev::step(State &state)
     exchange_ghosts(state);
   }
   forces_.set_elapsed(h);
-  accelerate(state, &state.history);
+  accelerate(state);
   state.time += h;
 }
 

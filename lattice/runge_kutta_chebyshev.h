@@ -30,10 +30,9 @@ private:
   };
 
   ChebyshevStages stages_;
-  double damping_limit_;               // beta over h of the stages and step at the start [1/s]
-  Motion start_;                       // of the step, in own rows
-  Motion previous_;                    // those of the stage before the one that the state holds
-  std::vector<const Field *> touched_; // by a stage
+  double damping_limit_; // beta over h of the stages and step at the start [1/s]
+  Motion start_;         // of the step, in own rows
+  Motion previous_;      // those of the stage before the one that the state holds
 };
 
 } // namespace latcon::lattice

@@ -6,8 +6,6 @@
 
 #include <Eigen/Geometry>
 
-#include "lattice/row_partition.h"
-
 namespace latcon::lattice
 {
 namespace
@@ -19,24 +17,10 @@ constexpr double relative_room = 1e-9;
 // Lists of more sites would take more memory than a check may.
 constexpr double most_sites = 1e7;
 
-// The rows, or the columns, that have sites between two distances from the first; one more at either end, since odd
-// rows are shifted.
-Rows numbers_between(double from, double to, double pitch, std::size_t n)
-{
-  const auto clamped = [n](double number) { return static_cast<std::size_t>(std::clamp(number, 0., double(n))); };
-  return {clamped(std::floor(from / pitch) - 1.), clamped(std::floor(to / pitch) + 2.)};
-}
-
 // All sites in the box, by increasing X, then Y.
 std::vector<std::size_t> sites_in(const Eigen::AlignedBox2d &box, const TriangularLattice &lattice)
 {
-  const bool along_x = lattice.orientation() == Orientation::rows_along_crack;
-  const Eigen::Vector2d first = lattice.reference(lattice.index(0, 0));
-  const Eigen::Vector2d from = box.min() - first, to = box.max() - first;
-  const double pitch = lattice.site_area() / lattice.spacing();
-  const auto [along, across] = along_x ? std::pair(0, 1) : std::pair(1, 0);
-  const Rows rows = numbers_between(from[across], to[across], pitch, lattice.rows());
-  const Rows columns = numbers_between(from[along], to[along], lattice.spacing(), lattice.columns());
+  const auto [rows, columns] = lattice.window(box.min(), box.max());
   if (double(rows.end - rows.begin) * double(columns.end - columns.begin) > most_sites)
     throw std::invalid_argument("it takes more than 1e7 sites");
 
@@ -55,18 +39,26 @@ std::vector<std::size_t> sites_in(const Eigen::AlignedBox2d &box, const Triangul
   return sites;
 }
 
-// Y of all lines along x on which sites stand.
+// Y of all lines along x on which sites stand, increasing.
 std::vector<double> lines_of_sites(const TriangularLattice &lattice)
 {
   std::vector<double> lines;
-  if (lattice.orientation() == Orientation::rows_along_crack)
-    for (std::size_t row = 0; row < lattice.rows(); ++row)
-      lines.push_back(lattice.reference(lattice.index(row, 0)).y());
-  else
-    for (const std::size_t row : {0, 1})
-      for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
-        lines.push_back(lattice.reference(lattice.index(row, column)).y());
+  const bool along = lattice.orientation() == Orientation::rows_along_crack;
+  for (std::size_t row = 0; row < (along ? lattice.rows() : 2); ++row)
+    for (std::size_t column = 0; column < (along ? 1 : lattice.sites_in_row(row)); ++column)
+      lines.push_back(lattice.reference(lattice.index(row, column)).y());
+  std::sort(lines.begin(), lines.end());
   return lines;
+}
+
+// Number of the nearest of increasing coordinates; of two that are equally near, the larger one.
+std::size_t nearest(const std::vector<double> &coordinates, double wanted, double room)
+{
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < coordinates.size(); ++i)
+    if (std::abs(coordinates[i] - wanted) <= std::abs(coordinates[best] - wanted) + room)
+      best = i;
+  return best;
 }
 
 std::vector<std::size_t> sites_of(const SeedSlit &slit, const TriangularLattice &lattice)
@@ -80,25 +72,14 @@ std::vector<std::size_t> sites_of(const SeedSlit &slit, const TriangularLattice 
 std::vector<std::size_t> sites_of(const SeedLine &line, const TriangularLattice &lattice)
 {
   const double room = relative_room * lattice.spacing();
-  // Of two equally near ones the larger is taken.
-  double nearest_y = 0., smallest = -1.;
-  for (const double y : lines_of_sites(lattice))
-  {
-    const double distance = std::abs(y - line.offset);
-    if (smallest < 0. || distance < smallest - room || (distance <= smallest + room && y > nearest_y + room))
-    {
-      smallest = distance;
-      nearest_y = y;
-    }
-  }
-  const Eigen::Vector2d lower(-lattice.spacing(), nearest_y - room),
-    upper(lattice.length() + lattice.spacing(), nearest_y + room);
+  const std::vector<double> lines = lines_of_sites(lattice);
+  const double y = lines[nearest(lines, line.offset, room)];
+  const Eigen::Vector2d lower(-lattice.spacing(), y - room), upper(lattice.length() + lattice.spacing(), y + room);
   const std::vector<std::size_t> candidates = sites_in({lower, upper}, lattice);
-  const auto distance = [&](std::size_t i) { return std::abs(lattice.reference(candidates[i]).x() - line.position); };
-  std::size_t first = 0;
-  for (std::size_t i = 1; i < candidates.size(); ++i)
-    if (distance(i) <= distance(first) + room)
-      first = i;
+  std::vector<double> positions;
+  for (const std::size_t place : candidates)
+    positions.push_back(lattice.reference(place).x());
+  const std::size_t first = nearest(positions, line.position, room);
   if (first + line.n > candidates.size())
     throw std::invalid_argument("it goes beyond the right end of the sheet");
   const auto begin = candidates.begin() + static_cast<std::ptrdiff_t>(first);

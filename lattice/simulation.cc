@@ -46,7 +46,7 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
     time_stepping_(time_stepping), forces_(band, material), integrator_(integrator(band, forces_, time_stepping)),
     fracture_(std::move(fracture)), powers_(of_constraint(0), std::vector<double>(lattice_.rows(), 0.)), work_(powers_)
 {
-  if (material_.has_memory() && state_.history.empty())
+  if (state_.history.empty())
     relax_memory(state_, band_, material_);
   require_history(state_, lattice_, material_);
   if (state_.stiffness.empty() != (material_.disorder.stiffness.is_none() && lattice_.scattered() == nullptr))
@@ -55,7 +55,6 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
     fracture_->configure(state_, forces_);
   forces_.set_shortness_threshold(
     watched_stretch(time_stepping, lattice_, material_, fracture_ ? fracture_->largest_limit() : unbreakable));
-  forces_.update_memory(state_);
   reinitialize_forces();
   initial_energy_ = stored_energy() + kinetic_energy(state_, band_);
 }
@@ -259,24 +258,13 @@ std::size_t Simulation::constrain(const Constraint &constraint)
   return constraints_.size() - 1;
 }
 
-void Simulation::set_motion(std::size_t constraint, Constraint::Motion motion)
-{
-  constraints_.at(constraint).set_motion(std::move(motion));
-}
-
 // Velocities of constrained sites for the next `duration` [s]. Forces are evaluated anew only where they change.
 void Simulation::prescribe_motion(double duration)
 {
   bool changed = false;
   for (std::size_t c = 0; c < constraints_.size(); ++c)
-  {
-    if (constraints_[c].ends(state_.time))
-    {
-      constraints_[c].release(state_, material_, work_[of_constraint(c)]);
+    if (constraints_[c].prescribe(state_, material_, state_.time, state_.time + duration, work_[of_constraint(c)]))
       changed = true;
-    }
-    changed = constraints_[c].prescribe(state_, state_.time, state_.time + duration) || changed;
-  }
   if (!changed)
     return;
   update_rollers();
@@ -362,11 +350,6 @@ void Simulation::restore(const Snapshot &earlier)
   archive(loading);
 }
 
-std::optional<std::size_t> Simulation::tip() const
-{
-  return fracture_ ? fracture_->tip() : std::nullopt;
-}
-
 Eigen::Vector2d Simulation::position(std::size_t place) const
 {
   Eigen::Vector2d x(state_.x[place], state_.y[place]);
@@ -378,8 +361,10 @@ Eigen::Vector2d Simulation::position(std::size_t place) const
 const State &Simulation::gather(Rows rows)
 {
   for_each_field(state_, lattice_, [&](const std::string &, auto &field) { band_.gather(field, rows); });
-  state_.stiffness.gather(band_, rows);
-  state_.strength.gather(band_, rows);
+  for (BondFactors *factors : {&state_.stiffness, &state_.strength})
+    for (Field &of_kind : factors->kinds)
+      if (!of_kind.empty())
+        band_.gather(of_kind, rows);
   if (band_.is_first())
     update_images(state_, lattice_);
   return state_;
@@ -406,12 +391,6 @@ void Simulation::check_loaded(const BondStates &before, double energy) const
     for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
       require_archived(state_.lost_bonds[lattice_.index(row, column)] <= material_.coordination(lattice_),
                        "`lost_bonds` are more than a site has");
-}
-
-double Simulation::stored_energy() const
-{
-  const double elastic = elastic_energy(state_, band_, material_);
-  return material_.has_memory() ? elastic + memory_energy(state_, band_, material_) : elastic;
 }
 
 EnergyBalance Simulation::energies() const

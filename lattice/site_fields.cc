@@ -14,8 +14,8 @@ double overstress(const MemoryStep &step, const BondHistory &history, std::size_
 {
   if (!history.remembers(kind))
     return 0.;
-  std::array<double, max_history_variables> variables{}, dissipation{};
-  history.variables_of(place, kind, variables.data());
+  auto variables = history.variables_of(place, kind);
+  std::array<double, max_history_variables> dissipation{};
   const double stretch = history.kinds[kind].stretch[place];
   return advance(step, stretch, stretch, variables.data(), dissipation.data());
 }

@@ -89,12 +89,4 @@ void archive_rows(Snapshot::Archive<loads> &archive, const std::string & /*name*
     archive.values(&field[lattice.index(row, 0) / lattice.stride() * lattice.stride()], lattice.stride());
 }
 
-/// Saves one value per row of the sheet, or loads them.
-template <bool loads>
-void archive_rows(Snapshot::Archive<loads> &archive, const std::string &name, std::vector<double> &of_rows,
-                  const RowPartition & /*band*/)
-{
-  archive(name, of_rows);
-}
-
 } // namespace latcon::lattice

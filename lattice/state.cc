@@ -144,7 +144,7 @@ void relax_memory(State &state, const RowPartition &band, const Material &materi
       state.history.kinds[kind].variables.emplace_back(lattice.n_places());
   }
   if (!state.history.empty())
-    for (const std::size_t row : BondHistory::rows(band))
+    for (const std::size_t row : band.rows_of_bonds())
       for_each_bond(state, lattice, {row, row + 1},
                     [&](const Bond &bond)
                     {

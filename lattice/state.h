@@ -101,13 +101,6 @@ std::vector<std::size_t> sites_at(const TriangularLattice &lattice, const Materi
 /// which stretch they break.
 State homogeneous_state(const RowPartition &band, const Material &material, const Eigen::Matrix2d &F, Edges edges);
 
-/// Stretch beyond which a bond that is present may break [-]; see BreakingRule::smallest_limit().
-inline double breaking_stretch_of(const State &state, const Bond &bond)
-{
-  return (state.bonds.toughened(bond.near, bond.kind) ? state.toughened_stretch : state.breaking_stretch) *
-         state.strength.of(bond.near, bond.kind);
-}
-
 /// Moves every site in the rows that `band` knows, where it is free, by a random displacement, uniform in [-amplitude,
 /// amplitude] along x and y. The displacement of a site depends on (seed, place) alone, so it is the same on every
 /// machine and in any order.

@@ -115,12 +115,7 @@ double Grid::cell_area() const
 
 std::vector<HalfBond> triangular_stencil(const Grid &grid)
 {
-  struct Offset
-  {
-    int columns, rows;
-  };
-  constexpr std::array<Offset, 3 * n_shells> offsets{
-    {{1, 0}, {0, 1}, {-1, 1}, {1, 1}, {-2, 1}, {-1, 2}, {2, 0}, {0, 2}, {-2, 2}}};
+  constexpr int offsets[3 * n_shells][2] = {{1, 0}, {0, 1}, {-1, 1}, {1, 1}, {-2, 1}, {-1, 2}, {2, 0}, {0, 2}, {-2, 2}};
   const std::array<double, n_shells> lengths{{1., 2. * half_sqrt3, 2.}};
   std::vector<HalfBond> stencil;
   for (const auto &[columns, rows] : offsets)

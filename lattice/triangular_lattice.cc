@@ -123,23 +123,22 @@ void TriangularLattice::find_images()
   const auto turns = [](std::ptrdiff_t number, std::size_t n) {
     return number < 0 ? -1 : number < static_cast<std::ptrdiff_t>(n) ? 0 : 1;
   };
-  const auto rows = static_cast<std::ptrdiff_t>(rows_), columns = static_cast<std::ptrdiff_t>(columns_);
-  const auto rows_beyond = static_cast<std::ptrdiff_t>(reach_), beyond = static_cast<std::ptrdiff_t>(column_reach_);
-  const auto place = [&](std::ptrdiff_t row, std::ptrdiff_t column)
-  { return index(static_cast<std::size_t>(row), static_cast<std::size_t>(column)); };
-  for (std::ptrdiff_t row = -rows_beyond; row < rows + rows_beyond; ++row)
-    for (std::ptrdiff_t column = -beyond; column < columns + beyond; ++column)
-    {
-      const int across = turns(row, rows_), along = turns(column, columns_);
-      if (across == 0 && along == 0)
-        column = columns - 1; // on to the right end of the row
-      else if ((across == 0 || periodic_across_) && (along == 0 || periodic_along_))
-        // Not the missing end of an odd row.
-        if (const std::size_t site = place(row - across * rows, column - along * columns); is_site(site))
-          images_.push_back(
-            {place(row, column), site,
-             grid_.from_row_frame(along * static_cast<double>(columns_), across * static_cast<double>(rows_))});
-    }
+  const auto beyond = static_cast<std::ptrdiff_t>(column_reach_);
+  for (std::size_t place = 0; place < n_places(); ++place)
+  {
+    const auto [row, column] = numbers(place);
+    const int across = turns(row, rows_), along = turns(column, columns_);
+    if ((across == 0 && along == 0) || (across != 0 && !periodic_across_) || (along != 0 && !periodic_along_) ||
+        column < -beyond || column >= static_cast<std::ptrdiff_t>(columns_) + beyond)
+      continue;
+    // Not the missing end of an odd row.
+    const std::size_t site = place - static_cast<std::size_t>(across) * rows_ * stride() -
+                             static_cast<std::size_t>(along) * columns_; // modulo 2^64
+    if (is_site(site))
+      images_.push_back(
+        {place, site,
+         grid_.from_row_frame(along * static_cast<double>(columns_), across * static_cast<double>(rows_))});
+  }
 }
 
 const TriangularLattice::Image *TriangularLattice::site_of_image(std::size_t place) const
@@ -175,13 +174,27 @@ double TriangularLattice::shortest_bond() const
   return shortest;
 }
 
+std::pair<Rows, Rows> TriangularLattice::window(const Eigen::Vector2d &lower, const Eigen::Vector2d &upper) const
+{
+  const auto [along, across] = orientation() == Orientation::rows_along_crack ? std::pair(0, 1) : std::pair(1, 0);
+  const Eigen::Vector2d first = grid_point(index(0, 0));
+  // One more at either end, since odd rows are shifted.
+  const auto between = [&](int axis, double pitch, std::size_t n)
+  {
+    const auto clamped = [n](double number) { return static_cast<std::size_t>(std::clamp(number, 0., double(n))); };
+    const double scatter = scatter_.amplitude * grid_.spacing;
+    return Rows{clamped(std::floor((lower[axis] - first[axis] - scatter) / pitch) - 1.),
+                clamped(std::floor((upper[axis] - first[axis] + scatter) / pitch) + 2.)};
+  };
+  return {between(across, site_area() / spacing(), rows_), between(along, spacing(), columns_)};
+}
+
 Eigen::Vector2d TriangularLattice::reference(std::size_t place) const
 {
   const Eigen::Vector2d X = grid_point(place);
   if (scatter_.amplitude == 0.)
     return X;
-  auto row = static_cast<std::ptrdiff_t>(place / stride()) - static_cast<std::ptrdiff_t>(reach_);
-  auto column = static_cast<std::ptrdiff_t>(place % stride()) - static_cast<std::ptrdiff_t>(first_column_);
+  auto [row, column] = numbers(place);
   const auto wrapped = [](std::ptrdiff_t number, std::size_t n)
   { return (number + 8 * static_cast<std::ptrdiff_t>(n)) % static_cast<std::ptrdiff_t>(n); };
   if (periodic_across_)
@@ -193,8 +206,7 @@ Eigen::Vector2d TriangularLattice::reference(std::size_t place) const
 
 Eigen::Vector2d TriangularLattice::grid_point(std::size_t place) const
 {
-  const auto row = static_cast<std::ptrdiff_t>(place / stride()) - static_cast<std::ptrdiff_t>(reach_);
-  const auto column = static_cast<std::ptrdiff_t>(place % stride()) - static_cast<std::ptrdiff_t>(first_column_);
+  const auto [row, column] = numbers(place);
   const double along = static_cast<double>(column) + (rows_shift() && row % 2 != 0 ? 0.5 : 0.);
   const double across = static_cast<double>(row);
   // Centring before scaling keeps mirror sites at exactly opposite y.

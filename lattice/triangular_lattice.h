@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -12,6 +14,12 @@
 
 namespace latcon::lattice
 {
+
+/// The rows, or columns, begin, begin + 1, ... end - 1.
+struct Rows
+{
+  std::size_t begin, end;
+};
 
 /// Directions along which the sheet repeats itself without end.
 struct Periodic
@@ -129,6 +137,9 @@ public:
   /// The site that stands at a place or has its image there: what fields over sites are summed at.
   std::size_t canonical_place(std::size_t place) const;
 
+  /// Rows and columns that contain all sites, and some others, with a reference position between two corners [m].
+  std::pair<Rows, Rows> window(const Eigen::Vector2d &lower, const Eigen::Vector2d &upper) const;
+
   /// Reference position (X, Y) [m] of a place; X from 0 to length(), Y centred on 0. Valid in the margin as well.
   Eigen::Vector2d reference(std::size_t place) const;
   /// The same before points are scattered.
@@ -193,6 +204,12 @@ private:
   bool rows_alternate() const { return rows_shift() && !periodic_along_; } // in length
   double pitch() const { return rows_shift() ? half_sqrt3 : 1.; }          // of rows, in spacings
   Eigen::Vector2d extent() const;
+  /// Numbers of the row and of the column of a place, in the margin those beyond the sheet.
+  std::array<std::ptrdiff_t, 2> numbers(std::size_t place) const
+  {
+    return {static_cast<std::ptrdiff_t>(place / stride()) - static_cast<std::ptrdiff_t>(reach_),
+            static_cast<std::ptrdiff_t>(place % stride()) - static_cast<std::ptrdiff_t>(first_column_)};
+  }
   const Image *site_of_image(std::size_t place) const;
   void find_images();
 

@@ -26,8 +26,7 @@ void VelocityVerlet::step(State &state)
   { kick(state, row, fx, fy, 0.5 * time_step()); };
   forces_.set_elapsed(time_step());
   Forces::RowCallbacks work = move_rows(state, drift);
-  touched_ = {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &predicted_vx_, &predicted_vy_};
-  work.fields = &touched_;
+  work.fields = {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &predicted_vx_, &predicted_vy_};
   work.post_force = std::ref(kick_row);
   work.history = &state.history;
   forces_.evaluate(state, predicted_vx_, predicted_vy_, work);

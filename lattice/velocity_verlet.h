@@ -20,9 +20,6 @@ public:
   VelocityVerlet(const RowPartition &band, Forces &forces, double time_step);
 
   void step(State &state) override;
-
-private:
-  std::vector<const Field *> touched_; // by a step
 };
 
 } // namespace latcon::lattice

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "lattice/bonds/custom_bond.h"
+#include "lattice/bonds/laws.h"
 
 namespace latcon::lattice
 {

@@ -235,7 +235,7 @@ lattice::Toughening Case::toughening_rule() const
   case Toughening::retraction:
     return lattice::RetractionToughening{toughening_fraction, toughening_factor};
   default:
-    return lattice::NoToughening{};
+    return lattice::GivenToughening{};
   }
 }
 

@@ -1,4 +1,4 @@
-#include "lattice/bonds/maxwell_memory.h"
+#include "lattice/bonds/memories.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -76,6 +76,34 @@ MaxwellMemory::Step MaxwellMemory::step(double duration) const
     step.fluency[i] = 1. / (modulus * time);
   }
   return step;
+}
+
+PlasticMemory::PlasticMemory(double modulus, double yield_stress, double hardening)
+  : step_{modulus, yield_stress, hardening, 1. / (modulus + hardening)}
+{
+  if (!(modulus > 0. && yield_stress > 0. && hardening >= 0. && std::isfinite(modulus + yield_stress + hardening)))
+    throw std::invalid_argument("a plastic memory needs a modulus > 0, a yield stress > 0 and a hardening >= 0, not " +
+                                std::to_string(modulus) + " Pa, " + std::to_string(yield_stress) + " Pa and " +
+                                std::to_string(hardening) + " Pa");
+}
+
+CustomMemory::CustomMemory(std::shared_ptr<const CustomMemoryLaw> law) : law_(std::move(law))
+{
+  if (!law_)
+    throw std::invalid_argument("a memory needs a law");
+  const std::size_t n = law_->n_variables();
+  if (n < 1 || n > max_history_variables)
+    throw std::invalid_argument("a memory has 1 to " + std::to_string(max_history_variables) + " variables, not " +
+                                std::to_string(n));
+  const double stiffness = law_->largest_stiffness();
+  if (!(stiffness >= 0. && std::isfinite(stiffness)))
+    throw std::invalid_argument("a memory needs a finite stiffness >= 0, not " + std::to_string(stiffness) + " Pa");
+  std::array<double, max_history_variables> at_rest{};
+  const double overstress = law_->advance(0., 1., 1., at_rest.data());
+  if (!(overstress == 0. && law_->stored_energy(1., at_rest.data()) == 0. &&
+        law_->dissipation(1., at_rest.data()) == 0.))
+    throw std::invalid_argument("a memory holds neither overstress nor energy while its variables are 0, and "
+                                "dissipates nothing");
 }
 
 } // namespace latcon::lattice

@@ -1,7 +1,7 @@
-#include "lattice/bonds/custom_bond.h"
+#include "lattice/bonds/laws.h"
 
 #include <cmath>
-#include <stdexcept>
+#include <string>
 
 namespace latcon::lattice
 {
