@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
+
+#include "lattice/require.h"
 
 namespace latcon::lattice
 {
@@ -16,8 +17,7 @@ constexpr double longest_searched = 1e6;
 
 CriticalStretch::CriticalStretch(double stretch, double factor, double time) : factor_(factor), time_(time)
 {
-  if (!(stretch > 0.))
-    throw std::invalid_argument("the breaking stretch must be positive");
+  require(stretch > 0., "the breaking stretch must be positive");
   stretch_.fill(stretch);
 }
 
@@ -39,8 +39,7 @@ double CriticalStretch::largest_limit(double toughening) const
 
 BondEnergy::BondEnergy(const Material &material, double energy) : material_(material), energy_(energy)
 {
-  if (!(energy > 0.))
-    throw std::invalid_argument("the critical energy of bonds must be positive");
+  require(energy > 0., "the critical energy of bonds must be positive");
 }
 
 double BondEnergy::stretch_at(std::size_t shell, double energy) const

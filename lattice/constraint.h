@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "lattice/archive_rows.h"
 #include "lattice/integrator.h"
+#include "lattice/require.h"
 
 namespace latcon::lattice
 {
@@ -86,7 +86,7 @@ public:
     archive("released", released_);
     if constexpr (Archive::loads)
     {
-      require_archived(velocity.size() == 6, "`velocity` of a constraint has six numbers");
+      require(velocity.size() == 6, "`velocity` of a constraint has six numbers");
       velocity_.translation << velocity[0], velocity[1];
       velocity_.gradient << velocity[2], velocity[3], velocity[4], velocity[5];
     }

@@ -7,20 +7,10 @@
 
 #include "lattice/energy.h"
 #include "lattice/integrator.h"
+#include "lattice/require.h"
 
 namespace latcon::lattice
 {
-namespace
-{
-
-void require(bool condition, const char *message)
-{
-  if (!condition)
-    throw std::invalid_argument(message);
-}
-
-} // namespace
-
 Fracture::Fracture(const RowPartition &band, const Material &material, std::shared_ptr<const BreakingRule> rule,
                    Toughening toughening, const Eigen::Matrix2d &deformation)
   : band_(band), lattice_(band.lattice()), material_(material), rule_(std::move(rule)), toughening_(toughening),

@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
-#include "lattice/archive_rows.h"
 #include "lattice/breaking_rule.h"
 #include "lattice/forces.h"
+#include "lattice/require.h"
 
 namespace latcon::lattice
 {
@@ -173,8 +173,8 @@ public:
       toughened_to_ = -std::numeric_limits<double>::infinity();
       const std::size_t place = tip_.place.value_or(lattice_.index(0, 0));
       const bool is_site = place < lattice_.n_places() && lattice_.is_site(place);
-      require_archived(is_site && (!tip_.place || tip_.X.x() == lattice_.reference(place).x()),
-                       "`tip` is no site of the sheet, or `tip_x` not where it is");
+      require(is_site && (!tip_.place || tip_.X.x() == lattice_.reference(place).x()),
+              "`tip` is no site of the sheet, or `tip_x` not where it is");
       tip_.X.y() = lattice_.reference(place).y();
     }
   }

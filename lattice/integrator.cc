@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <functional>
-#include <stdexcept>
 
+#include "lattice/require.h"
 #include "lattice/row_kernels.h"
 
 namespace latcon::lattice
@@ -26,8 +26,7 @@ Integrator::Integrator(const RowPartition &band, Forces &forces, double time_ste
   : band_(band), lattice_(band.lattice()), forces_(forces), sent_(band.halo_sites(true)),
     received_(band.halo_sites(false)), interior_(band.rows()), time_step_(time_step)
 {
-  if (!(time_step > 0.))
-    throw std::invalid_argument("time stepping needs a positive time step");
+  require(time_step > 0., "time stepping needs a positive time step");
   const std::size_t middle = (interior_.begin + interior_.end) / 2;
   for (const std::vector<std::size_t> &to_rank : sent_)
     for (const std::size_t place : to_rank)

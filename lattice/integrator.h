@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -91,5 +92,23 @@ private:
   std::vector<SiteForces *> site_forces_;
   std::vector<RollerVelocity> rollers_;
 };
+
+/// Velocity Verlet for forces that depend on velocity (theory.md, eq. (L.7)):
+///   v_half = v + (h/2) a,   x' = x + h v_half,   v_pred = v_half + (h/2) a,
+///   a' = f(x', v_pred) / m, v' = v_half + (h/2) a'.
+/// The dashpots see v_pred = v + h a, a second-order prediction of v', so the scheme stays explicit, takes one force
+/// evaluation a step and converges at second order with and without viscosity. Without it, it is plain velocity Verlet.
+/// @param time_step h [s], > 0; see TimeStepLimits
+std::unique_ptr<Integrator> velocity_verlet(const RowPartition &band, Forces &forces, double time_step);
+
+/// Runge-Kutta-Chebyshev method of second order for y = (x, v), y' = (v, a(x, v)) (theory.md, eqs. (L.17) to (L.20),
+/// (L.22)).
+///
+/// Each of the s stages of a step evaluates all forces at its own positions and velocities. The stable step grows with
+/// s^2, so that a given time takes fewer evaluations the longer the steps are. Shorter steps take fewer stages: no more
+/// than (L.22) requires.
+/// @param time_step h [s], > 0 @param stages s of steps of that length, >= 2
+std::unique_ptr<Integrator> runge_kutta_chebyshev(const RowPartition &band, Forces &forces, double time_step,
+                                                  unsigned int stages);
 
 } // namespace latcon::lattice

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "lattice/archive_rows.h"
 #include "lattice/constraint.h"
 #include "lattice/contact.h"
 #include "lattice/end_loads.h"
@@ -198,8 +197,7 @@ void Simulation::archive(Archive &archive)
       if constexpr (!Archive::loads && !is_snapshot)
         of_rows = band_.all_rows(of_rows);
       archive(name + name_of(account), of_rows);
-      require_archived(of_rows.size() == lattice_.rows(),
-                       "`" + (name + name_of(account)) + "` is of a sheet of another size");
+      require(of_rows.size() == lattice_.rows(), "`" + (name + name_of(account)) + "` is of a sheet of another size");
     }
   archive("parts", parts_);
   archive("n_divided_steps", n_divided_steps_);

@@ -12,8 +12,6 @@ namespace
 // Overstress of a bond as of the last update of its memory [Pa]. @param step over no time
 double overstress(const MemoryStep &step, const BondHistory &history, std::size_t place, std::size_t kind)
 {
-  if (!history.remembers(kind))
-    return 0.;
   auto variables = history.variables_of(place, kind);
   std::array<double, max_history_variables> dissipation{};
   const double stretch = history.kinds[kind].stretch[place];
@@ -25,12 +23,9 @@ double overstress(const MemoryStep &step, const BondHistory &history, std::size_
 SiteEvaluator::SiteEvaluator(const TriangularLattice &lattice, const Material &material)
   : lattice_(lattice), material_(material)
 {
-  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
-  {
-    const Shell *shell = material.shell(lattice, kind);
-    kinds_.push_back({lattice.rest_length(kind), shell != nullptr ? cross_section(*shell, lattice, kind) : 0.,
-                      memory_step(shell != nullptr ? shell->memory : NoMemory(), 0.)});
-  }
+  for (std::size_t number = 0; number < n_shells; ++number)
+    if (const Shell *shell = material_.in_shell(number))
+      at_rest_[number] = memory_step(shell->memory, 0.);
 }
 
 SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
@@ -42,19 +37,19 @@ SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
   for_each_bond_of_site(state, lattice_, place,
                         [&](const Bond &bond)
                         {
-                          const auto [near, number, far] = bond;
-                          const Kind &kind = kinds_[number];
-                          const Shell &shell = *material_.shell(lattice_, number);
+                          const auto [near, kind, far] = bond;
+                          const Shell &shell = *material_.shell(lattice_, kind);
                           const Eigen::Vector2d r(state.x[far] - state.x[near], state.y[far] - state.y[near]);
                           const Eigen::Vector2d rate(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
-                          const double length = r.norm(), ratio = lattice_.length_ratio(near, number);
+                          const double length = r.norm(), ratio = lattice_.length_ratio(near, kind);
                           const Eigen::Vector2d direction = r / length, R = lattice_.bond_vector(bond);
-                          const double rest_length = kind.rest_length / ratio, stretch = length / rest_length;
-                          const double section = state.stiffness.of(near, number) * ratio * kind.section;
+                          const double rest_length = lattice_.rest_length(kind) / ratio, stretch = length / rest_length;
+                          const double section =
+                            state.stiffness.of(near, kind) * ratio * cross_section(shell, lattice_, kind);
                           double axial =
                             section * (force(shell.law, stretch) + shell.viscosity * rate.dot(direction) / rest_length);
-                          if (state.history.remembers(number))
-                            axial += section * overstress(kind.at_rest, state.history, near, number);
+                          if (state.history.remembers(kind))
+                            axial += section * overstress(at_rest_[lattice_.shell(kind)], state.history, near, kind);
                           ++values.bonds;
                           values.strain_energy_density += 0.5 * section * rest_length * energy(shell.law, stretch);
                           values.first_piola_stress += 0.5 * axial * direction * R.transpose();

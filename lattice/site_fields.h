@@ -39,14 +39,9 @@ public:
   SiteValues at(const State &state, std::size_t place) const;
 
 private:
-  struct Kind
-  {
-    double rest_length, section;
-    MemoryStep at_rest; // update of the memory over no time
-  };
   const TriangularLattice &lattice_;
   Material material_;
-  std::vector<Kind> kinds_;
+  std::array<MemoryStep, n_shells> at_rest_; // updates of the memories over no time
 };
 
 /// SiteValues of all sites, by their places; in the margin those of no bonds.

@@ -32,7 +32,6 @@ struct Periodic
 /// third-nearest.
 inline constexpr std::size_t n_kinds_per_shell = 3;
 inline constexpr std::size_t n_bond_kinds = n_shells * n_kinds_per_shell; ///< of all shells
-inline constexpr std::size_t n_nearest_kinds = n_kinds_per_shell;         ///< of them nearest neighbours
 
 /// Shell of a kind of bonds of the triangular lattice.
 constexpr std::size_t shell_of(std::size_t kind)
@@ -91,7 +90,11 @@ public:
   double lattice_spacing() const { return d_; }    ///< d [m], of the lattice whose shells the rings are, or its own
   Orientation orientation() const { return grid_.orientation; }
   const Grid &grid() const { return grid_; }
-  Periodic periodic() const;
+  Periodic periodic() const
+  {
+    return orientation() == Orientation::rows_along_crack ? Periodic{periodic_along_, periodic_across_}
+                                                          : Periodic{periodic_across_, periodic_along_};
+  }
   double length() const { return extent().x(); } ///< distance of the outermost sites along x, or the period [m]
   double height() const { return extent().y(); } ///< the same along y [m]
   /// Reference area V of one site [m^2], (sqrt3 / 2) d^2 of the triangular lattice.
@@ -195,7 +198,6 @@ public:
   /// the energy of the shell. The spacing d on the triangular lattice; d |R| / (3 q l) for a weight q in a ring of
   /// radius l. Where points are scattered it is that of a bound, and bonds have factors; see State::stiffness.
   double section_length(std::size_t kind) const { return section_lengths_[kind]; }
-  static bool is_nearest(std::size_t kind) { return kind < n_nearest_kinds; }
   std::size_t reach() const { return reach_; }               ///< of bonds, in rows
   std::size_t column_reach() const { return column_reach_; } ///< of bonds, in places along a row
 
@@ -203,7 +205,11 @@ private:
   bool rows_shift() const { return grid_.kind == Grid::Kind::triangular; }
   bool rows_alternate() const { return rows_shift() && !periodic_along_; } // in length
   double pitch() const { return rows_shift() ? half_sqrt3 : 1.; }          // of rows, in spacings
-  Eigen::Vector2d extent() const;
+  Eigen::Vector2d extent() const
+  {
+    return grid_.from_row_frame(static_cast<double>(periodic_along_ ? columns_ : columns_ - 1),
+                                static_cast<double>(periodic_across_ ? rows_ : rows_ - 1));
+  }
   /// Numbers of the row and of the column of a place, in the margin those beyond the sheet.
   std::array<std::ptrdiff_t, 2> numbers(std::size_t place) const
   {

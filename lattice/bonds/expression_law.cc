@@ -192,13 +192,6 @@ void run(const Expression &function, const double *stretches, double *values)
   std::copy_n(of_nodes[function.result], n, values);
 }
 
-double at(const Expression &function, double stretch)
-{
-  double value;
-  run<1>(function, &stretch, &value);
-  return value;
-}
-
 } // namespace
 
 ExpressionLaw::ExpressionLaw(Expression psi, double longest) : psi_(std::move(psi))
@@ -208,25 +201,14 @@ ExpressionLaw::ExpressionLaw(Expression psi, double longest) : psi_(std::move(ps
   force_ = lowered(force);
   stiffness_ = lowered(derivative(force));
   at_rest_ = at(energy_, 1.);
-  check_law({[this](double l) { return energy(l); }, [this](double l) { return ExpressionLaw::force(l); },
-             [this](double l) { return stiffness(l); }},
-            smallest_checked_stretch, longest);
-  bound_stiffness(longest);
+  check(longest);
 }
 
-double ExpressionLaw::energy(double stretch) const noexcept
+double ExpressionLaw::at(const Expression &function, double stretch) noexcept
 {
-  return at(energy_, stretch) - at_rest_;
-}
-
-double ExpressionLaw::force(double stretch) const noexcept
-{
-  return at(force_, stretch);
-}
-
-double ExpressionLaw::stiffness(double stretch) const noexcept
-{
-  return at(stiffness_, stretch);
+  double value;
+  run<1>(function, &stretch, &value);
+  return value;
 }
 
 void ExpressionLaw::forces(std::size_t n, const double *stretches, double *forces) const noexcept

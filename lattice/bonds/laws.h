@@ -3,7 +3,8 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
-#include <stdexcept>
+
+#include "lattice/require.h"
 
 /// @file
 /// The laws that a bond may have (bond_law.h): its energy psi per reference volume and the derivatives psi', psi'' [Pa]
@@ -21,8 +22,8 @@ struct MooneyRivlinBond
   /// @throws std::invalid_argument unless a and b are non-negative, finite and not both 0
   MooneyRivlinBond(double a_, double b_) : a(a_), b(b_)
   {
-    if (!(a >= 0. && b >= 0. && a + b > 0. && a + b < std::numeric_limits<double>::infinity()))
-      throw std::invalid_argument("a Mooney-Rivlin bond needs constants a, b >= 0, one of them positive");
+    require(a >= 0. && b >= 0. && a + b > 0. && a + b < std::numeric_limits<double>::infinity(),
+            "a Mooney-Rivlin bond needs constants a, b >= 0, one of them positive");
   }
 
   double a; ///< [Pa], >= 0
@@ -55,8 +56,8 @@ struct LinearBond
   /// @throws std::invalid_argument unless e is positive and finite
   explicit LinearBond(double modulus_) : modulus(modulus_)
   {
-    if (!(modulus > 0. && modulus < std::numeric_limits<double>::infinity()))
-      throw std::invalid_argument("a linear bond needs a positive modulus");
+    require(modulus > 0. && modulus < std::numeric_limits<double>::infinity(),
+            "a linear bond needs a positive modulus");
   }
 
   double modulus; ///< e [Pa], > 0

@@ -1,8 +1,9 @@
 #include "lattice/bonds/memories.h"
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
+
+#include "lattice/require.h"
 
 namespace latcon::lattice
 {
@@ -40,15 +41,14 @@ Decay decay(double r)
 
 MaxwellMemory::MaxwellMemory(std::vector<Branch> branches) : branches_(std::move(branches))
 {
-  if (branches_.empty() || branches_.size() > max_history_variables)
-    throw std::invalid_argument("a Maxwell memory has 1 to " + std::to_string(max_history_variables) +
-                                " branches, not " + std::to_string(branches_.size()));
+  require(!branches_.empty() && branches_.size() <= max_history_variables,
+          "a Maxwell memory has 1 to " + std::to_string(max_history_variables) + " branches, not " +
+            std::to_string(branches_.size()));
   for (const Branch &branch : branches_)
     for (const double constant : {branch.modulus, branch.relaxation_time})
-      if (!(constant > 0. && std::isfinite(constant)))
-        throw std::invalid_argument("a Maxwell branch needs a modulus > 0 and a relaxation time > 0, not " +
-                                    std::to_string(branch.modulus) + " Pa and " +
-                                    std::to_string(branch.relaxation_time) + " s");
+      require(constant > 0. && std::isfinite(constant),
+              "a Maxwell branch needs a modulus > 0 and a relaxation time > 0, not " + std::to_string(branch.modulus) +
+                " Pa and " + std::to_string(branch.relaxation_time) + " s");
 }
 
 double MaxwellMemory::largest_stiffness() const
@@ -81,29 +81,26 @@ MaxwellMemory::Step MaxwellMemory::step(double duration) const
 PlasticMemory::PlasticMemory(double modulus, double yield_stress, double hardening)
   : step_{modulus, yield_stress, hardening, 1. / (modulus + hardening)}
 {
-  if (!(modulus > 0. && yield_stress > 0. && hardening >= 0. && std::isfinite(modulus + yield_stress + hardening)))
-    throw std::invalid_argument("a plastic memory needs a modulus > 0, a yield stress > 0 and a hardening >= 0, not " +
-                                std::to_string(modulus) + " Pa, " + std::to_string(yield_stress) + " Pa and " +
-                                std::to_string(hardening) + " Pa");
+  require(modulus > 0. && yield_stress > 0. && hardening >= 0. && std::isfinite(modulus + yield_stress + hardening),
+          "a plastic memory needs a modulus > 0, a yield stress > 0 and a hardening >= 0, not " +
+            std::to_string(modulus) + " Pa, " + std::to_string(yield_stress) + " Pa and " + std::to_string(hardening) +
+            " Pa");
 }
 
 CustomMemory::CustomMemory(std::shared_ptr<const CustomMemoryLaw> law) : law_(std::move(law))
 {
-  if (!law_)
-    throw std::invalid_argument("a memory needs a law");
+  require(law_ != nullptr, "a memory needs a law");
   const std::size_t n = law_->n_variables();
-  if (n < 1 || n > max_history_variables)
-    throw std::invalid_argument("a memory has 1 to " + std::to_string(max_history_variables) + " variables, not " +
-                                std::to_string(n));
+  require(n >= 1 && n <= max_history_variables,
+          "a memory has 1 to " + std::to_string(max_history_variables) + " variables, not " + std::to_string(n));
   const double stiffness = law_->largest_stiffness();
-  if (!(stiffness >= 0. && std::isfinite(stiffness)))
-    throw std::invalid_argument("a memory needs a finite stiffness >= 0, not " + std::to_string(stiffness) + " Pa");
+  require(stiffness >= 0. && std::isfinite(stiffness),
+          "a memory needs a finite stiffness >= 0, not " + std::to_string(stiffness) + " Pa");
   std::array<double, max_history_variables> at_rest{};
   const double overstress = law_->advance(0., 1., 1., at_rest.data());
-  if (!(overstress == 0. && law_->stored_energy(1., at_rest.data()) == 0. &&
-        law_->dissipation(1., at_rest.data()) == 0.))
-    throw std::invalid_argument("a memory holds neither overstress nor energy while its variables are 0, and "
-                                "dissipates nothing");
+  require(overstress == 0. && law_->stored_energy(1., at_rest.data()) == 0. &&
+            law_->dissipation(1., at_rest.data()) == 0.,
+          "a memory holds neither overstress nor energy while its variables are 0, and dissipates nothing");
 }
 
 } // namespace latcon::lattice

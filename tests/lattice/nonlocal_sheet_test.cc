@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lattice/seed.h"
+#include "lattice/cutout.h"
 #include "lattice/simulation.h"
 #include "lattice/strain_gradient.h"
 #include "tests/lattice/nonlocal_sheets.h"

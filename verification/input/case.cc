@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "lattice/contact.h"
-#include "lattice/seed.h"
+#include "lattice/cutout.h"
 #include "support/dense.h"
 #include "verification/input/files.h"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "lattice/cutout.h"
 #include "lattice/forces.h"
-#include "lattice/seed.h"
 #include "lattice/simulation.h"
 #include "lattice/site_fields.h"
 #include "support/largest_error.h"
