@@ -137,21 +137,6 @@ bool PrescribedMotion::prescribe(State &state, const Material &material, double 
   return true;
 }
 
-void PrescribedMotion::append_rollers(const State &state, std::vector<RollerVelocity> &rollers) const
-{
-  if (released_ != 0 || components(constraint_) == 3)
-    return;
-  for_each_known(state,
-                 [&](std::size_t place)
-                 {
-                   const Eigen::Vector2d v = velocity_.at(band_.lattice().reference(place));
-                   for (const unsigned int component : {0u, 1u})
-                     if (band_.owns(place) && state.held[place] == 0 &&
-                         (components(constraint_) >> component & 1u) != 0)
-                       rollers.push_back({place, component, v[component]});
-                 });
-}
-
 void PrescribedMotion::add_power(const State &state, const Forces &forces, const Field &vx, const Field &vy,
                                  const std::vector<const SiteForces *> &site_forces, std::vector<double> &of_rows) const
 {

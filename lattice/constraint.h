@@ -68,9 +68,6 @@ public:
   /// same on all ranks
   bool prescribe(State &state, const Material &material, double from, double to, std::vector<double> &work);
 
-  /// Appends the single components of own sites that are prescribed while the other one is free.
-  void append_rollers(const State &state, std::vector<RollerVelocity> &rollers) const;
-
   /// Adds the power of the constraint on the sheet, -f . v over the components prescribed, f being all forces on a site
   /// [W/m]. @param site_forces beside those of the bonds @param of_rows one per row
   void add_power(const State &state, const Forces &forces, const Field &vx, const Field &vy,

@@ -11,6 +11,7 @@
 
 namespace latcon::lattice
 {
+
 Fracture::Fracture(const RowPartition &band, const Material &material, std::shared_ptr<const BreakingRule> rule,
                    Toughening toughening, const Eigen::Matrix2d &deformation)
   : band_(band), lattice_(band.lattice()), material_(material), rule_(std::move(rule)), toughening_(toughening),

@@ -43,8 +43,19 @@ std::vector<Field *> Integrator::evaluated_fields(State &state)
   return {&state.x, &state.y, predicts ? &predicted_vx_ : &state.vx, predicts ? &predicted_vy_ : &state.vy};
 }
 
+void Integrator::find_rollers(const State &state)
+{
+  rollers_.clear();
+  for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
+    for (std::size_t place = lattice_.index(row, 0); place < lattice_.index(row, lattice_.sites_in_row(row)); ++place)
+      for (const unsigned int component : {0u, 1u})
+        if ((state.rollers[place] >> component & 1) != 0)
+          rollers_.push_back({place, component, (component == 0 ? state.vx : state.vy)[place]});
+}
+
 void Integrator::initialise(State &state)
 {
+  find_rollers(state);
   if (!predicted_vx_.empty())
     for_each_row(lattice_, band_.rows(),
                  [&](std::size_t row)

@@ -11,14 +11,6 @@
 namespace latcon::lattice
 {
 
-/// A component of the velocity of a site that is prescribed while the other one is free.
-struct RollerVelocity
-{
-  std::size_t place;
-  unsigned int component; ///< 0: x, 1: y
-  double velocity;        ///< [m/s]
-};
-
 /// Advances the rows of a band in time, step by step. The forces at the end of a step are those the next one starts
 /// with; in between bonds can be taken out of them.
 class Integrator
@@ -40,8 +32,9 @@ public:
   /// Adds forces to those of the bonds, at the same positions and velocities; they must outlive this object.
   void add(SiteForces &forces) { site_forces_.push_back(&forces); }
 
-  /// Sets the components of own sites that keep a velocity while the other one follows the forces.
-  void set_rollers(std::vector<RollerVelocity> rollers) { rollers_ = std::move(rollers); }
+  /// Finds the components of own sites that keep their velocity in `state` while the other one follows the forces; for
+  /// a state that was loaded, otherwise initialise() does.
+  void find_rollers(const State &state);
 
   /// Computes the accelerations a state starts with; needed once, and again after a change from outside. Collective.
   void initialise(State &state);
@@ -90,6 +83,12 @@ private:
   Rows interior_;                // no other rank needs these
   double time_step_;
   std::vector<SiteForces *> site_forces_;
+  struct RollerVelocity
+  {
+    std::size_t place;
+    unsigned int component; // 0: x, 1: y
+    double velocity;        // [m/s]
+  };
   std::vector<RollerVelocity> rollers_;
 };
 

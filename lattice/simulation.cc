@@ -54,7 +54,6 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
 
 void Simulation::reinitialize_forces()
 {
-  update_rollers();
   if (contact_)
     contact_->find_candidates(state_);
   integrator_->initialise(state_);
@@ -258,14 +257,6 @@ void Simulation::prescribe_motion(double duration)
       changed = true;
   if (changed)
     reinitialize_forces();
-}
-
-void Simulation::update_rollers()
-{
-  std::vector<RollerVelocity> rollers;
-  for (const PrescribedMotion &constraint : constraints_)
-    constraint.append_rollers(state_, rollers);
-  integrator_->set_rollers(std::move(rollers));
 }
 
 const std::vector<BrokenBond> &Simulation::step()

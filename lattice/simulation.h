@@ -142,7 +142,6 @@ private:
   }
   void reinitialize_forces();
   void prescribe_motion(double duration);
-  void update_rollers();
   void update_powers();
   void add_work(const Ledger &before, double duration);
   void advance(double duration, double end);
@@ -215,7 +214,7 @@ void Simulation::archive(Archive &archive)
     update_images(state_, band_);
     for (const PrescribedMotion &constraint : constraints_)
       constraint.free_if_released(state_, material_);
-    update_rollers();
+    integrator_->find_rollers(state_);
     // The candidate pairs of contacts follow from the state.
     if (contact_)
       contact_->find_candidates(state_);

@@ -6,7 +6,7 @@
 
 #include "lattice/cutout.h"
 #include "lattice/simulation.h"
-#include "lattice/strain_gradient.h"
+#include "lattice/site_fields.h"
 #include "tests/lattice/nonlocal_sheets.h"
 #include "tests/lattice/running_crack.h"
 

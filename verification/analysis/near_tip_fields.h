@@ -7,7 +7,6 @@
 
 #include "lattice/require.h"
 #include "lattice/site_fields.h"
-#include "lattice/strain_gradient.h"
 
 namespace latcon::analysis
 {
