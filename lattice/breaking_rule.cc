@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {

@@ -1,6 +1,6 @@
 #include "lattice/chebyshev_stages.h"
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {

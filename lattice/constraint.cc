@@ -4,7 +4,7 @@
 #include <functional>
 #include <iterator>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {

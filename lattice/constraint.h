@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
+#include "lattice/bonds/require.h"
 #include "lattice/integrator.h"
-#include "lattice/require.h"
 
 namespace latcon::lattice
 {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {

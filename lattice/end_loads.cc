@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 #include "support/dense.h"
 
 namespace latcon::lattice

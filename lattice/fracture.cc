@@ -5,9 +5,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "lattice/bonds/require.h"
 #include "lattice/energy.h"
 #include "lattice/integrator.h"
-#include "lattice/require.h"
 
 namespace latcon::lattice
 {

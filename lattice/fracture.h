@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
+#include "lattice/bonds/require.h"
 #include "lattice/breaking_rule.h"
 #include "lattice/forces.h"
-#include "lattice/require.h"
 
 namespace latcon::lattice
 {

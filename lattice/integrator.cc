@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 #include "lattice/row_kernels.h"
 
 namespace latcon::lattice

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 #include "lattice/row_partition.h"
 
 namespace latcon::lattice

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 #include "support/dense.h"
 
 namespace latcon::lattice

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {

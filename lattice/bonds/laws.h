@@ -4,7 +4,7 @@
 #include <limits>
 #include <memory>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 
 /// @file
 /// The laws that a bond may have (bond_law.h): its energy psi per reference volume and the derivatives psi', psi'' [Pa]

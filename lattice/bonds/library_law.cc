@@ -6,7 +6,7 @@
 
 #include <dlfcn.h>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {

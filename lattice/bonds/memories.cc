@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {

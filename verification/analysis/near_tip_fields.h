@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 #include "lattice/site_fields.h"
 
 namespace latcon::analysis

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 #include "support/errors.h"
 #include "verification/analysis/fragments.h"
 

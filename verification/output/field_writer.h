@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lattice/require.h"
+#include "lattice/bonds/require.h"
 #include "lattice/state.h"
 #include "verification/analysis/near_tip_fields.h"
 

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "lattice/bonds/require.h"
 #include "lattice/energy.h"
 #include "lattice/material.h"
-#include "lattice/require.h"
 #include "verification/analysis/crack_records.h"
 #include "verification/output/csv.h"
 #include "verification/output/energy_ledger.h"
