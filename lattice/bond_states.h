@@ -36,22 +36,15 @@ public:
   void add(std::size_t place, std::size_t kind)
   {
     remove(place, kind);
-    Word &word = words_[kind / kinds_per_word][place];
-    word = static_cast<Word>(word | bit(kind));
+    words_[kind / kinds_per_word][place] |= bit(kind);
   }
   void remove(std::size_t place, std::size_t kind)
   {
-    if (kind >= n_kinds())
-      return;
-    Word &word = words_[kind / kinds_per_word][place];
-    word = static_cast<Word>(word & ~(bit(kind) | toughened_bit(kind)));
+    if (kind < n_kinds())
+      words_[kind / kinds_per_word][place] &= static_cast<Word>(~(bit(kind) | toughened_bit(kind)));
   }
   /// Toughens a bond that is present.
-  void toughen(std::size_t place, std::size_t kind)
-  {
-    Word &word = words_[kind / kinds_per_word][place];
-    word = static_cast<Word>(word | toughened_bit(kind));
-  }
+  void toughen(std::size_t place, std::size_t kind) { words_[kind / kinds_per_word][place] |= toughened_bit(kind); }
 
   /// The words that hold a kind of bonds below n_kinds(), one a place.
   const Word *words(std::size_t kind) const { return words_[kind / kinds_per_word].data(); }

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <limits>
+
+#include "lattice/material.h"
 
 namespace latcon::lattice
 {
@@ -33,6 +36,47 @@ public:
 
   /// A stretch that, times the strength of a bond, no limit of a bond with this toughening exceeds [-].
   virtual double largest_limit(double /*toughening*/) const { return std::numeric_limits<double>::infinity(); }
+};
+
+/// A bond breaks beyond a stretch of its shell. It may grow with the rate r of the stretch from lam_f to `factor`
+/// lam_f: lam_f (1 + (factor - 1) r tau / (1 + r tau)), and lam_f where the bond contracts.
+class CriticalStretch : public BreakingRule
+{
+public:
+  /// @param stretch lam_f of each shell [-], > 0 @param factor [-], >= 1 @param time tau [s], > 0
+  explicit CriticalStretch(const std::array<double, n_shells> &stretch, double factor = 1., double time = 0.)
+    : stretch_(stretch), factor_(factor), time_(time)
+  {
+  }
+  /// One lam_f for all shells. @throws std::invalid_argument unless it is positive
+  explicit CriticalStretch(double stretch, double factor = 1., double time = 0.);
+
+  double limit(const Bond &bond) const override;
+  double smallest_limit(double toughening) const override;
+  double largest_limit(double toughening) const override;
+
+private:
+  std::array<double, n_shells> stretch_;
+  double factor_, time_;
+};
+
+/// A bond breaks once its spring stores more than a critical energy per reference volume, which toughening and strength
+/// multiply. For laws whose energy is a convex function of the stretch.
+class BondEnergy : public BreakingRule
+{
+public:
+  /// @param energy critical energy [J/m^3], > 0
+  BondEnergy(const Material &material, double energy);
+
+  double limit(const Bond &bond) const override;
+  double smallest_limit(double toughening) const override;
+
+private:
+  /// Stretch > 1 at which the law of a shell stores an energy [J/m^3].
+  double stretch_at(std::size_t shell, double energy) const;
+
+  Material material_;
+  double energy_;
 };
 
 } // namespace latcon::lattice

@@ -1,6 +1,6 @@
 #include "lattice/chebyshev_stages.h"
 
-#include <stdexcept>
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {
@@ -28,8 +28,7 @@ struct Chebyshev
 
 ChebyshevStages::ChebyshevStages(unsigned int stages)
 {
-  if (stages < 2)
-    throw std::invalid_argument("a Runge-Kutta-Chebyshev method of second order has two stages or more");
+  require(stages >= 2, "a Runge-Kutta-Chebyshev method of second order has two stages or more");
   const double w0 = 1. + damping / (static_cast<double>(stages) * stages);
   const Chebyshev at(stages, w0);
   const double w1 = at.first[stages] / at.second[stages];

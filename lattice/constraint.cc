@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
-#include <stdexcept>
+
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {
@@ -33,8 +34,8 @@ Constraint::Motion steady(const Eigen::Matrix2d &velocity_gradient)
 
 Constraint::Motion piecewise_linear(std::vector<double> times, std::vector<Eigen::Matrix2d> deformations)
 {
-  if (times.size() != deformations.size() || !std::is_sorted(times.begin(), times.end(), std::less_equal<>()))
-    throw std::invalid_argument("a piecewise linear motion needs increasing times, and a deformation for each");
+  require(times.size() == deformations.size() && std::is_sorted(times.begin(), times.end(), std::less_equal<>()),
+          "a piecewise linear motion needs increasing times, and a deformation for each");
   return [times = std::move(times), deformations = std::move(deformations)](double from, double to)
   {
     // The rate itself within one piece, so that it is the same number in every step; otherwise the mean.
@@ -58,8 +59,7 @@ void constrain(State &state, const RowPartition &band, const Constraint &constra
   const TriangularLattice &lattice = band.lattice();
   for (const std::size_t place : constraint.sites)
   {
-    if (!lattice.is_site(place))
-      throw std::invalid_argument("only a site can be constrained");
+    require(lattice.is_site(place), "only a site can be constrained");
     if (state.removed[place] != 0 || state.held[place] != 0)
       continue;
     const bool is_whole = components(constraint) == 3;
@@ -99,38 +99,42 @@ void PrescribedMotion::for_each_known(const State &state, const Visitor &visit) 
       visit(place);
 }
 
-bool PrescribedMotion::prescribe(State &state, double from, double to)
+bool PrescribedMotion::prescribe(State &state, const Material &material, double from, double to,
+                                 std::vector<double> &work)
 {
-  const AffineVelocity velocity =
-    constraint_.motion && released_ == 0 ? constraint_.motion(from, to) : AffineVelocity{};
-  if (released_ != 0 || velocity == velocity_)
+  if (released_ != 0)
+    return false;
+  const TriangularLattice &lattice = band_.lattice();
+  if (from >= constraint_.until)
+  {
+    released_ = 1;
+    free_if_released(state, material);
+    const double half_mass = 0.5 * site_mass(material, lattice);
+    for_each_known(state,
+                   [&](std::size_t place)
+                   {
+                     if (!band_.owns(place))
+                       return;
+                     const double vx = constraint_.along_x ? state.vx[place] : 0.;
+                     const double vy = constraint_.along_y ? state.vy[place] : 0.;
+                     work[lattice.row_of(place)] += half_mass * (vx * vx + vy * vy);
+                   });
+    return true;
+  }
+  const AffineVelocity velocity = constraint_.motion ? constraint_.motion(from, to) : AffineVelocity{};
+  if (velocity == velocity_)
     return false;
   velocity_ = velocity;
   for_each_known(state,
                  [&](std::size_t place)
                  {
-                   const Eigen::Vector2d v = velocity.at(band_.lattice().reference(place));
+                   const Eigen::Vector2d v = velocity.at(lattice.reference(place));
                    if (constraint_.along_x)
                      state.vx[place] = v.x();
                    if (constraint_.along_y)
                      state.vy[place] = v.y();
                  });
   return true;
-}
-
-void PrescribedMotion::append_rollers(const State &state, std::vector<RollerVelocity> &rollers) const
-{
-  if (released_ != 0 || components(constraint_) == 3)
-    return;
-  for_each_known(state,
-                 [&](std::size_t place)
-                 {
-                   const Eigen::Vector2d v = velocity_.at(band_.lattice().reference(place));
-                   for (const unsigned int component : {0u, 1u})
-                     if (band_.owns(place) && state.held[place] == 0 &&
-                         (components(constraint_) >> component & 1u) != 0)
-                       rollers.push_back({place, component, v[component]});
-                 });
 }
 
 void PrescribedMotion::add_power(const State &state, const Forces &forces, const Field &vx, const Field &vy,
@@ -159,8 +163,10 @@ void PrescribedMotion::add_power(const State &state, const Forces &forces, const
         of_rows[lattice.row_of(on.place)] -= power_of(on.place, on.force);
 }
 
-void PrescribedMotion::set_free(State &state, const Material &material) const
+void PrescribedMotion::free_if_released(State &state, const Material &material) const
 {
+  if (released_ == 0)
+    return;
   const double inverse_mass = 1. / site_mass(material, band_.lattice());
   for (const std::size_t place : constraint_.sites)
   {
@@ -171,28 +177,6 @@ void PrescribedMotion::set_free(State &state, const Material &material) const
     if (band_.is_relevant(place))
       state.inverse_mass[place] = inverse_mass;
   }
-}
-
-void PrescribedMotion::release(State &state, const Material &material, std::vector<double> &work)
-{
-  released_ = 1;
-  set_free(state, material);
-  const double half_mass = 0.5 * site_mass(material, band_.lattice());
-  for_each_known(state,
-                 [&](std::size_t place)
-                 {
-                   if (!band_.owns(place))
-                     return;
-                   const double vx = constraint_.along_x ? state.vx[place] : 0.;
-                   const double vy = constraint_.along_y ? state.vy[place] : 0.;
-                   work[band_.lattice().row_of(place)] += half_mass * (vx * vx + vy * vy);
-                 });
-}
-
-void PrescribedMotion::free_if_released(State &state, const Material &material) const
-{
-  if (released_ != 0)
-    set_free(state, material);
 }
 
 } // namespace latcon::lattice

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "lattice/archive_rows.h"
+#include "lattice/bonds/require.h"
 #include "lattice/integrator.h"
 
 namespace latcon::lattice
@@ -63,18 +63,10 @@ public:
 
   void set_motion(Constraint::Motion motion) { constraint_.motion = std::move(motion); }
 
-  /// Returns whether the sites are to be let go at `time` [s].
-  bool ends(double time) const { return released_ == 0 && time >= constraint_.until; }
-  /// Lets the sites go with the velocity that they have. @param work their kinetic energy is added to that of each row
-  /// [J/m]
-  void release(State &state, const Material &material, std::vector<double> &work);
-
-  /// Gives the sites their velocity of a time interval [s]. @return whether it differs from the one before: the same on
-  /// all ranks
-  bool prescribe(State &state, double from, double to);
-
-  /// Appends the single components of own sites that are prescribed while the other one is free.
-  void append_rollers(const State &state, std::vector<RollerVelocity> &rollers) const;
+  /// Gives the sites their velocity of a time interval [s], or lets them go with the velocity that they have.
+  /// @param work of each row [J/m], to which their kinetic energy is added then @return whether anything changed: the
+  /// same on all ranks
+  bool prescribe(State &state, const Material &material, double from, double to, std::vector<double> &work);
 
   /// Adds the power of the constraint on the sheet, -f . v over the components prescribed, f being all forces on a site
   /// [W/m]. @param site_forces beside those of the bonds @param of_rows one per row
@@ -91,18 +83,17 @@ public:
     archive("released", released_);
     if constexpr (Archive::loads)
     {
-      require_archived(velocity.size() == 6, "`velocity` of a constraint has six numbers");
+      require(velocity.size() == 6, "`velocity` of a constraint has six numbers");
       velocity_.translation << velocity[0], velocity[1];
       velocity_.gradient << velocity[2], velocity[3], velocity[4], velocity[5];
     }
   }
-  /// After loading: frees the sites in a state that was set up with them constrained.
+  /// Frees the sites, if they were let go, in a state that was set up with them constrained.
   void free_if_released(State &state, const Material &material) const;
 
 private:
   template <class Visitor>
   void for_each_known(const State &state, const Visitor &visit) const;
-  void set_free(State &state, const Material &material) const;
 
   RowPartition band_;
   Constraint constraint_;

@@ -1,9 +1,8 @@
 #include "lattice/disorder.h"
 
 #include <cmath>
-#include <stdexcept>
 
-#include "lattice/counter_hash.h"
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {
@@ -71,8 +70,7 @@ Distribution::Distribution(Kind kind, double width) : kind_(kind), width_(width)
     return;
   }
   const bool is_allowed = kind == Kind::weibull ? width <= widest(kind) : width < widest(kind);
-  if (!(width > 0.) || !is_allowed)
-    throw std::invalid_argument("the width of a distribution of bonds is out of its range");
+  require(width > 0. && is_allowed, "the width of a distribution of bonds is out of its range");
   switch (kind)
   {
   case Kind::uniform:

@@ -1,8 +1,8 @@
 #include "lattice/end_loads.h"
 
 #include <cmath>
-#include <stdexcept>
 
+#include "lattice/bonds/require.h"
 #include "support/dense.h"
 
 namespace latcon::lattice
@@ -106,10 +106,9 @@ EndLoads::EndLoads(const RowPartition &band, const Material &material, const Sta
     }
   if (left != End::absorbing && right != End::absorbing)
     return;
-  if (!lattice.is_triangular())
-    throw std::invalid_argument("only ends of the triangular lattice absorb waves");
-  if (!waves_run_along_x(lattice, material, F))
-    throw std::invalid_argument("no waves run along x in the loaded sheet, so that an end cannot absorb them");
+  require(lattice.is_triangular(), "only ends of the triangular lattice absorb waves");
+  require(waves_run_along_x(lattice, material, F),
+          "no waves run along x in the loaded sheet, so that an end cannot absorb them");
   const support::SymmetricModes modes =
     support::symmetric_modes(material.density * fast_tangent_along_x(lattice, material, F));
   const bool along = lattice.orientation() == Orientation::rows_along_crack;

@@ -2,69 +2,75 @@
 
 namespace latcon::lattice
 {
-
 namespace
 {
 
-// Sum of energy(bond) over all bonds. Each row is summed by one thread.
+// Sum of energy(row) over the rows of a band, each by one thread.
 template <class Energy>
-double sum_over_bonds(const State &state, const RowPartition &band, const Energy &energy)
+double sum_over_rows(const RowPartition &band, const Energy &energy)
 {
   std::vector<double> of_rows(band.lattice().rows(), 0.);
-  for_each_row(band.lattice(), band.rows(),
-               [&](std::size_t row)
-               {
-                 double sum = 0.;
-                 for_each_bond(state, band.lattice(), {row, row + 1}, [&](const Bond &bond) { sum += energy(bond); });
-                 of_rows[row] = sum;
-               });
+  for_each_row(band.lattice(), band.rows(), [&](std::size_t row) { of_rows[row] = energy(row); });
   return band.sum(of_rows);
 }
 
-} // namespace
-
-double elastic_energy(const State &state, const RowPartition &band, const Material &material)
+// Sum of energy(state, lattice, material, bond) over all bonds.
+template <class Energy>
+double sum_over_bonds(const State &state, const RowPartition &band, const Material &material, const Energy &energy)
 {
-  const TriangularLattice &lattice = band.lattice();
-  const auto of_bond = [&](const Bond &bond)
+  const auto of_row = [&](std::size_t row)
   {
-    const Shell &shell = *material.shell(lattice, bond.kind);
-    return state.stiffness.of(bond.near, bond.kind) *
-           (cross_section(shell, lattice, bond.kind) * lattice.rest_length(bond.kind) *
-            energy(shell.law, stretch(state, lattice, bond)));
+    double sum = 0.;
+    for_each_bond(state, band.lattice(), {row, row + 1},
+                  [&](const Bond &bond) { sum += energy(state, band.lattice(), material, bond); });
+    return sum;
   };
-  return sum_over_bonds(state, band, of_bond);
+  return sum_over_rows(band, of_row);
 }
-
-namespace
-{
 
 // Calls add(mechanism of the shell, energy [J/m]) for the memory of one bond.
 template <class Add>
 void for_each_mechanism(const State &state, const TriangularLattice &lattice, const Material &material,
                         const Bond &bond, const Add &add)
 {
-  const std::size_t place = bond.near, kind = bond.kind;
+  const auto [place, kind, far] = bond;
   if (!state.history.remembers(kind))
     return;
-  const BondHistory::Kind &history = state.history.kinds[kind];
   const Shell &shell = *material.shell(lattice, kind);
   const double volume =
     state.stiffness.of(place, kind) * (cross_section(shell, lattice, kind) * lattice.rest_length(kind));
-  std::array<double, max_history_variables> variables{};
-  state.history.variables_of(place, kind, variables.data());
+  const auto variables = state.history.variables_of(place, kind);
   for (std::size_t m = 0; m < n_mechanisms(shell.memory); ++m)
-    add(m, volume * stored_energy(shell.memory, m, history.stretch[place], variables.data()));
+    add(m, volume * stored_energy(shell.memory, m, state.history.kinds[kind].stretch[place], variables.data()));
 }
 
 } // namespace
+
+double elastic_energy(const State &state, const TriangularLattice &lattice, const Material &material, const Bond &bond)
+{
+  const Shell &shell = *material.shell(lattice, bond.kind);
+  return state.stiffness.of(bond.near, bond.kind) *
+         (cross_section(shell, lattice, bond.kind) * lattice.rest_length(bond.kind) *
+          energy(shell.law, stretch(state, lattice, bond)));
+}
+
+double elastic_energy(const State &state, const RowPartition &band, const Material &material)
+{
+  return sum_over_bonds(state, band, material, [](const auto &...bond) { return elastic_energy(bond...); });
+}
+
+double memory_energy(const State &state, const TriangularLattice &lattice, const Material &material, const Bond &bond)
+{
+  double sum = 0.;
+  for_each_mechanism(state, lattice, material, bond, [&](std::size_t, double energy) { sum += energy; });
+  return sum;
+}
 
 double memory_energy(const State &state, const RowPartition &band, const Material &material)
 {
   if (state.history.empty())
     return 0.;
-  return sum_over_bonds(state, band,
-                        [&](const Bond &bond) { return memory_energy(state, band.lattice(), material, bond); });
+  return sum_over_bonds(state, band, material, [](const auto &...bond) { return memory_energy(bond...); });
 }
 
 std::vector<double> memory_energies(const State &state, const RowPartition &band, const Material &material)
@@ -90,17 +96,9 @@ std::vector<double> memory_energies(const State &state, const RowPartition &band
   return energies;
 }
 
-double memory_energy(const State &state, const TriangularLattice &lattice, const Material &material, const Bond &bond)
-{
-  double sum = 0.;
-  for_each_mechanism(state, lattice, material, bond, [&](std::size_t, double energy) { sum += energy; });
-  return sum;
-}
-
 double kinetic_energy(const State &state, const RowPartition &band)
 {
   const TriangularLattice &lattice = band.lattice();
-  std::vector<double> of_rows(lattice.rows(), 0.);
   const auto of_row = [&](std::size_t row)
   {
     double sum = 0.;
@@ -113,10 +111,9 @@ double kinetic_energy(const State &state, const RowPartition &band)
       const double vy = (state.rollers[place] & 2) == 0 ? state.vy[place] : 0.;
       sum += 0.5 / state.inverse_mass[place] * (vx * vx + vy * vy);
     }
-    of_rows[row] = sum;
+    return sum;
   };
-  for_each_row(lattice, band.rows(), of_row);
-  return band.sum(of_rows);
+  return sum_over_rows(band, of_row);
 }
 
 } // namespace latcon::lattice

@@ -18,7 +18,10 @@ double memory_energy(const State &state, const RowPartition &band, const Materia
 /// thickness. Collective.
 std::vector<double> memory_energies(const State &state, const RowPartition &band, const Material &material);
 
-/// Energy in the memory of one bond.
+/// Elastic energy of one bond, that of its memory excluded [J/m].
+double elastic_energy(const State &state, const TriangularLattice &lattice, const Material &material, const Bond &bond);
+
+/// Energy in the memory of one bond [J/m].
 double memory_energy(const State &state, const TriangularLattice &lattice, const Material &material, const Bond &bond);
 
 /// Kinetic energy of all sites in the components that are free, per sheet thickness [J/m]. Collective.

@@ -12,9 +12,8 @@ namespace latcon::lattice
 Forces::Forces(const RowPartition &band, const Material &material)
   : band_(band), lattice_(band.lattice()), material_(material), n_kinds_(material.n_kinds(lattice_)),
     reach_(static_cast<std::ptrdiff_t>(lattice_.reach())),
-    columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_viscous_power_(lattice_.rows(), 0.),
-    row_mechanism_power_(material.n_mechanisms(), Field(lattice_.rows(), 0.)), row_events_(lattice_.rows(), 0),
-    row_short_bonds_(lattice_.rows(), 0)
+    columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_sums_(lattice_.rows()),
+    row_mechanism_power_(material.n_mechanisms(), Field(lattice_.rows(), 0.))
 {
   kernels::instruction_sets();
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
@@ -38,17 +37,6 @@ void Forces::set_elapsed(double duration)
   for (std::size_t number = 0; number < n_shells; ++number)
     if (const Shell *shell = material_.in_shell(number))
       memory_steps_[number] = memory_step(shell->memory, duration);
-}
-
-void Forces::update_memory(State &state)
-{
-  if (state.history.empty())
-    return;
-  Scratch scratch(lattice_, n_kinds_);
-  for (const std::size_t row : BondHistory::rows(band_))
-    bonds_of_row({state, state.vx, state.vy, &state.history}, row, static_cast<std::ptrdiff_t>(row),
-                 static_cast<std::ptrdiff_t>(row), scratch);
-  set_elapsed(0.);
 }
 
 // Adds the overstress of the bonds of a kind that start in row `from` to what their law gives.
@@ -132,16 +120,14 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
     if (work.pre_force && row + 2 * reach_ < end)
       work.pre_force(index + lattice_.reach());
     scratch.ahead.clear();
-    if (work.fields != nullptr && row + 2 * reach_ + 1 < end)
-      for (const Field *field : *work.fields)
+    if (row + 2 * reach_ + 1 < end)
+      for (const Field *field : work.fields)
         scratch.ahead.push_back(&(*field)[lattice_.index(index + lattice_.reach() + 1, 0)]);
     const Motion &of_row = row < end - reach_ ? updating : motion;
     const kernels::RowSums sums = bonds_of_row(of_row, index, row, begin, scratch);
-    row_viscous_power_[index] = sums.viscous_power;
+    row_sums_[index] = sums;
     for (std::size_t m = 0; m < row_mechanism_power_.size(); ++m)
       row_mechanism_power_[m][index] = scratch.mechanism_power[m];
-    row_events_[index] = sums.has_events ? 1 : 0;
-    row_short_bonds_[index] = sums.has_short_bonds ? 1 : 0;
     const std::array<double *, 2> on_sites = scratch.sums.at(row);
     // What bonds across a periodic edge do to images of sites is done to the sites.
     const auto columns = static_cast<std::ptrdiff_t>(lattice_.columns());
@@ -165,8 +151,6 @@ kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row,
 {
   const std::size_t near = lattice_.index(row, 0);
   const State &state = motion.state;
-  const auto from = [near](const BondFactors &factors, std::size_t kind)
-  { return factors.kinds.empty() || factors.kinds[kind].empty() ? nullptr : factors.kinds[kind].data() + near; };
   kinds.resize(n_kinds_);
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {
@@ -178,8 +162,8 @@ kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row,
     bonds.present = BondStates::bit(kind);
     bonds.toughened = BondStates::toughened_bit(kind);
     bonds.retraction_stretch = retraction_stretch_.empty() ? 0. : retraction_stretch_[kind];
-    bonds.stiffness = from(state.stiffness, kind);
-    bonds.strength = from(state.strength, kind);
+    bonds.stiffness = state.stiffness.from(near, kind);
+    bonds.strength = state.strength.from(near, kind);
     bonds.length_ratio = lattice_.scattered() != nullptr ? &lattice_.scattered()->length_ratios[kind][near] : nullptr;
   }
   return {lattice_.columns(),     &state.x[near],          &state.y[near],   &motion.vx[near], &motion.vy[near],
@@ -287,7 +271,7 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
     std::copy_n(fx, lattice_.columns(), &fx_[lattice_.index(row, 0)]);
     std::copy_n(fy, lattice_.columns(), &fy_[lattice_.index(row, 0)]);
   };
-  evaluate(state, vx, vy, {{}, nullptr, std::ref(keep)});
+  evaluate(state, vx, vy, {{}, {}, std::ref(keep)});
 }
 
 // Forces of a bond and on a site, by the operations of an evaluation of all, so that both have the same bits.
@@ -317,7 +301,7 @@ void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, c
     return;
   const std::size_t row = lattice_.row_of(bond.near), shell = lattice_.shell(bond.kind);
   const auto [force, dissipation] = single_bond({state, vx, vy}, bond);
-  row_viscous_power_[row] -= force.viscous_power;
+  row_sums_[row].viscous_power -= force.viscous_power;
   for (std::size_t m = 0; m < n_mechanisms(material_.in_shell(shell)->memory); ++m)
     row_mechanism_power_[material_.first_mechanism(shell) + m][row] -= dissipation[m];
 }
@@ -335,8 +319,7 @@ Forces::SingleBond Forces::single_bond(const Motion &motion, const Bond &bond) c
                     {}};
   if (!state.history.remembers(kind))
     return single;
-  std::array<double, max_history_variables> variables{};
-  state.history.variables_of(near, kind, variables.data());
+  auto variables = state.history.variables_of(near, kind);
   const MemoryStep &step = memory_steps_[lattice_.shell(kind)];
   const double axial = constants.cross_section *
                        advance(step, state.history.kinds[kind].stretch[near], single.force.stretch, variables.data(),

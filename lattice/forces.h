@@ -38,12 +38,8 @@ public:
   void set_shortness_threshold(double stretch) { shortness_limit_ = 1. / stretch; }
 
   /// Sets the time since the last update of the memory of bonds, in which they reached the positions at which forces
-  /// are evaluated next [s], >= 0; 0 by default.
+  /// are evaluated next [s], >= 0; 0 by default and from each update on.
   void set_elapsed(double duration);
-
-  /// Updates the memory of bonds to the present positions, which they reached in the time that was set; that is 0 from
-  /// then on. An evaluation does so faster; see RowCallbacks::history.
-  void update_memory(State &state);
 
   /// Callbacks of an integrator for each row of the band during an evaluation, while the row is in cache: once per row,
   /// in any order, by several threads.
@@ -52,13 +48,11 @@ public:
     /// Before any bond of the row is looked at; may give the row its positions and velocities to be evaluated. Not for
     /// sheets that are periodic, whose images must be there too. May be empty.
     std::function<void(std::size_t row)> pre_force;
-    /// Fields that the callbacks work on; they are fetched from memory while the rows before are computed. nullptr:
-    /// none.
-    const std::vector<const Field *> *fields = nullptr;
+    /// Fields that the callbacks work on; they are fetched from memory while the rows before are computed.
+    std::vector<const Field *> fields = {};
     /// Takes the forces on the sites of the row [N/m]; may change all but those positions and velocities.
     std::function<void(std::size_t row, const double *fx, const double *fy)> post_force;
-    /// History to be updated to the evaluated positions, that of the evaluated state, as update_memory() does; nullptr:
-    /// none.
+    /// History to be updated to the evaluated positions, that of the evaluated state; nullptr: none.
     BondHistory *history = nullptr;
   };
 
@@ -76,7 +70,7 @@ public:
 
   /// Power the dashpots dissipated at the last evaluation, sum of A0 eta (v_rel . n)^2 / l [W/m] over the bonds that
   /// start in a row of the band, those in the memory of bonds included.
-  double viscous_power(std::size_t row) const { return row_viscous_power_[row]; }
+  double viscous_power(std::size_t row) const { return row_sums_[row].viscous_power; }
 
   /// Power that each mechanism of Material::n_mechanisms() dissipated at the last evaluation [W/m], in the bonds that
   /// start in a row of the band; a part of viscous_power().
@@ -86,10 +80,10 @@ public:
   bool gives_energy(std::size_t mechanism) const { return mechanism_gives_energy_[mechanism]; }
 
   /// Returns whether a row has bonds that were stretched past their limit (or retracted) at the last evaluation.
-  bool row_has_events(std::size_t row) const { return row_events_[row] != 0; }
+  bool row_has_events(std::size_t row) const { return row_sums_[row].has_events; }
 
   /// Returns whether a row has short bonds, as of the last evaluation; see set_shortness_threshold().
-  bool row_has_short_bonds(std::size_t row) const { return row_short_bonds_[row] != 0; }
+  bool row_has_short_bonds(std::size_t row) const { return row_sums_[row].has_short_bonds; }
 
   /// Returns whether one of the bonds that start in a row of the band will be past its limit, or will have retracted,
   /// after its ends have moved for `ahead` [s] at the velocities of the state.
@@ -190,10 +184,9 @@ private:
 
   std::vector<Scratch> scratch_; // one a thread
   Field fx_, fy_;
-  Field row_viscous_power_;
+  std::vector<kernels::RowSums> row_sums_;
   std::vector<Field> row_mechanism_power_; // [mechanism][row]
   std::vector<bool> mechanism_gives_energy_;
-  std::vector<std::uint8_t> row_events_, row_short_bonds_;
 };
 
 } // namespace latcon::lattice

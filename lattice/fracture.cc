@@ -5,51 +5,17 @@
 #include <limits>
 #include <stdexcept>
 
-#include "lattice/critical_stretch.h"
+#include "lattice/bonds/require.h"
 #include "lattice/energy.h"
 #include "lattice/integrator.h"
 
 namespace latcon::lattice
 {
-namespace
-{
-
-void require(bool condition, const char *message)
-{
-  if (!condition)
-    throw std::invalid_argument(message);
-}
-
-double factor(const NoToughening &)
-{
-  return 1.;
-}
-template <class Rule>
-double factor(const Rule &rule)
-{
-  return rule.factor;
-}
-
-std::shared_ptr<const BreakingRule> critical_stretch(double breaking_stretch)
-{
-  require(breaking_stretch > 0., "the breaking stretch must be positive");
-  std::array<double, n_shells> of_shells{};
-  of_shells.fill(breaking_stretch);
-  return std::make_shared<CriticalStretch>(of_shells);
-}
-
-} // namespace
-
-Fracture::Fracture(const RowPartition &band, const Material &material, double breaking_stretch, Toughening toughening,
-                   const Eigen::Matrix2d &deformation)
-  : Fracture(band, material, critical_stretch(breaking_stretch), toughening, deformation)
-{
-}
 
 Fracture::Fracture(const RowPartition &band, const Material &material, std::shared_ptr<const BreakingRule> rule,
                    Toughening toughening, const Eigen::Matrix2d &deformation)
   : band_(band), lattice_(band.lattice()), material_(material), rule_(std::move(rule)), toughening_(toughening),
-    toughening_factor_(std::visit([](const auto &how) { return factor(how); }, toughening)),
+    toughening_factor_(std::visit([](const auto &how) { return how.factor; }, toughening)),
     breaking_stretch_(rule_->smallest_limit(1.)), toughened_stretch_(rule_->smallest_limit(toughening_factor_))
 {
   require(lattice_.images().empty(), "a periodic sheet does not break: a crack has no tip there");
@@ -112,15 +78,6 @@ Fracture::Event Fracture::event(const State &state, const Bond &bond, const Fiel
                formulas::squared_length(shortest, l), formulas::squared_length(longest, l));
 }
 
-double Fracture::bond_energy(const State &state, const Bond &bond) const
-{
-  const Shell &shell = *material_.shell(lattice_, bond.kind);
-  const double elastic = state.stiffness.of(bond.near, bond.kind) *
-                         (cross_section(shell, lattice_, bond.kind) * lattice_.rest_length(bond.kind) *
-                          energy(shell.law, stretch(state, lattice_, bond)));
-  return elastic + memory_energy(state, lattice_, material_, bond);
-}
-
 // Message between ranks about a broken bond.
 struct Fracture::Loss
 {
@@ -130,7 +87,8 @@ struct Fracture::Loss
 
 Fracture::Loss Fracture::loss(const State &state, const Bond &bond) const
 {
-  return {bond, stretch(state, lattice_, bond), bond_energy(state, bond)};
+  return {bond, stretch(state, lattice_, bond),
+          elastic_energy(state, lattice_, material_, bond) + memory_energy(state, lattice_, material_, bond)};
 }
 
 // Takes bonds out of the sheet. @return those of all ranks in the order of storage, if `own` ones are in it
@@ -251,8 +209,13 @@ void Fracture::toughen_behind_tip(State &state)
     return;
   const double boundary = tip_.X.x() - behind->distance;
   // The tip never retreats: bonds behind the last boundary are toughened already.
-  const auto [rows, columns] = strip_around(toughened_to_, boundary);
-  for (std::size_t row = rows.begin; row < rows.end; ++row)
+  double reach = 0.; // of midpoints from near ends on the grid, along X
+  for (std::size_t kind = 0; kind < lattice_.n_kinds(); ++kind)
+    reach = std::max(reach, 0.5 * std::abs(lattice_.bond_vector(kind).x()));
+  reach += lattice_.scatter() * lattice_.spacing();
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  const auto [rows, columns] = lattice_.window({toughened_to_ - reach, -endless}, {boundary + reach, endless});
+  for (std::size_t row = std::max(rows.begin, band_.rows().begin); row < std::min(rows.end, band_.rows().end); ++row)
     for (std::size_t column = columns.begin; column < std::min(columns.end, lattice_.sites_in_row(row)); ++column)
     {
       const std::size_t place = lattice_.index(row, column);
@@ -262,28 +225,6 @@ void Fracture::toughen_behind_tip(State &state)
           state.bonds.toughen(place, kind);
     }
   toughened_to_ = boundary;
-}
-
-// Returns rows of the band and columns that contain the near ends of all bonds with a midpoint at from <= X < to.
-std::pair<Rows, Rows> Fracture::strip_around(double from, double to) const
-{
-  const bool along = lattice_.orientation() == Orientation::rows_along_crack;
-  const Rows own = band_.rows(), columns{0, lattice_.columns()};
-  const double pitch = along ? lattice_.spacing() : lattice_.site_area() / lattice_.spacing();
-  double reach = 0.; // of midpoints from the grid points of near ends, along X
-  for (std::size_t kind = 0; kind < lattice_.n_kinds(); ++kind)
-    reach = std::max(reach, 0.5 * std::abs(lattice_.bond_vector(kind).x()));
-  reach += lattice_.scatter() * lattice_.spacing();
-  // Columns of odd rows are half a pitch further; the rest of a pitch is for rounding.
-  const auto clamped = [&](double x, const Rows &range)
-  {
-    return static_cast<std::size_t>(
-      std::clamp(x / pitch, static_cast<double>(range.begin), static_cast<double>(range.end)));
-  };
-  const auto cut = [&](const Rows &range) {
-    return Rows{clamped(from - reach - pitch, range), clamped(to + reach + 2. * pitch, range)};
-  };
-  return along ? std::pair(own, cut(columns)) : std::pair(cut(own), columns);
 }
 
 std::optional<StretchedBond> Fracture::nearest_to_breaking(const State &state) const

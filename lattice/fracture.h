@@ -8,23 +8,18 @@
 #include <variant>
 #include <vector>
 
-#include "lattice/archive_rows.h"
+#include "lattice/bonds/require.h"
 #include "lattice/breaking_rule.h"
 #include "lattice/forces.h"
 
 namespace latcon::lattice
 {
 
-/// No toughening: one breaking stretch for all bonds.
-struct NoToughening
-{
-};
-
 /// Bonds that the caller toughened in advance (BondStates::toughen) have lam_f multiplied by `factor`; no others
 /// toughen.
 struct GivenToughening
 {
-  double factor; ///< [-], >= 1; infinity: these bonds never break
+  double factor = 1.; ///< [-], >= 1; infinity: these bonds never break
 };
 
 /// Bonds whose reference midpoint lies at X < X_tip - distance have lam_f multiplied by `factor`, for good.
@@ -42,8 +37,8 @@ struct RetractionToughening
   double factor;   ///< [-], >= 1
 };
 
-/// Rules by which bonds toughen behind the crack.
-using Toughening = std::variant<NoToughening, GivenToughening, BehindTipToughening, RetractionToughening>;
+/// Rules by which bonds toughen behind the crack; by default none does.
+using Toughening = std::variant<GivenToughening, BehindTipToughening, RetractionToughening>;
 
 /// A bond that broke.
 struct BrokenBond : Bond
@@ -116,7 +111,10 @@ public:
            Toughening toughening, const Eigen::Matrix2d &deformation);
   /// All bonds break beyond lam_f > 0. @throws std::invalid_argument for any other
   Fracture(const RowPartition &band, const Material &material, double breaking_stretch, Toughening toughening,
-           const Eigen::Matrix2d &deformation);
+           const Eigen::Matrix2d &deformation)
+    : Fracture(band, material, std::make_shared<CriticalStretch>(breaking_stretch), toughening, deformation)
+  {
+  }
 
   /// Sets the smallest limits of virgin and of toughened bonds in `state`, and enables retraction events in
   /// `forces`. To be called before apply(); a Simulation does.
@@ -175,8 +173,8 @@ public:
       toughened_to_ = -std::numeric_limits<double>::infinity();
       const std::size_t place = tip_.place.value_or(lattice_.index(0, 0));
       const bool is_site = place < lattice_.n_places() && lattice_.is_site(place);
-      require_archived(is_site && (!tip_.place || tip_.X.x() == lattice_.reference(place).x()),
-                       "`tip` is no site of the sheet, or `tip_x` not where it is");
+      require(is_site && (!tip_.place || tip_.X.x() == lattice_.reference(place).x()),
+              "`tip` is no site of the sheet, or `tip_x` not where it is");
       tip_.X.y() = lattice_.reference(place).y();
     }
   }
@@ -195,8 +193,6 @@ private:
   std::vector<BrokenBond> lose_bonds(State &state, const std::vector<Loss> &own, int *number) const;
   void consider_tip(const State &state, std::size_t place);
   void toughen_behind_tip(State &state);
-  std::pair<Rows, Rows> strip_around(double from, double to) const;
-  double bond_energy(const State &state, const Bond &bond) const;
 
   RowPartition band_;
   const TriangularLattice &lattice_;

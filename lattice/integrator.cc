@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <functional>
-#include <stdexcept>
 
+#include "lattice/bonds/require.h"
 #include "lattice/row_kernels.h"
 
 namespace latcon::lattice
@@ -26,8 +26,7 @@ Integrator::Integrator(const RowPartition &band, Forces &forces, double time_ste
   : band_(band), lattice_(band.lattice()), forces_(forces), sent_(band.halo_sites(true)),
     received_(band.halo_sites(false)), interior_(band.rows()), time_step_(time_step)
 {
-  if (!(time_step > 0.))
-    throw std::invalid_argument("time stepping needs a positive time step");
+  require(time_step > 0., "time stepping needs a positive time step");
   const std::size_t middle = (interior_.begin + interior_.end) / 2;
   for (const std::vector<std::size_t> &to_rank : sent_)
     for (const std::size_t place : to_rank)
@@ -44,8 +43,19 @@ std::vector<Field *> Integrator::evaluated_fields(State &state)
   return {&state.x, &state.y, predicts ? &predicted_vx_ : &state.vx, predicts ? &predicted_vy_ : &state.vy};
 }
 
+void Integrator::find_rollers(const State &state)
+{
+  rollers_.clear();
+  for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
+    for (std::size_t place = lattice_.index(row, 0); place < lattice_.index(row, lattice_.sites_in_row(row)); ++place)
+      for (const unsigned int component : {0u, 1u})
+        if ((state.rollers[place] >> component & 1) != 0)
+          rollers_.push_back({place, component, (component == 0 ? state.vx : state.vy)[place]});
+}
+
 void Integrator::initialise(State &state)
 {
+  find_rollers(state);
   if (!predicted_vx_.empty())
     for_each_row(lattice_, band_.rows(),
                  [&](std::size_t row)
@@ -94,7 +104,7 @@ void Integrator::kick(State &state, std::size_t row, const double *fx, const dou
   kernels::loops().kick(duration, n, fy, inverse_mass, &state.ay[begin], &state.vy[begin]);
 }
 
-void Integrator::accelerate(State &state, BondHistory *history)
+void Integrator::accelerate(State &state)
 {
   // Threads may still read the velocities of rows next to theirs, so that only accelerations are written.
   const auto after = [&](std::size_t row, const double *fx, const double *fy)
@@ -103,7 +113,7 @@ void Integrator::accelerate(State &state, BondHistory *history)
     std::transform(fx, fx + n, &state.inverse_mass[begin], &state.ax[begin], std::multiplies());
     std::transform(fy, fy + n, &state.inverse_mass[begin], &state.ay[begin], std::multiplies());
   };
-  forces_.evaluate(state, evaluated_vx(state), evaluated_vy(state), {{}, nullptr, std::ref(after), history});
+  forces_.evaluate(state, evaluated_vx(state), evaluated_vy(state), {{}, {}, std::ref(after), &state.history});
   evaluate_site_forces(state);
   accelerate_sites(state);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -9,14 +10,6 @@
 
 namespace latcon::lattice
 {
-
-/// A component of the velocity of a site that is prescribed while the other one is free.
-struct RollerVelocity
-{
-  std::size_t place;
-  unsigned int component; ///< 0: x, 1: y
-  double velocity;        ///< [m/s]
-};
 
 /// Advances the rows of a band in time, step by step. The forces at the end of a step are those the next one starts
 /// with; in between bonds can be taken out of them.
@@ -39,8 +32,9 @@ public:
   /// Adds forces to those of the bonds, at the same positions and velocities; they must outlive this object.
   void add(SiteForces &forces) { site_forces_.push_back(&forces); }
 
-  /// Sets the components of own sites that keep a velocity while the other one follows the forces.
-  void set_rollers(std::vector<RollerVelocity> rollers) { rollers_ = std::move(rollers); }
+  /// Finds the components of own sites that keep their velocity in `state` while the other one follows the forces; for
+  /// a state that was loaded, otherwise initialise() does.
+  void find_rollers(const State &state);
 
   /// Computes the accelerations a state starts with; needed once, and again after a change from outside. Collective.
   void initialise(State &state);
@@ -69,8 +63,8 @@ protected:
   /// Accelerations and velocities of a row after forces on its sites have acted for `duration` [s].
   void kick(State &state, std::size_t row, const double *fx, const double *fy, double duration) const;
   /// Forces of bonds and of all that was added, at the present positions and velocities, as accelerations.
-  /// @param history of the state, to be updated; nullptr: none
-  void accelerate(State &state, BondHistory *history = nullptr);
+  /// Updates the memory of bonds to these positions.
+  void accelerate(State &state);
   /// Adds the accelerations by site forces to those of a state; along a roller's fixed component there is none.
   void accelerate_sites(State &state);
   /// Adds to the velocities what site forces change of them in `duration` [s].
@@ -89,6 +83,12 @@ private:
   Rows interior_;                // no other rank needs these
   double time_step_;
   std::vector<SiteForces *> site_forces_;
+  struct RollerVelocity
+  {
+    std::size_t place;
+    unsigned int component; // 0: x, 1: y
+    double velocity;        // [m/s]
+  };
   std::vector<RollerVelocity> rollers_;
   struct Acceleration
   {
@@ -97,5 +97,23 @@ private:
   };
   std::vector<Acceleration> of_bonds_; // before each of the site forces was added
 };
+
+/// Velocity Verlet for forces that depend on velocity (theory.md, eq. (L.7)):
+///   v_half = v + (h/2) a,   x' = x + h v_half,   v_pred = v_half + (h/2) a,
+///   a' = f(x', v_pred) / m, v' = v_half + (h/2) a'.
+/// The dashpots see v_pred = v + h a, a second-order prediction of v', so the scheme stays explicit, takes one force
+/// evaluation a step and converges at second order with and without viscosity. Without it, it is plain velocity Verlet.
+/// @param time_step h [s], > 0; see TimeStepLimits
+std::unique_ptr<Integrator> velocity_verlet(const RowPartition &band, Forces &forces, double time_step);
+
+/// Runge-Kutta-Chebyshev method of second order for y = (x, v), y' = (v, a(x, v)) (theory.md, eqs. (L.17) to (L.20),
+/// (L.22)).
+///
+/// Each of the s stages of a step evaluates all forces at its own positions and velocities. The stable step grows with
+/// s^2, so that a given time takes fewer evaluations the longer the steps are. Shorter steps take fewer stages: no more
+/// than (L.22) requires.
+/// @param time_step h [s], > 0 @param stages s of steps of that length, >= 2
+std::unique_ptr<Integrator> runge_kutta_chebyshev(const RowPartition &band, Forces &forces, double time_step,
+                                                  unsigned int stages);
 
 } // namespace latcon::lattice

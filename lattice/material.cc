@@ -5,14 +5,6 @@
 namespace latcon::lattice
 {
 
-bool Material::has_memory() const
-{
-  for (std::size_t number = 0; number < n_shells; ++number)
-    if (const Shell *shell = in_shell(number); shell != nullptr && n_variables(shell->memory) > 0)
-      return true;
-  return false;
-}
-
 std::size_t Material::first_mechanism(std::size_t shell) const
 {
   std::size_t before = 0;
@@ -20,15 +12,6 @@ std::size_t Material::first_mechanism(std::size_t shell) const
     if (const Shell *other = in_shell(number))
       before += lattice::n_mechanisms(other->memory);
   return before;
-}
-
-unsigned int Material::coordination() const
-{
-  unsigned int bonds = 0;
-  for (std::size_t number = 0; number < n_shells; ++number)
-    if (in_shell(number) != nullptr)
-      bonds += 2 * n_kinds_per_shell;
-  return bonds;
 }
 
 unsigned int Material::coordination(const TriangularLattice &lattice) const
@@ -42,8 +25,6 @@ unsigned int Material::coordination(const TriangularLattice &lattice) const
 
 unsigned int Material::coordination(const TriangularLattice &lattice, std::size_t place) const
 {
-  if (lattice.scattered() == nullptr)
-    return coordination(lattice);
   unsigned int bonds = 0;
   for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
     if (shell(lattice, kind) != nullptr)
@@ -67,16 +48,6 @@ Material without_dashpots(Material material)
     if (Shell *shell = material.in_shell(number))
       shell->viscosity = 0.;
   return material;
-}
-
-double cross_section(const Shell &shell, const TriangularLattice &lattice, std::size_t kind)
-{
-  return shell.area_factor * lattice.site_area() / lattice.section_length(kind);
-}
-
-double site_mass(const Material &material, const TriangularLattice &lattice)
-{
-  return material.density * lattice.site_area();
 }
 
 } // namespace latcon::lattice

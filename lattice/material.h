@@ -54,16 +54,13 @@ struct Material
     return lattice.is_triangular() && !third_nearest ? 2 * n_kinds_per_shell : lattice.n_kinds();
   }
 
-  /// Returns whether bonds of some kind have a memory.
-  bool has_memory() const;
-
   /// Number of mechanisms by which memories store and dissipate energy: those of one shell after those of the other.
   std::size_t n_mechanisms() const { return first_mechanism(n_shells); }
   /// Number of mechanisms of the shells before one.
   std::size_t first_mechanism(std::size_t shell) const;
 
   /// Bonds of a site inside the triangular lattice: 6 for each shell.
-  unsigned int coordination() const;
+  unsigned int coordination() const { return 6 * (1u + (next_nearest ? 1u : 0u) + (third_nearest ? 1u : 0u)); }
   /// Bonds of a site inside a sheet, the most that scattered points may have.
   unsigned int coordination(const TriangularLattice &lattice) const;
   /// Bonds of one site, those beyond the edges included.
@@ -83,10 +80,16 @@ Material without_dashpots(Material material);
 
 /// A0 / h = s V / D [m], cross-section of a bond of a kind per sheet thickness; see TriangularLattice::section_length.
 /// It is s (sqrt3 / 2) d for all kinds of the triangular lattice (theory.md, eq. (L.4)).
-double cross_section(const Shell &shell, const TriangularLattice &lattice, std::size_t kind = 0);
+inline double cross_section(const Shell &shell, const TriangularLattice &lattice, std::size_t kind = 0)
+{
+  return shell.area_factor * lattice.site_area() / lattice.section_length(kind);
+}
 
 /// m / h = rho V [kg/m], (sqrt3 / 2) d^2 rho on the triangular lattice: mass of a site per sheet thickness (theory.md,
 /// eq. (L.1)).
-double site_mass(const Material &material, const TriangularLattice &lattice);
+inline double site_mass(const Material &material, const TriangularLattice &lattice)
+{
+  return material.density * lattice.site_area();
+}
 
 } // namespace latcon::lattice

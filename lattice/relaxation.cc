@@ -5,8 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "lattice/forces.h"
 #include "lattice/time_step.h"
-#include "lattice/velocity_verlet.h"
 
 namespace latcon::lattice
 {

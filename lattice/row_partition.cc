@@ -1,8 +1,7 @@
 #include "lattice/row_partition.h"
 
 #include <algorithm>
-#include <array>
-#include <numeric>
+#include <set>
 
 namespace latcon::lattice
 {
@@ -34,13 +33,17 @@ RowPartition::RowPartition(const TriangularLattice &lattice, MPI_Comm communicat
     is_relevant_[padded_row(lattice.index(row, 0))] = 1;
 }
 
-std::vector<std::size_t> RowPartition::known_rows() const
+std::vector<std::size_t> RowPartition::rows_around(std::size_t rank, std::size_t above) const
 {
-  std::vector<std::size_t> known = halo_of(rank_);
-  for (std::size_t row = rows().begin; row < rows().end; ++row)
-    known.push_back(row);
-  std::sort(known.begin(), known.end());
-  return known;
+  const auto begin = static_cast<std::ptrdiff_t>(first_rows_[rank]);
+  const auto end = static_cast<std::ptrdiff_t>(first_rows_[rank + 1]);
+  std::set<std::size_t> rows;
+  if (begin < end)
+    for (auto number = begin - static_cast<std::ptrdiff_t>(lattice_->reach());
+         number < end + static_cast<std::ptrdiff_t>(above); ++number)
+      if (const auto row = lattice_->row(number))
+        rows.insert(*row);
+  return {rows.begin(), rows.end()};
 }
 
 bool RowPartition::owns(std::size_t place) const
@@ -56,36 +59,12 @@ std::size_t RowPartition::owner(std::size_t row) const
          1;
 }
 
-std::vector<std::size_t> RowPartition::halo_of(std::size_t rank) const
-{
-  const auto begin = static_cast<std::ptrdiff_t>(first_rows_[rank]);
-  const auto end = static_cast<std::ptrdiff_t>(first_rows_[rank + 1]);
-  const auto reach = static_cast<std::ptrdiff_t>(lattice_->reach());
-  std::vector<std::size_t> halo;
-  if (begin == end)
-    return halo;
-  const auto add = [&](std::ptrdiff_t number)
-  {
-    const auto row = lattice_->row(number);
-    if (row && owner(*row) != rank)
-      halo.push_back(*row);
-  };
-  for (std::ptrdiff_t distance = 0; distance < reach; ++distance)
-  {
-    add(begin - reach + distance);
-    add(end + distance);
-  }
-  std::sort(halo.begin(), halo.end());
-  halo.erase(std::unique(halo.begin(), halo.end()), halo.end());
-  return halo;
-}
-
 SitesOfRanks RowPartition::halo_sites(bool own) const
 {
   SitesOfRanks sites(n_ranks());
   for (std::size_t rank = 0; rank < n_ranks(); ++rank)
-    for (const std::size_t row : halo_of(own ? rank : rank_))
-      if (owner(row) == (own ? rank_ : rank))
+    for (const std::size_t row : rows_around(own ? rank : rank_, lattice_->reach()))
+      if (rank != rank_ && owner(row) == (own ? rank_ : rank))
         for (std::size_t column = 0; column < lattice_->columns(); ++column)
           sites[rank].push_back(lattice_->index(row, column));
   return sites;
@@ -95,32 +74,6 @@ bool RowPartition::is_relevant_to(std::size_t rank, std::size_t place) const
 {
   const std::size_t begin = first_rows_[rank], end = first_rows_[rank + 1], row = lattice_->row_of(place);
   return begin < end && row + lattice_->reach() >= begin && row < end + lattice_->reach();
-}
-
-double RowPartition::sum(const std::vector<double> &values) const
-{
-  const std::vector<double> all = all_gather(std::vector<double>(&values[0] + rows().begin, &values[0] + rows().end));
-  return std::accumulate(all.begin(), all.end(), 0.);
-}
-
-std::vector<char> RowPartition::all_gather_bytes(const char *own, std::size_t size, int *number) const
-{
-  const int own_size = static_cast<int>(size);
-  const std::array<int, 2> given{own_size, number != nullptr ? *number : 0};
-  std::vector<std::array<int, 2>> all_given(n_ranks());
-  MPI_Allgather(given.data(), 2, MPI_INT, all_given.data(), 2, MPI_INT, communicator_);
-  std::vector<int> sizes, offsets(n_ranks(), 0);
-  for (const auto &[of_size, of_number] : all_given)
-  {
-    sizes.push_back(of_size);
-    if (number != nullptr)
-      *number = std::max(*number, of_number);
-  }
-  std::partial_sum(sizes.begin(), sizes.end() - 1, offsets.begin() + 1);
-  std::vector<char> all(static_cast<std::size_t>(offsets.back() + sizes.back()));
-  if (!all.empty())
-    MPI_Allgatherv(own, own_size, MPI_CHAR, all.data(), sizes.data(), offsets.data(), MPI_CHAR, communicator_);
-  return all;
 }
 
 void RowPartition::exchange(const SitesOfRanks &sent, const SitesOfRanks &received,
@@ -154,28 +107,6 @@ void RowPartition::exchange(const SitesOfRanks &sent, const SitesOfRanks &receiv
       for (Field *field : fields)
         (*field)[place] = *value++;
   }
-}
-
-void RowPartition::gather_bytes(void *field, std::size_t bytes_of_place, Rows rows) const
-{
-  // In units of a row: so the numbers fit into MPI's integers.
-  const std::size_t bytes = bytes_of_place * lattice_->stride();
-  MPI_Datatype row_type = MPI_DATATYPE_NULL;
-  MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &row_type);
-  MPI_Type_commit(&row_type);
-  std::vector<int> counts, offsets;
-  for (std::size_t r = 0; r < n_ranks(); ++r)
-  {
-    const std::size_t begin = std::clamp(first_rows_[r], rows.begin, rows.end);
-    offsets.push_back(static_cast<int>(padded_row(lattice_->index(begin, 0))));
-    counts.push_back(static_cast<int>(std::clamp(first_rows_[r + 1], rows.begin, rows.end) - begin));
-  }
-  if (is_first())
-    MPI_Gatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, field, counts.data(), offsets.data(), row_type, 0, communicator_);
-  else
-    MPI_Gatherv(static_cast<char *>(field) + static_cast<std::size_t>(offsets[rank_]) * bytes, counts[rank_], row_type,
-                nullptr, nullptr, nullptr, row_type, 0, communicator_);
-  MPI_Type_free(&row_type);
 }
 
 } // namespace latcon::lattice

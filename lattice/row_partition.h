@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <numeric>
 #include <type_traits>
 #include <vector>
 
@@ -17,12 +19,6 @@ namespace latcon::lattice
 using Field = std::vector<double, ZeroPages<double>>;
 /// A small whole number per place.
 using SiteFlags = std::vector<std::uint8_t, ZeroPages<std::uint8_t>>;
-
-/// The rows begin, begin + 1, ... end - 1.
-struct Rows
-{
-  std::size_t begin, end;
-};
 
 /// Places of sites, a list for each rank.
 using SitesOfRanks = std::vector<std::vector<std::size_t>>;
@@ -51,7 +47,10 @@ public:
   bool is_relevant(std::size_t place) const { return is_relevant_[padded_row(place)] != 0; } ///< or in its halo
   /// Returns whether a site of a sheet that is not periodic is in a row of a rank or in its halo.
   bool is_relevant_to(std::size_t rank, std::size_t place) const;
-  std::vector<std::size_t> known_rows() const; ///< own ones and halo, by increasing number
+  /// Own rows and halo, by increasing number.
+  std::vector<std::size_t> known_rows() const { return rows_around(rank_, lattice_->reach()); }
+  /// Own rows and those below from which bonds reach into them, by increasing number.
+  std::vector<std::size_t> rows_of_bonds() const { return rows_around(rank_, 0); }
 
   bool is_first() const { return rank_ == 0; } ///< whether this is the first rank, which gathers
   bool is_shared() const { return n_ranks() > 1; }
@@ -59,13 +58,20 @@ public:
   std::size_t n_ranks() const { return first_rows_.size() - 1; }
   MPI_Comm communicator() const { return communicator_; }
   std::size_t owner(std::size_t row) const; ///< rank that moves a row
-  std::vector<std::size_t> halo_of(std::size_t rank) const; ///< rows of others that a rank needs, by increasing number
   /// Places in its rows that others have in their halos, or places in its own halo, for exchange().
   SitesOfRanks halo_sites(bool own) const;
 
-  /// Sum of the values of all rows from the lowest up, whoever has them: the same bits for any number of ranks.
-  /// Collective. @param values one a row of the sheet; those of own rows are read
-  double sum(const std::vector<double> &values) const;
+  /// Values of all rows, whoever has them. Collective. @param values one a row of the sheet; those of own rows are read
+  std::vector<double> all_rows(const std::vector<double> &values) const
+  {
+    return all_gather(std::vector<double>(&values[0] + rows().begin, &values[0] + rows().end));
+  }
+  /// Their sum from the lowest row up: the same bits for any number of ranks. Collective.
+  double sum(const std::vector<double> &values) const
+  {
+    const std::vector<double> all = all_rows(values);
+    return std::accumulate(all.begin(), all.end(), 0.);
+  }
 
   /// The lists of all ranks one after the other. Collective; costs one short message where all lists are empty.
   /// @param number in: of this rank, out: the largest over all ranks, sent with the same message; nullptr: none
@@ -82,8 +88,8 @@ public:
 
 private:
   std::size_t padded_row(std::size_t place) const { return place / lattice_->stride(); }
-  std::vector<char> all_gather_bytes(const char *own, std::size_t size, int *number) const;
-  void gather_bytes(void *field, std::size_t bytes_of_place, Rows rows) const;
+  /// Rows of a rank, as many below them as bonds reach, and so many above them; none if it has no rows.
+  std::vector<std::size_t> rows_around(std::size_t rank, std::size_t above) const;
 
   const TriangularLattice *lattice_;
   MPI_Comm communicator_;
@@ -98,19 +104,49 @@ std::vector<T> RowPartition::all_gather(const std::vector<T> &own, int *number) 
   static_assert(std::is_trivially_copyable_v<T>);
   if (!is_shared())
     return own;
-  const std::vector<char> bytes =
-    all_gather_bytes(reinterpret_cast<const char *>(own.data()), own.size() * sizeof(T), number);
-  std::vector<T> all(bytes.size() / sizeof(T));
-  // Not memcpy, which may not be given the null pointers of empty vectors.
-  std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char *>(all.data()));
+  const std::array<int, 2> given{static_cast<int>(own.size() * sizeof(T)), number != nullptr ? *number : 0};
+  std::vector<std::array<int, 2>> all_given(n_ranks());
+  MPI_Allgather(given.data(), 2, MPI_INT, all_given.data(), 2, MPI_INT, communicator_);
+  std::vector<int> sizes, offsets; // in bytes
+  int end = 0;
+  for (const auto &[of_size, of_number] : all_given)
+  {
+    sizes.push_back(of_size);
+    offsets.push_back(end);
+    end += of_size;
+    if (number != nullptr)
+      *number = std::max(*number, of_number);
+  }
+  std::vector<T> all(static_cast<std::size_t>(end) / sizeof(T));
+  if (!all.empty())
+    MPI_Allgatherv(own.data(), given[0], MPI_CHAR, all.data(), sizes.data(), offsets.data(), MPI_CHAR, communicator_);
   return all;
 }
 
 template <class Vector>
 void RowPartition::gather(Vector &field, Rows rows) const
 {
-  if (is_shared())
-    gather_bytes(field.data(), sizeof(typename Vector::value_type), rows);
+  if (!is_shared())
+    return;
+  // In units of a row: so the numbers fit into MPI's integers.
+  const std::size_t bytes = sizeof(typename Vector::value_type) * lattice_->stride();
+  MPI_Datatype row_type = MPI_DATATYPE_NULL;
+  MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &row_type);
+  MPI_Type_commit(&row_type);
+  std::vector<int> counts, offsets;
+  for (std::size_t r = 0; r < n_ranks(); ++r)
+  {
+    const std::size_t begin = std::clamp(first_rows_[r], rows.begin, rows.end);
+    offsets.push_back(static_cast<int>(padded_row(lattice_->index(begin, 0))));
+    counts.push_back(static_cast<int>(std::clamp(first_rows_[r + 1], rows.begin, rows.end) - begin));
+  }
+  if (is_first())
+    MPI_Gatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, field.data(), counts.data(), offsets.data(), row_type, 0,
+                communicator_);
+  else
+    MPI_Gatherv(&field[static_cast<std::size_t>(offsets[rank_]) * lattice_->stride()], counts[rank_], row_type, nullptr,
+                nullptr, nullptr, row_type, 0, communicator_);
+  MPI_Type_free(&row_type);
 }
 
 } // namespace latcon::lattice

@@ -8,7 +8,7 @@
 
 #include <Eigen/SparseCore>
 
-#include "lattice/counter_hash.h"
+#include "lattice/disorder.h"
 #include "lattice/triangular_lattice.h"
 
 namespace latcon::lattice

@@ -6,26 +6,17 @@
 #include <stdexcept>
 #include <string>
 
-#include "lattice/runge_kutta_chebyshev.h"
-#include "lattice/velocity_verlet.h"
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {
 namespace
 {
 
-std::unique_ptr<Integrator> integrator(const RowPartition &band, Forces &forces, const TimeStepping &how)
-{
-  if (how.stages == 0)
-    return std::make_unique<VelocityVerlet>(band, forces, how.step);
-  return std::make_unique<RungeKuttaChebyshev>(band, forces, how.step, how.stages);
-}
-
 // Throws unless each kind of bonds has the variables of its memory at every place.
 void require_history(const State &state, const TriangularLattice &lattice, const Material &material)
 {
-  if (!state.history.kinds.empty() && state.history.kinds.size() != lattice.n_kinds())
-    throw std::invalid_argument("the history of the bonds does not fit the lattice");
+  require(state.history.kinds.size() == lattice.n_kinds(), "the history of the bonds does not fit the lattice");
   for (std::size_t kind = 0; kind < state.history.kinds.size(); ++kind)
   {
     const BondHistory::Kind &history = state.history.kinds[kind];
@@ -33,8 +24,7 @@ void require_history(const State &state, const TriangularLattice &lattice, const
     bool fits = history.variables.size() == (shell != nullptr ? n_variables(shell->memory) : 0);
     for (const Field &variable : history.variables)
       fits = fits && variable.size() == lattice.n_places() && history.stretch.size() == lattice.n_places();
-    if (!fits)
-      throw std::invalid_argument("the history of the bonds does not fit the memories of the material");
+    require(fits, "the history of the bonds does not fit the memories of the material");
   }
 }
 
@@ -43,19 +33,21 @@ void require_history(const State &state, const TriangularLattice &lattice, const
 Simulation::Simulation(const RowPartition &band, const Material &material, State initial, TimeStepping time_stepping,
                        std::optional<Fracture> fracture)
   : band_(band), lattice_(band.lattice()), material_(material), state_(std::move(initial)),
-    time_stepping_(time_stepping), forces_(band, material), integrator_(integrator(band, forces_, time_stepping)),
+    time_stepping_(time_stepping), forces_(band, material),
+    integrator_(time_stepping.stages == 0
+                  ? velocity_verlet(band, forces_, time_stepping.step)
+                  : runge_kutta_chebyshev(band, forces_, time_stepping.step, time_stepping.stages)),
     fracture_(std::move(fracture)), powers_(of_constraint(0), std::vector<double>(lattice_.rows(), 0.)), work_(powers_)
 {
-  if (material_.has_memory() && state_.history.empty())
+  if (state_.history.empty())
     relax_memory(state_, band_, material_);
   require_history(state_, lattice_, material_);
-  if (state_.stiffness.empty() != (material_.disorder.stiffness.is_none() && lattice_.scattered() == nullptr))
-    throw std::invalid_argument("the stiffness of the bonds does not have the disorder of the material");
+  require(state_.stiffness.empty() == (material_.disorder.stiffness.is_none() && lattice_.scattered() == nullptr),
+          "the stiffness of the bonds does not have the disorder of the material");
   if (fracture_)
     fracture_->configure(state_, forces_);
   forces_.set_shortness_threshold(
     watched_stretch(time_stepping, lattice_, material_, fracture_ ? fracture_->largest_limit() : unbreakable));
-  forces_.update_memory(state_);
   reinitialize_forces();
   initial_energy_ = stored_energy() + kinetic_energy(state_, band_);
 }
@@ -207,7 +199,6 @@ void Simulation::cut(const std::vector<std::size_t> &places)
   const double kinetic = kinetic_energy(state_, band_);
   broken_ += fracture_->remove_sites(state_, places);
   broken_ += kinetic - kinetic_energy(state_, band_);
-  update_rollers();
   fracture_->locate_tip(state_);
   reinitialize_forces();
 }
@@ -217,8 +208,7 @@ void Simulation::cut_bonds(const std::vector<std::pair<std::size_t, std::size_t>
   if (!fracture_)
     throw std::logic_error("a sheet without fracture rules cannot be cut");
   for (const auto &[place, kind] : bonds)
-    if (!lattice_.is_site(place) || kind >= lattice_.n_kinds())
-      throw std::invalid_argument("only a bond that starts at a site can be cut");
+    require(lattice_.is_site(place) && kind < lattice_.n_kinds(), "only a bond that starts at a site can be cut");
   broken_ += fracture_->remove_bonds(state_, bonds);
   fracture_->locate_tip(state_);
   reinitialize_forces();
@@ -254,14 +244,8 @@ std::size_t Simulation::constrain(const Constraint &constraint)
   constraints_.push_back(added);
   for (Ledger *ledger : {&powers_, &work_})
     ledger->emplace_back(lattice_.rows(), 0.);
-  update_rollers();
   reinitialize_forces();
   return constraints_.size() - 1;
-}
-
-void Simulation::set_motion(std::size_t constraint, Constraint::Motion motion)
-{
-  constraints_.at(constraint).set_motion(std::move(motion));
 }
 
 // Velocities of constrained sites for the next `duration` [s]. Forces are evaluated anew only where they change.
@@ -269,26 +253,10 @@ void Simulation::prescribe_motion(double duration)
 {
   bool changed = false;
   for (std::size_t c = 0; c < constraints_.size(); ++c)
-  {
-    if (constraints_[c].ends(state_.time))
-    {
-      constraints_[c].release(state_, material_, work_[of_constraint(c)]);
+    if (constraints_[c].prescribe(state_, material_, state_.time, state_.time + duration, work_[of_constraint(c)]))
       changed = true;
-    }
-    changed = constraints_[c].prescribe(state_, state_.time, state_.time + duration) || changed;
-  }
-  if (!changed)
-    return;
-  update_rollers();
-  reinitialize_forces();
-}
-
-void Simulation::update_rollers()
-{
-  std::vector<RollerVelocity> rollers;
-  for (const PrescribedMotion &constraint : constraints_)
-    constraint.append_rollers(state_, rollers);
-  integrator_->set_rollers(std::move(rollers));
+  if (changed)
+    reinitialize_forces();
 }
 
 const std::vector<BrokenBond> &Simulation::step()
@@ -362,11 +330,6 @@ void Simulation::restore(const Snapshot &earlier)
   archive(loading);
 }
 
-std::optional<std::size_t> Simulation::tip() const
-{
-  return fracture_ ? fracture_->tip() : std::nullopt;
-}
-
 Eigen::Vector2d Simulation::position(std::size_t place) const
 {
   Eigen::Vector2d x(state_.x[place], state_.y[place]);
@@ -378,8 +341,10 @@ Eigen::Vector2d Simulation::position(std::size_t place) const
 const State &Simulation::gather(Rows rows)
 {
   for_each_field(state_, lattice_, [&](const std::string &, auto &field) { band_.gather(field, rows); });
-  state_.stiffness.gather(band_, rows);
-  state_.strength.gather(band_, rows);
+  for (BondFactors *factors : {&state_.stiffness, &state_.strength})
+    for (Field &of_kind : factors->kinds)
+      if (!of_kind.empty())
+        band_.gather(of_kind, rows);
   if (band_.is_first())
     update_images(state_, lattice_);
   return state_;
@@ -387,31 +352,24 @@ const State &Simulation::gather(Rows rows)
 
 void Simulation::check_loaded(const BondStates &before, double energy) const
 {
-  require_archived(state_.time >= 0., "`time` is negative");
-  require_archived(parts_ >= 1 && parts_ <= most_parts && (parts_ & (parts_ - 1)) == 0,
-                   "`parts` of a step are no power of two up to " + std::to_string(most_parts));
+  require(state_.time >= 0., "`time` is negative");
+  require(parts_ >= 1 && parts_ <= most_parts && (parts_ & (parts_ - 1)) == 0,
+          "`parts` of a step are no power of two up to " + std::to_string(most_parts));
   // It was computed from the same input: only another compiler may have rounded otherwise.
-  require_archived(std::abs(initial_energy_ - energy) <= 1e-9 * std::abs(energy),
-                   "`initial_energy` is not that of the case");
+  require(std::abs(initial_energy_ - energy) <= 1e-9 * std::abs(energy), "`initial_energy` is not that of the case");
   for (const std::size_t row : band_.known_rows())
     for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice_.index(row, column);
       for (std::size_t kind = 0; kind < before.n_kinds(); ++kind)
-        require_archived(before.present(place, kind) ||
-                           (!state_.bonds.present(place, kind) && !state_.bonds.toughened(place, kind)),
-                         "`bonds` has some that the sheet never had");
+        require(before.present(place, kind) ||
+                  (!state_.bonds.present(place, kind) && !state_.bonds.toughened(place, kind)),
+                "`bonds` has some that the sheet never had");
     }
   for (std::size_t row = 0; row < lattice_.rows(); ++row)
     for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
-      require_archived(state_.lost_bonds[lattice_.index(row, column)] <= material_.coordination(lattice_),
-                       "`lost_bonds` are more than a site has");
-}
-
-double Simulation::stored_energy() const
-{
-  const double elastic = elastic_energy(state_, band_, material_);
-  return material_.has_memory() ? elastic + memory_energy(state_, band_, material_) : elastic;
+      require(state_.lost_bonds[lattice_.index(row, column)] <= material_.coordination(lattice_),
+              "`lost_bonds` are more than a site has");
 }
 
 EnergyBalance Simulation::energies() const

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "lattice/archive_rows.h"
 #include "lattice/constraint.h"
 #include "lattice/contact.h"
 #include "lattice/end_loads.h"
@@ -59,7 +58,10 @@ public:
   /// @throws std::invalid_argument for what is no site; std::logic_error where another constraint holds a component
   std::size_t constrain(const Constraint &constraint);
   /// Gives a constraint another motion from the next step on.
-  void set_motion(std::size_t constraint, Constraint::Motion motion);
+  void set_motion(std::size_t constraint, const Constraint::Motion &motion)
+  {
+    constraints_.at(constraint).set_motion(motion);
+  }
   /// Work that a constraint has done on the sheet [J/m]; a part of EnergyBalance::boundary_work. Collective.
   double constraint_work(std::size_t constraint) const { return band_.sum(work_.at(of_constraint(constraint))); }
 
@@ -104,7 +106,7 @@ public:
   Eigen::Vector2d position(std::size_t place) const; ///< of any site [m]
   const Forces &forces() const { return forces_; }
   double time_step() const { return time_stepping_.step; } ///< of a whole step [s]
-  std::optional<std::size_t> tip() const;
+  std::optional<std::size_t> tip() const { return fracture_ ? fracture_->tip() : std::nullopt; }
   /// See Fracture::nearest_to_breaking(), of state(), which must be complete; none if bonds do not break.
   std::optional<StretchedBond> nearest_to_breaking() const
   {
@@ -134,10 +136,12 @@ private:
   std::size_t of_constraint(std::size_t constraint) const { return mechanisms + material_.n_mechanisms() + constraint; }
   std::string name_of(std::size_t account) const;
 
-  double stored_energy() const; // in bonds and their memory [J/m]
+  double stored_energy() const // in bonds and their memory [J/m]
+  {
+    return elastic_energy(state_, band_, material_) + memory_energy(state_, band_, material_);
+  }
   void reinitialize_forces();
   void prescribe_motion(double duration);
-  void update_rollers();
   void update_powers();
   void add_work(const Ledger &before, double duration);
   void advance(double duration, double end);
@@ -174,8 +178,9 @@ void Simulation::archive(Archive &archive)
   const std::vector<std::size_t> known = band_.known_rows();
   std::vector<std::size_t> all(lattice_.rows());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  // A snapshot is of this very simulation.
-  constexpr bool is_checked = Archive::loads && !std::is_same_v<Archive, Snapshot::Archive<true>>;
+  // Of this very simulation, on this rank.
+  constexpr bool is_snapshot = std::is_same_v<Archive, Snapshot::Archive<Archive::loads>>;
+  constexpr bool is_checked = Archive::loads && !is_snapshot;
   BondStates bonds_before;
   const double energy_before = initial_energy_;
   if constexpr (is_checked)
@@ -186,7 +191,13 @@ void Simulation::archive(Archive &archive)
   archive_rows(archive, "lost_bonds", state_.lost_bonds, band_, all);
   for (const auto &[name, ledger] : {std::pair("powers_", &powers_), std::pair("work_", &work_)})
     for (std::size_t account = 0; account < ledger->size(); ++account)
-      archive_rows(archive, name + name_of(account), (*ledger)[account], band_);
+    {
+      std::vector<double> &of_rows = (*ledger)[account];
+      if constexpr (!Archive::loads && !is_snapshot)
+        of_rows = band_.all_rows(of_rows);
+      archive(name + name_of(account), of_rows);
+      require(of_rows.size() == lattice_.rows(), "`" + (name + name_of(account)) + "` is of a sheet of another size");
+    }
   archive("parts", parts_);
   archive("n_divided_steps", n_divided_steps_);
   archive("n_broken", n_broken_);
@@ -203,7 +214,7 @@ void Simulation::archive(Archive &archive)
     update_images(state_, band_);
     for (const PrescribedMotion &constraint : constraints_)
       constraint.free_if_released(state_, material_);
-    update_rollers();
+    integrator_->find_rollers(state_);
     // The candidate pairs of contacts follow from the state.
     if (contact_)
       contact_->find_candidates(state_);

@@ -4,33 +4,17 @@
 
 #include <Eigen/LU>
 
+#include "support/dense.h"
+
 namespace latcon::lattice
 {
-namespace
-{
-
-// Overstress of a bond as of the last update of its memory [Pa]. @param step over no time
-double overstress(const MemoryStep &step, const BondHistory &history, std::size_t place, std::size_t kind)
-{
-  if (!history.remembers(kind))
-    return 0.;
-  std::array<double, max_history_variables> variables{}, dissipation{};
-  history.variables_of(place, kind, variables.data());
-  const double stretch = history.kinds[kind].stretch[place];
-  return advance(step, stretch, stretch, variables.data(), dissipation.data());
-}
-
-} // namespace
 
 SiteEvaluator::SiteEvaluator(const TriangularLattice &lattice, const Material &material)
   : lattice_(lattice), material_(material)
 {
-  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
-  {
-    const Shell *shell = material.shell(lattice, kind);
-    kinds_.push_back({lattice.rest_length(kind), shell != nullptr ? cross_section(*shell, lattice, kind) : 0.,
-                      memory_step(shell != nullptr ? shell->memory : NoMemory(), 0.)});
-  }
+  for (std::size_t number = 0; number < n_shells; ++number)
+    if (const Shell *shell = material_.in_shell(number))
+      at_rest_[number] = memory_step(shell->memory, 0.);
 }
 
 SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
@@ -39,28 +23,33 @@ SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
   // Normal equations of the fit of F: F (sum R R^T) = sum r R^T.
   Eigen::Matrix2d reference_moment = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d mixed_moment = Eigen::Matrix2d::Zero();
-  for_each_bond_of_site(state, lattice_, place,
-                        [&](const Bond &bond)
-                        {
-                          const auto [near, number, far] = bond;
-                          const Kind &kind = kinds_[number];
-                          const Shell &shell = *material_.shell(lattice_, number);
-                          const Eigen::Vector2d r(state.x[far] - state.x[near], state.y[far] - state.y[near]);
-                          const Eigen::Vector2d rate(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
-                          const double length = r.norm(), ratio = lattice_.length_ratio(near, number);
-                          const Eigen::Vector2d direction = r / length, R = lattice_.bond_vector(bond);
-                          const double rest_length = kind.rest_length / ratio, stretch = length / rest_length;
-                          const double section = state.stiffness.of(near, number) * ratio * kind.section;
-                          double axial =
-                            section * (force(shell.law, stretch) + shell.viscosity * rate.dot(direction) / rest_length);
-                          if (state.history.remembers(number))
-                            axial += section * overstress(kind.at_rest, state.history, near, number);
-                          ++values.bonds;
-                          values.strain_energy_density += 0.5 * section * rest_length * energy(shell.law, stretch);
-                          values.first_piola_stress += 0.5 * axial * direction * R.transpose();
-                          reference_moment += R * R.transpose();
-                          mixed_moment += r * R.transpose();
-                        });
+  for_each_bond_of_site(
+    state, lattice_, place,
+    [&](const Bond &bond)
+    {
+      const auto [near, kind, far] = bond;
+      const Shell &shell = *material_.shell(lattice_, kind);
+      const Eigen::Vector2d r(state.x[far] - state.x[near], state.y[far] - state.y[near]);
+      const Eigen::Vector2d rate(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
+      const double length = r.norm(), ratio = lattice_.length_ratio(near, kind);
+      const Eigen::Vector2d direction = r / length, R = lattice_.bond_vector(bond);
+      const double rest_length = lattice_.rest_length(kind) / ratio, stretch = length / rest_length;
+      const double section = state.stiffness.of(near, kind) * ratio * cross_section(shell, lattice_, kind);
+      double axial = section * (force(shell.law, stretch) + shell.viscosity * rate.dot(direction) / rest_length);
+      if (state.history.remembers(kind))
+      {
+        // As of the last update.
+        auto variables = state.history.variables_of(near, kind);
+        std::array<double, max_history_variables> dissipation{};
+        const double then = state.history.kinds[kind].stretch[near];
+        axial += section * advance(at_rest_[lattice_.shell(kind)], then, then, variables.data(), dissipation.data());
+      }
+      ++values.bonds;
+      values.strain_energy_density += 0.5 * section * rest_length * energy(shell.law, stretch);
+      values.first_piola_stress += 0.5 * axial * direction * R.transpose();
+      reference_moment += R * R.transpose();
+      mixed_moment += r * R.transpose();
+    });
 
   const double area = lattice_.site_area();
   values.strain_energy_density /= area;
@@ -87,6 +76,69 @@ std::vector<SiteValues> site_fields(const State &state, const TriangularLattice 
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
       fields[lattice.index(row, column)] = evaluator.at(state, lattice.index(row, column));
   return fields;
+}
+
+const std::optional<StrainGradientFit::Weights> &StrainGradientFit::weights(unsigned int bonds)
+{
+  const auto [found, is_missing] = weights_.try_emplace(bonds);
+  std::optional<Weights> &weights = found->second;
+  if (!is_missing)
+    return weights;
+
+  std::vector<std::size_t> neighbours;
+  for (std::size_t n = 0; n < n_neighbours; ++n)
+    if ((bonds >> n & 1u) != 0)
+      neighbours.push_back(n);
+  constexpr Eigen::Index unknowns = 5; // F_x, F_y, G_xx, G_xy, G_yy of one component, in units of d
+  const auto n_equations = static_cast<Eigen::Index>(neighbours.size());
+  if (n_equations < unknowns)
+    return weights;
+  const double d = lattice_.spacing();
+  Eigen::MatrixXd equations(n_equations, unknowns);
+  for (Eigen::Index i = 0; i < n_equations; ++i)
+  {
+    const std::size_t n = neighbours[static_cast<std::size_t>(i)];
+    const Eigen::Vector2d R = (n < n_kinds ? 1. : -1.) / d * lattice_.bond_vector(n % n_kinds);
+    equations.row(i) << R.x(), R.y(), 0.5 * R.x() * R.x(), R.x() * R.y(), 0.5 * R.y() * R.y();
+  }
+  // Neighbours stand at distances of the order of d, so that a set either fixes all five well or not at all.
+  const std::optional<Eigen::MatrixXd> inverse = support::left_inverse(equations, 1e-6);
+  if (!inverse)
+    return weights;
+  weights = Weights::Zero();
+  for (Eigen::Index i = 0; i < n_equations; ++i)
+    weights->col(static_cast<Eigen::Index>(neighbours[static_cast<std::size_t>(i)])) =
+      inverse->col(i).tail<3>() / (d * d);
+  return weights;
+}
+
+std::optional<StrainGradient> StrainGradientFit::at(const State &state, std::size_t place)
+{
+  if (!lattice_.is_triangular())
+    return std::nullopt;
+  unsigned int bonds = 0;
+  Eigen::Matrix<double, n_neighbours, 2> positions = Eigen::Matrix<double, n_neighbours, 2>::Zero();
+  for_each_bond_of_site(state, lattice_, place,
+                        [&](const Bond &bond)
+                        {
+                          const auto [near, kind, far] = bond;
+                          if (kind >= n_kinds)
+                            return;
+                          const bool forward = near == place;
+                          const auto n = forward ? kind : kind + n_kinds;
+                          bonds |= 1u << n;
+                          const double sign = forward ? 1. : -1.;
+                          positions(static_cast<Eigen::Index>(n), 0) = sign * (state.x[far] - state.x[near]);
+                          positions(static_cast<Eigen::Index>(n), 1) = sign * (state.y[far] - state.y[near]);
+                        });
+  const std::optional<Weights> &of_bonds = weights(bonds);
+  if (!of_bonds)
+    return std::nullopt;
+  const Eigen::Matrix<double, 3, 2> G = *of_bonds * positions;
+  StrainGradient gradient;
+  gradient.x << G(0, 0), G(1, 0), G(1, 0), G(2, 0);
+  gradient.y << G(0, 1), G(1, 1), G(1, 1), G(2, 1);
+  return gradient;
 }
 
 } // namespace latcon::lattice

@@ -1,15 +1,47 @@
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
 
+#include "lattice/bonds/require.h"
 #include "lattice/row_partition.h"
 
 namespace latcon::lattice
 {
+
+/// Saves a field over the sites of a lattice, or loads it: row by row, so that the list is the same for any number of
+/// ranks. Collective. `archive` is what classes that have a member function archive() are given; see Simulation.
+/// @param rows that a rank takes when it loads
+template <class Archive, class Vector>
+void archive_rows(Archive &archive, const std::string &name, Vector &field, const RowPartition &band,
+                  const std::vector<std::size_t> &rows)
+{
+  const TriangularLattice &lattice = band.lattice();
+  std::vector<typename Vector::value_type> values;
+  if constexpr (!Archive::loads)
+  {
+    band.gather(field, {0, lattice.rows()});
+    if (band.is_first())
+      for (std::size_t row = 0; row < lattice.rows(); ++row)
+        values.insert(values.end(), &field[lattice.index(row, 0)],
+                      &field[lattice.index(row, 0)] + lattice.sites_in_row(row));
+  }
+  archive(name, values);
+  if constexpr (Archive::loads)
+  {
+    require(values.size() == lattice.n_sites(), "`" + name + "` is of a sheet of another size");
+    for (const std::size_t row : rows)
+    {
+      const std::size_t place = lattice.index(row, 0);
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(lattice.site_number(place)), lattice.sites_in_row(row),
+                  &field[place]);
+    }
+  }
+}
 
 /// Archive in memory of all that a Simulation archives, on each rank of the rows that it knows.
 class Snapshot
@@ -87,14 +119,6 @@ void archive_rows(Snapshot::Archive<loads> &archive, const std::string & /*name*
   const TriangularLattice &lattice = band.lattice();
   for (const std::size_t row : rows)
     archive.values(&field[lattice.index(row, 0) / lattice.stride() * lattice.stride()], lattice.stride());
-}
-
-/// Saves one value per row of the sheet, or loads them.
-template <bool loads>
-void archive_rows(Snapshot::Archive<loads> &archive, const std::string &name, std::vector<double> &of_rows,
-                  const RowPartition & /*band*/)
-{
-  archive(name, of_rows);
 }
 
 } // namespace latcon::lattice

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -9,8 +10,6 @@
 
 #include <Eigen/Core>
 
-#include "lattice/bond_factors.h"
-#include "lattice/bond_history.h"
 #include "lattice/bond_states.h"
 #include "lattice/material.h"
 #include "lattice/row_partition.h"
@@ -27,6 +26,58 @@ inline constexpr std::size_t min_sites_for_threads = 64;
 
 /// A breaking stretch that no bond reaches.
 inline constexpr double unbreakable = std::numeric_limits<double>::infinity();
+
+/// One factor per bond, by the place where it starts; nothing is stored if all are 1.
+struct BondFactors
+{
+  std::vector<Field> kinds; ///< by kind, empty where there are no such bonds; none: all factors are 1 [-]
+
+  bool empty() const { return kinds.empty(); } ///< whether all factors are 1
+  /// Factors of bonds of a kind from the one that starts at a place on; nullptr: all 1.
+  const double *from(std::size_t place, std::size_t kind) const
+  {
+    return kinds.empty() || kinds[kind].empty() ? nullptr : &kinds[kind][place];
+  }
+  /// Factor of a bond [-].
+  double of(std::size_t place, std::size_t kind) const
+  {
+    const double *const factor = from(place, kind);
+    return factor != nullptr ? *factor : 1.;
+  }
+};
+
+/// History of bonds with a memory, by the place where they start: their stretch and the variables of their memory at
+/// the last update. Nothing is stored for kinds of bonds without a memory.
+///
+/// A rank holds values for the bonds that it computes: those that start in its own rows, and in the rows below
+/// them that bonds reach from, which the rank that owns those rows updates alike.
+struct BondHistory
+{
+  /// Bonds of one kind.
+  struct Kind
+  {
+    Field stretch;                ///< [-]; 0 for absent bonds
+    std::vector<Field> variables; ///< one field per variable of BondMemory; none: no memory
+  };
+  std::vector<Kind> kinds; ///< none: no bond has a memory
+
+  bool remembers(std::size_t kind) const { return !kinds.empty() && !kinds[kind].variables.empty(); }
+
+  /// Returns whether no bond remembers anything.
+  bool empty() const
+  {
+    return std::all_of(kinds.begin(), kinds.end(), [](const Kind &kind) { return kind.variables.empty(); });
+  }
+
+  /// Variables of one bond, 0 beyond.
+  std::array<double, max_history_variables> variables_of(std::size_t place, std::size_t kind) const
+  {
+    std::array<double, max_history_variables> variables{};
+    for (std::size_t v = 0; v < kinds[kind].variables.size(); ++v)
+      variables[v] = kinds[kind].variables[v][place];
+    return variables;
+  }
+};
 
 /// Everything that changes while a sheet moves and breaks, as a structure of arrays over the places of the lattice.
 /// Positions and velocities are current ones.
@@ -82,6 +133,18 @@ void for_each_field(State &state, const TriangularLattice &lattice, const Visito
 /// after a change of either from outside; what moves a sheet calls it itself.
 void update_images(State &state, const RowPartition &band);
 
+/// Property of a bond that disorder multiplies; the stiffness also contains the weights of scattered points.
+enum class BondProperty
+{
+  strength,
+  stiffness
+};
+
+/// Factors of a property in the rows that `band` knows, for the kinds of bonds that the material has (theory.md, eq.
+/// (L.37)). The factor of a bond depends on the seed, the property and the bond alone, which is named by its row, its
+/// column and its kind: the same bits for any number of ranks and threads, and whatever other shells there are.
+BondFactors bond_factors(const RowPartition &band, const Material &material, BondProperty property);
+
 /// Held edges of the sheet, where the motion of sites that lack a neighbour beyond the edge is prescribed.
 /// With all held, homogeneous states are in equilibrium (theory.md, eq. (L.6)).
 struct Edges
@@ -100,13 +163,6 @@ std::vector<std::size_t> sites_at(const TriangularLattice &lattice, const Materi
 /// which the sheet is periodic do not exist, whatever `edges` says of them. Bonds are unbreakable; a Fracture sets at
 /// which stretch they break.
 State homogeneous_state(const RowPartition &band, const Material &material, const Eigen::Matrix2d &F, Edges edges);
-
-/// Stretch beyond which a bond that is present may break [-]; see BreakingRule::smallest_limit().
-inline double breaking_stretch_of(const State &state, const Bond &bond)
-{
-  return (state.bonds.toughened(bond.near, bond.kind) ? state.toughened_stretch : state.breaking_stretch) *
-         state.strength.of(bond.near, bond.kind);
-}
 
 /// Moves every site in the rows that `band` knows, where it is free, by a random displacement, uniform in [-amplitude,
 /// amplitude] along x and y. The displacement of a site depends on (seed, place) alone, so it is the same on every

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "lattice/bonds/require.h"
 #include "support/dense.h"
 
 namespace latcon::lattice
@@ -15,12 +15,6 @@ namespace
 {
 
 constexpr double round_off = 1e-9; // of lengths over h, and of angles
-
-void require(bool condition, const std::string &message)
-{
-  if (!condition)
-    throw std::invalid_argument(message);
-}
 
 // Harmonics of the direction of a bond. Their means over all directions are 1, 0, 0, 0, 0, which is the same as the
 // fourth moments of all directions.
@@ -92,11 +86,6 @@ bool reach_all_points(const std::vector<HalfBond> &bonds)
 
 } // namespace
 
-Eigen::Vector2d Grid::vector(int columns, int rows) const
-{
-  return from_row_frame(columns + (kind == Kind::triangular ? 0.5 * rows : 0.), rows);
-}
-
 Eigen::Vector2d Grid::from_row_frame(double along, double across) const
 {
   double u = along * spacing, v = across * (kind == Kind::triangular ? half_sqrt3 : 1.) * spacing;
@@ -108,19 +97,9 @@ Eigen::Vector2d Grid::from_row_frame(double along, double across) const
   return {c * u - s * v, s * u + c * v};
 }
 
-double Grid::cell_area() const
-{
-  return (kind == Kind::triangular ? half_sqrt3 : 1.) * spacing * spacing;
-}
-
 std::vector<HalfBond> triangular_stencil(const Grid &grid)
 {
-  struct Offset
-  {
-    int columns, rows;
-  };
-  constexpr std::array<Offset, 3 * n_shells> offsets{
-    {{1, 0}, {0, 1}, {-1, 1}, {1, 1}, {-2, 1}, {-1, 2}, {2, 0}, {0, 2}, {-2, 2}}};
+  constexpr int offsets[3 * n_shells][2] = {{1, 0}, {0, 1}, {-1, 1}, {1, 1}, {-2, 1}, {-1, 2}, {2, 0}, {0, 2}, {-2, 2}};
   const std::array<double, n_shells> lengths{{1., 2. * half_sqrt3, 2.}};
   std::vector<HalfBond> stencil;
   for (const auto &[columns, rows] : offsets)

@@ -45,9 +45,12 @@ struct Grid
   Eigen::Vector2d from_row_frame(double along, double across) const;
 
   /// Reference vector from a point to the one that is so many columns and rows away [m].
-  Eigen::Vector2d vector(int columns, int rows) const;
+  Eigen::Vector2d vector(int columns, int rows) const
+  {
+    return from_row_frame(columns + (kind == Kind::triangular ? 0.5 * rows : 0.), rows);
+  }
   /// Reference area of a point [m^2].
-  double cell_area() const;
+  double cell_area() const { return (kind == Kind::triangular ? half_sqrt3 : 1.) * spacing * spacing; }
 };
 
 /// A bond of a stencil, seen from one of its ends.

@@ -1,7 +1,6 @@
 #include "lattice/time_step.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -33,14 +32,7 @@ TimeStepLimits limits(const Rates &rates)
 }
 
 // The smallest stretch of the bonds of each shell.
-using SmallestStretch = std::array<double, n_shells>;
-
-SmallestStretch of_all(double smallest_stretch)
-{
-  SmallestStretch each{};
-  each.fill(smallest_stretch);
-  return each;
-}
+using SmallestStretch = Eigen::Array<double, n_shells, 1>;
 
 // Largest factor of the force of a bond: all bonds of a site may be as stiff as the stiffest.
 double stiffest(const Material &material)
@@ -106,14 +98,14 @@ Rates bound(const TriangularLattice &lattice, const Material &material, const Sm
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
                                 const std::optional<ContactLaw> &contact)
 {
-  return limits(bound(lattice, material, of_all(smallest_stretch), contact));
+  return limits(bound(lattice, material, SmallestStretch::Constant(smallest_stretch), contact));
 }
 
 double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
                       const std::optional<ContactLaw> &contact)
 {
   const double of_bonds = std::min(share_of_elastic_limit * time_step_limits(lattice, material, 1.).elastic,
-                                   damped_step(lattice, material, of_all(smallest_stretch)));
+                                   damped_step(lattice, material, SmallestStretch::Constant(smallest_stretch)));
   if (!contact)
     return of_bonds;
   const auto &[omega_square, gamma] = bound_of_contacts(lattice, material, *contact);
@@ -140,7 +132,7 @@ bool amplifies_contact(const TimeStepping &stepping, const TriangularLattice &la
 double recoil_step(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
                    std::size_t kind, double stretch, const std::optional<ContactLaw> &contact)
 {
-  SmallestStretch smallest = of_all(short_stretch);
+  SmallestStretch smallest = SmallestStretch::Constant(short_stretch);
   smallest[lattice.shell(kind)] = stretch;
   if (stepping.stages > 0)
     return damped_step(lattice, material, smallest);

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <stdexcept>
+
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {
@@ -12,8 +13,7 @@ namespace
 
 std::size_t intervals(double extent, double pitch)
 {
-  if (!(extent < 1e9 * pitch))
-    throw std::invalid_argument("a lattice has fewer than 1e9 rows and columns");
+  require(extent < 1e9 * pitch, "a lattice has fewer than 1e9 rows and columns");
   return static_cast<std::size_t>(std::lround(extent / pitch));
 }
 
@@ -52,10 +52,9 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
   : grid_(grid), stencil_(stencil), d_(d), is_triangular_(has_triangular_kinds(grid, stencil)), scatter_(scatter)
 {
   const double spacing = grid.spacing;
-  if (!(spacing > 0.) || !(length > 0.) || !(height > 0.) || !(d > 0.))
-    throw std::invalid_argument("a lattice needs positive spacing, length and height");
-  if (grid.rotation != 0. || stencil.empty() || stencil.size() > most_kinds)
-    throw std::invalid_argument("a sheet has 1 to 127 half-bonds on a grid that is not rotated");
+  require(spacing > 0. && length > 0. && height > 0. && d > 0., "a lattice needs positive spacing, length and height");
+  require(grid.rotation == 0. && !stencil.empty() && stencil.size() <= most_kinds,
+          "a sheet has 1 to 127 half-bonds on a grid that is not rotated");
   int columns_reach = 0;
   for (const HalfBond &bond : stencil_)
   {
@@ -79,8 +78,8 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
   else
     rows_ = (rows_along_x ? even_intervals(across, pitch() * spacing) : intervals(across, pitch() * spacing)) + 1;
   // The margin of a periodic sheet is filled from the sheet once around, so it must not be wider.
-  if (columns_ < (periodic_along_ ? column_reach_ : 3) || rows_ < (periodic_across_ ? reach_ : 2))
-    throw std::invalid_argument("the sheet is too small for its lattice spacing: fewer than two rows or three columns");
+  require(columns_ >= (periodic_along_ ? column_reach_ : 3) && rows_ >= (periodic_across_ ? reach_ : 2),
+          "the sheet is too small for its lattice spacing: fewer than two rows or three columns");
   const auto aligned = [](std::size_t n) { return (n + row_alignment - 1) / row_alignment * row_alignment; };
   first_column_ = aligned(column_reach_);
   stride_ = first_column_ + aligned(columns_ + column_reach_);
@@ -93,18 +92,6 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
   }
   for (const HalfBond &bond : stencil_)
     section_lengths_.push_back(d * (bond.rest_length / bond.radius) / (3. * bond.weight));
-}
-
-Periodic TriangularLattice::periodic() const
-{
-  return orientation() == Orientation::rows_along_crack ? Periodic{periodic_along_, periodic_across_}
-                                                        : Periodic{periodic_across_, periodic_along_};
-}
-
-Eigen::Vector2d TriangularLattice::extent() const
-{
-  return grid_.from_row_frame(static_cast<double>(periodic_along_ ? columns_ : columns_ - 1),
-                              static_cast<double>(periodic_across_ ? rows_ : rows_ - 1));
 }
 
 bool TriangularLattice::is_site(std::size_t place) const
@@ -123,23 +110,22 @@ void TriangularLattice::find_images()
   const auto turns = [](std::ptrdiff_t number, std::size_t n) {
     return number < 0 ? -1 : number < static_cast<std::ptrdiff_t>(n) ? 0 : 1;
   };
-  const auto rows = static_cast<std::ptrdiff_t>(rows_), columns = static_cast<std::ptrdiff_t>(columns_);
-  const auto rows_beyond = static_cast<std::ptrdiff_t>(reach_), beyond = static_cast<std::ptrdiff_t>(column_reach_);
-  const auto place = [&](std::ptrdiff_t row, std::ptrdiff_t column)
-  { return index(static_cast<std::size_t>(row), static_cast<std::size_t>(column)); };
-  for (std::ptrdiff_t row = -rows_beyond; row < rows + rows_beyond; ++row)
-    for (std::ptrdiff_t column = -beyond; column < columns + beyond; ++column)
-    {
-      const int across = turns(row, rows_), along = turns(column, columns_);
-      if (across == 0 && along == 0)
-        column = columns - 1; // on to the right end of the row
-      else if ((across == 0 || periodic_across_) && (along == 0 || periodic_along_))
-        // Not the missing end of an odd row.
-        if (const std::size_t site = place(row - across * rows, column - along * columns); is_site(site))
-          images_.push_back(
-            {place(row, column), site,
-             grid_.from_row_frame(along * static_cast<double>(columns_), across * static_cast<double>(rows_))});
-    }
+  const auto beyond = static_cast<std::ptrdiff_t>(column_reach_);
+  for (std::size_t place = 0; place < n_places(); ++place)
+  {
+    const auto [row, column] = numbers(place);
+    const int across = turns(row, rows_), along = turns(column, columns_);
+    if ((across == 0 && along == 0) || (across != 0 && !periodic_across_) || (along != 0 && !periodic_along_) ||
+        column < -beyond || column >= static_cast<std::ptrdiff_t>(columns_) + beyond)
+      continue;
+    // Not the missing end of an odd row.
+    const std::size_t site = place - static_cast<std::size_t>(across) * rows_ * stride() -
+                             static_cast<std::size_t>(along) * columns_; // modulo 2^64
+    if (is_site(site))
+      images_.push_back(
+        {place, site,
+         grid_.from_row_frame(along * static_cast<double>(columns_), across * static_cast<double>(rows_))});
+  }
 }
 
 const TriangularLattice::Image *TriangularLattice::site_of_image(std::size_t place) const
@@ -151,8 +137,6 @@ const TriangularLattice::Image *TriangularLattice::site_of_image(std::size_t pla
 
 std::size_t TriangularLattice::canonical_place(std::size_t place) const
 {
-  if (images_.empty())
-    return place;
   const Image *image = site_of_image(place);
   return image != nullptr ? image->site : place;
 }
@@ -167,12 +151,24 @@ std::optional<std::size_t> TriangularLattice::row(std::ptrdiff_t number) const
 
 double TriangularLattice::shortest_bond() const
 {
-  if (scattered_)
-    return scattered_->shortest;
-  double shortest = rest_length(0);
-  for (std::size_t kind = 1; kind < n_kinds(); ++kind)
-    shortest = std::min(shortest, rest_length(kind));
-  return shortest;
+  const auto is_shorter = [](const HalfBond &a, const HalfBond &b) { return a.rest_length < b.rest_length; };
+  return scattered_ ? scattered_->shortest
+                    : std::min_element(stencil_.begin(), stencil_.end(), is_shorter)->rest_length;
+}
+
+std::pair<Rows, Rows> TriangularLattice::window(const Eigen::Vector2d &lower, const Eigen::Vector2d &upper) const
+{
+  const auto [along, across] = orientation() == Orientation::rows_along_crack ? std::pair(0, 1) : std::pair(1, 0);
+  const Eigen::Vector2d first = grid_point(index(0, 0));
+  // One more at either end, since odd rows are shifted.
+  const auto between = [&](int axis, double pitch, std::size_t n)
+  {
+    const auto clamped = [n](double number) { return static_cast<std::size_t>(std::clamp(number, 0., double(n))); };
+    const double scatter = scatter_.amplitude * grid_.spacing;
+    return Rows{clamped(std::floor((lower[axis] - first[axis] - scatter) / pitch) - 1.),
+                clamped(std::floor((upper[axis] - first[axis] + scatter) / pitch) + 2.)};
+  };
+  return {between(across, site_area() / spacing(), rows_), between(along, spacing(), columns_)};
 }
 
 Eigen::Vector2d TriangularLattice::reference(std::size_t place) const
@@ -180,8 +176,7 @@ Eigen::Vector2d TriangularLattice::reference(std::size_t place) const
   const Eigen::Vector2d X = grid_point(place);
   if (scatter_.amplitude == 0.)
     return X;
-  auto row = static_cast<std::ptrdiff_t>(place / stride()) - static_cast<std::ptrdiff_t>(reach_);
-  auto column = static_cast<std::ptrdiff_t>(place % stride()) - static_cast<std::ptrdiff_t>(first_column_);
+  auto [row, column] = numbers(place);
   const auto wrapped = [](std::ptrdiff_t number, std::size_t n)
   { return (number + 8 * static_cast<std::ptrdiff_t>(n)) % static_cast<std::ptrdiff_t>(n); };
   if (periodic_across_)
@@ -193,8 +188,7 @@ Eigen::Vector2d TriangularLattice::reference(std::size_t place) const
 
 Eigen::Vector2d TriangularLattice::grid_point(std::size_t place) const
 {
-  const auto row = static_cast<std::ptrdiff_t>(place / stride()) - static_cast<std::ptrdiff_t>(reach_);
-  const auto column = static_cast<std::ptrdiff_t>(place % stride()) - static_cast<std::ptrdiff_t>(first_column_);
+  const auto [row, column] = numbers(place);
   const double along = static_cast<double>(column) + (rows_shift() && row % 2 != 0 ? 0.5 : 0.);
   const double across = static_cast<double>(row);
   // Centring before scaling keeps mirror sites at exactly opposite y.

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -12,6 +14,12 @@
 
 namespace latcon::lattice
 {
+
+/// The rows, or columns, begin, begin + 1, ... end - 1.
+struct Rows
+{
+  std::size_t begin, end;
+};
 
 /// Directions along which the sheet repeats itself without end.
 struct Periodic
@@ -24,7 +32,6 @@ struct Periodic
 /// third-nearest.
 inline constexpr std::size_t n_kinds_per_shell = 3;
 inline constexpr std::size_t n_bond_kinds = n_shells * n_kinds_per_shell; ///< of all shells
-inline constexpr std::size_t n_nearest_kinds = n_kinds_per_shell;         ///< of them nearest neighbours
 
 /// Shell of a kind of bonds of the triangular lattice.
 constexpr std::size_t shell_of(std::size_t kind)
@@ -83,7 +90,11 @@ public:
   double lattice_spacing() const { return d_; }    ///< d [m], of the lattice whose shells the rings are, or its own
   Orientation orientation() const { return grid_.orientation; }
   const Grid &grid() const { return grid_; }
-  Periodic periodic() const;
+  Periodic periodic() const
+  {
+    return orientation() == Orientation::rows_along_crack ? Periodic{periodic_along_, periodic_across_}
+                                                          : Periodic{periodic_across_, periodic_along_};
+  }
   double length() const { return extent().x(); } ///< distance of the outermost sites along x, or the period [m]
   double height() const { return extent().y(); } ///< the same along y [m]
   /// Reference area V of one site [m^2], (sqrt3 / 2) d^2 of the triangular lattice.
@@ -128,6 +139,9 @@ public:
   bool is_occupied(std::size_t place) const { return is_site(place) || site_of_image(place) != nullptr; }
   /// The site that stands at a place or has its image there: what fields over sites are summed at.
   std::size_t canonical_place(std::size_t place) const;
+
+  /// Rows and columns that contain all sites, and some others, with a reference position between two corners [m].
+  std::pair<Rows, Rows> window(const Eigen::Vector2d &lower, const Eigen::Vector2d &upper) const;
 
   /// Reference position (X, Y) [m] of a place; X from 0 to length(), Y centred on 0. Valid in the margin as well.
   Eigen::Vector2d reference(std::size_t place) const;
@@ -184,7 +198,6 @@ public:
   /// the energy of the shell. The spacing d on the triangular lattice; d |R| / (3 q l) for a weight q in a ring of
   /// radius l. Where points are scattered it is that of a bound, and bonds have factors; see State::stiffness.
   double section_length(std::size_t kind) const { return section_lengths_[kind]; }
-  static bool is_nearest(std::size_t kind) { return kind < n_nearest_kinds; }
   std::size_t reach() const { return reach_; }               ///< of bonds, in rows
   std::size_t column_reach() const { return column_reach_; } ///< of bonds, in places along a row
 
@@ -192,7 +205,17 @@ private:
   bool rows_shift() const { return grid_.kind == Grid::Kind::triangular; }
   bool rows_alternate() const { return rows_shift() && !periodic_along_; } // in length
   double pitch() const { return rows_shift() ? half_sqrt3 : 1.; }          // of rows, in spacings
-  Eigen::Vector2d extent() const;
+  Eigen::Vector2d extent() const
+  {
+    return grid_.from_row_frame(static_cast<double>(periodic_along_ ? columns_ : columns_ - 1),
+                                static_cast<double>(periodic_across_ ? rows_ : rows_ - 1));
+  }
+  /// Numbers of the row and of the column of a place, in the margin those beyond the sheet.
+  std::array<std::ptrdiff_t, 2> numbers(std::size_t place) const
+  {
+    return {static_cast<std::ptrdiff_t>(place / stride()) - static_cast<std::ptrdiff_t>(reach_),
+            static_cast<std::ptrdiff_t>(place % stride()) - static_cast<std::ptrdiff_t>(first_column_)};
+  }
   const Image *site_of_image(std::size_t place) const;
   void find_images();
 

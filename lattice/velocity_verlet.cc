@@ -1,41 +1,50 @@
-#include "lattice/velocity_verlet.h"
-
 #include <functional>
 
-#include "lattice/row_kernels.h"
+#include "lattice/integrator.h"
 
 namespace latcon::lattice
 {
-
-VelocityVerlet::VelocityVerlet(const RowPartition &band, Forces &forces, double time_step)
-  : Integrator(band, forces, time_step)
+namespace
 {
-  predicted_vx_ = predicted_vy_ = Field(lattice_.n_places());
-}
 
-void VelocityVerlet::step(State &state)
+class VelocityVerlet : public Integrator
 {
-  // Positions and predicted velocities of a row at the end of a step, velocities half way.
-  const std::function<void(std::size_t)> drift = [&](std::size_t row)
+public:
+  VelocityVerlet(const RowPartition &band, Forces &forces, double time_step) : Integrator(band, forces, time_step)
   {
-    const std::size_t begin = lattice_.index(row, 0), n = lattice_.columns();
-    kernels::loops().drift(time_step(), n, &state.ax[begin], &state.vx[begin], &state.x[begin], &predicted_vx_[begin]);
-    kernels::loops().drift(time_step(), n, &state.ay[begin], &state.vy[begin], &state.y[begin], &predicted_vy_[begin]);
-  };
-  const auto kick_row = [&](std::size_t row, const double *fx, const double *fy)
-  { kick(state, row, fx, fy, 0.5 * time_step()); };
-  forces_.set_elapsed(time_step());
-  Forces::RowCallbacks work = move_rows(state, drift);
-  touched_ = {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &predicted_vx_, &predicted_vy_};
-  work.fields = &touched_;
-  work.post_force = std::ref(kick_row);
-  work.history = &state.history;
-  forces_.evaluate(state, predicted_vx_, predicted_vy_, work);
-  evaluate_site_forces(state);
-  accelerate_sites(state);
-  kick_sites(state, 0.5 * time_step());
-  update_images(state, band_);
-  state.time += time_step();
+    predicted_vx_ = predicted_vy_ = Field(lattice_.n_places());
+  }
+
+  void step(State &state) override
+  {
+    // Positions and predicted velocities of a row at the end of a step, velocities half way.
+    const std::function<void(std::size_t)> drift = [&](std::size_t row)
+    {
+      const std::size_t i = lattice_.index(row, 0), n = lattice_.columns();
+      kernels::loops().drift(time_step(), n, &state.ax[i], &state.vx[i], &state.x[i], &predicted_vx_[i]);
+      kernels::loops().drift(time_step(), n, &state.ay[i], &state.vy[i], &state.y[i], &predicted_vy_[i]);
+    };
+    const auto kick_row = [&](std::size_t row, const double *fx, const double *fy)
+    { kick(state, row, fx, fy, 0.5 * time_step()); };
+    forces_.set_elapsed(time_step());
+    Forces::RowCallbacks work = move_rows(state, drift);
+    work.fields = {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &predicted_vx_, &predicted_vy_};
+    work.post_force = std::ref(kick_row);
+    work.history = &state.history;
+    forces_.evaluate(state, predicted_vx_, predicted_vy_, work);
+    evaluate_site_forces(state);
+    accelerate_sites(state);
+    kick_sites(state, 0.5 * time_step());
+    update_images(state, band_);
+    state.time += time_step();
+  }
+};
+
+} // namespace
+
+std::unique_ptr<Integrator> velocity_verlet(const RowPartition &band, Forces &forces, double time_step)
+{
+  return std::make_unique<VelocityVerlet>(band, forces, time_step);
 }
 
 } // namespace latcon::lattice

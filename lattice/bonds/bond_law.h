@@ -9,7 +9,7 @@
 /// is its memory (bond_memory.h).
 ///
 /// A bond of rest length l and cross-section A0 stores A0 l psi(lam), lam = |x_j - x_i| / l > 0 being its stretch, and
-/// pulls with the axial force A0 psi'(lam), tension positive. A law gives psi, psi' and psi'' in Pa. Its header has a
+/// pulls with the axial force A0 psi'(lam), tension positive. A law gives psi, psi' and psi'' in Pa. laws.h has a
 /// struct with its constants, energy, stiffness and limits; formulas.inc has its force for any type of number.
 namespace latcon::lattice
 {

@@ -19,53 +19,36 @@ class Builder
 public:
   explicit Builder(Expression &expression) : e_(expression) {}
 
-  // An operation as the loop computes it, with quotients by inverses and powers by products.
-  std::size_t apply(const Expression::Node &operation, std::size_t a, std::size_t b)
+  // An operation as the loop computes it: quotients by the inverse, which terms with one denominator share, since a
+  // division takes as long as several products, and powers by products. @param value of a constant, exponent of a power
+  std::size_t apply(Operation operation, std::size_t a, std::size_t b = 0, double value = 0.)
   {
-    switch (operation.operation)
+    switch (operation)
     {
     case Operation::variable:
       return e_.variable();
     case Operation::constant:
-      return number(operation.value);
+      return number(value);
     case Operation::add:
-      return sum(a, b);
+      return e_.is_constant(a, 0.) ? b : e_.is_constant(b, 0.) ? a : e_.apply(operation, a, b);
     case Operation::subtract:
-      return difference(a, b);
+      if (e_.is_constant(a, 0.))
+        return apply(Operation::multiply, number(-1.), b);
+      return e_.is_constant(b, 0.) ? a : e_.apply(operation, a, b);
     case Operation::multiply:
-      return product(a, b);
+      if (e_.is_constant(a, 0.) || e_.is_constant(b, 0.))
+        return number(0.);
+      return e_.is_constant(a, 1.) ? b : e_.is_constant(b, 1.) ? a : e_.apply(operation, a, b);
     case Operation::divide:
-      return quotient(a, b);
+      return apply(Operation::multiply, a, inverse(b));
     case Operation::power:
-      return power(a, operation.value);
+      return power(a, value);
     default:
-      return e_.apply(operation.operation, a);
+      return e_.apply(operation, a);
     }
   }
 
   std::size_t number(double value) { return e_.constant(value); }
-  std::size_t sum(std::size_t a, std::size_t b)
-  {
-    if (e_.is_constant(a, 0.))
-      return b;
-    return e_.is_constant(b, 0.) ? a : e_.apply(Operation::add, a, b);
-  }
-  std::size_t difference(std::size_t a, std::size_t b)
-  {
-    if (e_.is_constant(a, 0.))
-      return product(number(-1.), b);
-    return e_.is_constant(b, 0.) ? a : e_.apply(Operation::subtract, a, b);
-  }
-  std::size_t product(std::size_t a, std::size_t b)
-  {
-    if (e_.is_constant(a, 0.) || e_.is_constant(b, 0.))
-      return number(0.);
-    if (e_.is_constant(a, 1.))
-      return b;
-    return e_.is_constant(b, 1.) ? a : e_.apply(Operation::multiply, a, b);
-  }
-  // By the inverse, which terms with one denominator share: a division takes as long as several products.
-  std::size_t quotient(std::size_t a, std::size_t b) { return product(a, inverse(b)); }
   std::size_t inverse(std::size_t a) { return e_.apply(Operation::divide, number(1.), a); }
 
   std::size_t power(std::size_t a, double exponent)
@@ -85,8 +68,8 @@ private:
   {
     if (exponent == 1)
       return a;
-    const std::size_t half = whole_power(a, exponent / 2), square = product(half, half);
-    return exponent % 2 == 0 ? square : product(square, a);
+    const std::size_t half = whole_power(a, exponent / 2), square = apply(Operation::multiply, half, half);
+    return exponent % 2 == 0 ? square : apply(Operation::multiply, square, a);
   }
 
   Expression &e_;
@@ -106,7 +89,7 @@ Expression lowered(const Expression &function)
   std::vector<std::size_t> copy(nodes.size(), 0);
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (needed[i])
-      copy[i] = b.apply(nodes[i], copy[nodes[i].left], copy[nodes[i].right]);
+      copy[i] = b.apply(nodes[i].operation, copy[nodes[i].left], copy[nodes[i].right], nodes[i].value);
   result.result = copy[function.result];
   return result;
 }
@@ -116,6 +99,7 @@ Expression derivative(const Expression &function)
 {
   Expression result = function;
   Builder b(result);
+  const auto product = [&](std::size_t a, std::size_t c) { return b.apply(Operation::multiply, a, c); };
   std::vector<std::size_t> slope;
   const auto slope_of = [&](std::size_t i)
   {
@@ -127,21 +111,20 @@ Expression derivative(const Expression &function)
     case Operation::constant:
       return b.number(0.);
     case Operation::add:
-      return b.sum(slope[left], slope[right]);
     case Operation::subtract:
-      return b.difference(slope[left], slope[right]);
+      return b.apply(operation, slope[left], slope[right]);
     case Operation::multiply:
-      return b.sum(b.product(slope[left], right), b.product(left, slope[right]));
+      return b.apply(Operation::add, product(slope[left], right), product(left, slope[right]));
     case Operation::divide:
-      return b.quotient(b.difference(slope[left], b.product(i, slope[right])), right);
+      return b.apply(operation, b.apply(Operation::subtract, slope[left], product(i, slope[right])), right);
     case Operation::power:
-      return b.product(b.product(b.number(value), b.power(left, value - 1.)), slope[left]);
+      return product(product(b.number(value), b.power(left, value - 1.)), slope[left]);
     case Operation::square_root:
-      return b.quotient(slope[left], b.product(b.number(2.), i));
+      return b.apply(Operation::divide, slope[left], product(b.number(2.), i));
     case Operation::exponential:
-      return b.product(i, slope[left]);
+      return product(i, slope[left]);
     case Operation::logarithm:
-      return b.quotient(slope[left], left);
+      return b.apply(Operation::divide, slope[left], left);
     }
     throw std::logic_error("an operation without a derivative");
   };
@@ -192,13 +175,6 @@ void run(const Expression &function, const double *stretches, double *values)
   std::copy_n(of_nodes[function.result], n, values);
 }
 
-double at(const Expression &function, double stretch)
-{
-  double value;
-  run<1>(function, &stretch, &value);
-  return value;
-}
-
 } // namespace
 
 ExpressionLaw::ExpressionLaw(Expression psi, double longest) : psi_(std::move(psi))
@@ -208,25 +184,14 @@ ExpressionLaw::ExpressionLaw(Expression psi, double longest) : psi_(std::move(ps
   force_ = lowered(force);
   stiffness_ = lowered(derivative(force));
   at_rest_ = at(energy_, 1.);
-  check_law({[this](double l) { return energy(l); }, [this](double l) { return ExpressionLaw::force(l); },
-             [this](double l) { return stiffness(l); }},
-            smallest_checked_stretch, longest);
-  bound_stiffness(longest);
+  check(longest);
 }
 
-double ExpressionLaw::energy(double stretch) const noexcept
+double ExpressionLaw::at(const Expression &function, double stretch) noexcept
 {
-  return at(energy_, stretch) - at_rest_;
-}
-
-double ExpressionLaw::force(double stretch) const noexcept
-{
-  return at(force_, stretch);
-}
-
-double ExpressionLaw::stiffness(double stretch) const noexcept
-{
-  return at(stiffness_, stretch);
+  double value;
+  run<1>(function, &stretch, &value);
+  return value;
 }
 
 void ExpressionLaw::forces(std::size_t n, const double *stretches, double *forces) const noexcept

@@ -20,14 +20,16 @@ public:
   /// @throws std::length_error if psi'' takes more than Expression::max_nodes operations
   ExpressionLaw(support::Expression psi, double longest);
 
-  double energy(double stretch) const noexcept override;
-  double force(double stretch) const noexcept override;
-  double stiffness(double stretch) const noexcept override;
+  double energy(double stretch) const noexcept override { return at(energy_, stretch) - at_rest_; }
+  double force(double stretch) const noexcept override { return at(force_, stretch); }
+  double stiffness(double stretch) const noexcept override { return at(stiffness_, stretch); }
   void forces(std::size_t n, const double *stretches, double *forces) const noexcept override;
 
   const support::Expression &psi() const { return psi_; } ///< as given
 
 private:
+  static double at(const support::Expression &function, double stretch) noexcept;
+
   support::Expression psi_, energy_, force_, stiffness_; // the last three as they are computed
   double at_rest_ = 0.;                                  // [Pa], psi(1) as given
 };

@@ -2,12 +2,8 @@
 
 #include <cmath>
 
-#include "lattice/bonds/custom_bond.h"
-#include "lattice/bonds/custom_memory.h"
-#include "lattice/bonds/linear_bond.h"
-#include "lattice/bonds/maxwell_memory.h"
-#include "lattice/bonds/mooney_rivlin_bond.h"
-#include "lattice/bonds/plastic_memory.h"
+#include "lattice/bonds/laws.h"
+#include "lattice/bonds/memories.h"
 
 /// Formulas of bonds for one double.
 namespace latcon::lattice::formulas

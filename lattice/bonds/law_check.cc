@@ -92,8 +92,11 @@ void check_law(const std::vector<std::function<double(double)>> &functions, doub
 
 // Between two stretches of the grid a smooth law differs from them by (step^2 / 8) lam^2 psi'''', less than 1e-4 of
 // psi'' for powers up to the 10th; automatic time steps have a larger margin.
-void CheckedLaw::bound_stiffness(double longest)
+void CheckedLaw::check(double longest)
 {
+  check_law({[this](double l) { return energy(l); }, [this](double l) { return force(l); },
+             [this](double l) { return stiffness(l); }},
+            smallest_checked_stretch, longest);
   stretches_ = grid(0.05, longest, 0.003);
   for (const double stretch : stretches_)
     largest_.push_back(bound_at(*this, stretch));

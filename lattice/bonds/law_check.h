@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "lattice/bonds/custom_bond.h"
+#include "lattice/bonds/laws.h"
 
 namespace latcon::lattice
 {
@@ -33,8 +33,9 @@ public:
   double largest_stiffness(double smallest_stretch) const noexcept override;
 
 protected:
-  /// Before largest_stiffness(). @param longest largest stretch of an unbroken bond [-], > 1
-  void bound_stiffness(double longest);
+  /// Checks this law as check_law does and bounds its stiffness, before largest_stiffness().
+  /// @param longest largest stretch of an unbroken bond [-], > 1
+  void check(double longest);
 
 private:
   std::vector<double> stretches_; // [-], increasing

@@ -6,6 +6,8 @@
 
 #include <dlfcn.h>
 
+#include "lattice/bonds/require.h"
+
 namespace latcon::lattice
 {
 namespace
@@ -48,15 +50,12 @@ LawLibrary::LawLibrary(const std::string &path)
 LibraryLaw::LibraryLaw(LawLibrary library, std::vector<double> parameters, double longest)
   : library_(std::move(library)), parameters_(std::move(parameters))
 {
-  if (parameters_.size() != library_.parameters().size())
-    throw std::invalid_argument("a law needs one value for each of its parameters");
+  require(parameters_.size() == library_.parameters().size(), "a law needs one value for each of its parameters");
   at_rest_ = derivatives(1.)[0];
+  check(longest);
   const auto derivative = [this](std::size_t k) { return [this, k](double l) { return derivatives(l)[k]; }; };
-  const auto force = [this](double l) { return LibraryLaw::force(l); };
-  check_law({derivative(0), force, derivative(2)}, smallest_checked_stretch, longest);
   check_law({derivative(0), derivative(1), derivative(2), derivative(3), derivative(4)}, smallest_checked_stretch,
             longest);
-  bound_stiffness(longest);
 }
 
 std::array<double, 5> LibraryLaw::derivatives(double stretch) const noexcept

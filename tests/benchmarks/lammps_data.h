@@ -34,7 +34,7 @@ inline void write_lammps_data(const latcon::lattice::Simulation &simulation, con
                -d, d);
   const double mass = site_mass(simulation.material(), sheet);
   std::fprintf(out, "Masses\n\n1 %.17g\n2 %.17g\n\nBond Coeffs\n\n", mass, mass);
-  for (const std::size_t kind : {std::size_t{0}, n_nearest_kinds})
+  for (const std::size_t kind : {std::size_t{0}, n_kinds_per_shell})
   {
     const Shell &shell = *simulation.material().shell(kind);
     const double length = sheet.rest_length(kind), modulus = std::get<LinearBond>(shell.law).modulus;
@@ -54,8 +54,8 @@ inline void write_lammps_data(const latcon::lattice::Simulation &simulation, con
   for_each_bond(state, sheet,
                 [&](const Bond &bond)
                 {
-                  std::fprintf(out, "%zu %d %zu %zu\n", ++n, TriangularLattice::is_nearest(bond.kind) ? 1 : 2,
-                               number(bond.near), number(bond.far));
+                  std::fprintf(out, "%zu %d %zu %zu\n", ++n, bond.kind < n_kinds_per_shell ? 1 : 2, number(bond.near),
+                               number(bond.far));
                 });
   if (std::fflush(out) != 0 || std::ferror(out) != 0)
     throw std::runtime_error("cannot write " + path);

@@ -1,9 +1,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lattice/bond_energy.h"
-#include "lattice/critical_stretch.h"
-#include "lattice/rate_stretch.h"
+#include "lattice/breaking_rule.h"
 #include "tests/lattice/sheets.h"
 
 namespace breaking_rule_test
@@ -30,8 +28,8 @@ void expect_screened(const BreakingRule &rule, double weakest, double strongest)
 
 TEST(BreakingRule, IsScreenedBelowItsLimits)
 {
-  expect_screened(CriticalStretch({3., 3.5, 4.}), 0.5, 2.);
-  expect_screened(RateStretch(3., 1.4, 1e-3), 0.5, 2.);
+  expect_screened(CriticalStretch(std::array<double, n_shells>{3., 3.5, 4.}), 0.5, 2.);
+  expect_screened(CriticalStretch(3., 1.4, 1e-3), 0.5, 2.);
   Material disordered = rubber;
   disordered.disorder.strength = disordered.disorder.stiffness = Distribution(Distribution::Kind::uniform, 0.3);
   const Distribution &factors = disordered.disorder.strength;
@@ -48,7 +46,7 @@ TEST(BreakingRule, OfEnergyBreaksAtThatEnergy)
 
 TEST(BreakingRule, OfRateToughensBondsThatStretchFast)
 {
-  const RateStretch rule(3., 1.5, 1e-3);
+  const CriticalStretch rule(3., 1.5, 1e-3);
   EXPECT_EQ(rule.limit({0, 1., 1., 1., -1e6}), 3.);
   EXPECT_DOUBLE_EQ(rule.limit({0, 1., 1., 1., 1e3}), 3. * 1.25);
   EXPECT_NEAR(rule.limit({1, 2., 1., 1., 1e12}), 9., 1e-6);
@@ -64,7 +62,7 @@ TEST(Fracture, AsksTheRuleAboutEachBond)
     [&](const TimeStepping &how, std::shared_ptr<const BreakingRule> rule, const Eigen::Matrix2d &rate)
   {
     Simulation simulation(sheet, rubber, homogeneous_state(sheet, rubber, F, Edges::held), how,
-                          Fracture(sheet, rubber, std::move(rule), NoToughening{}, F));
+                          Fracture(sheet, rubber, std::move(rule), GivenToughening{}, F));
     Field vx(sheet.n_places()), vy(sheet.n_places());
     for (const std::size_t place : sheets::sites(sheet))
     {
@@ -85,8 +83,8 @@ TEST(Fracture, AsksTheRuleAboutEachBond)
       broken(how, std::make_shared<CriticalStretch>(std::array<double, n_shells>{2., 1.4, 2.}), still);
     EXPECT_EQ(near, 0u);
     EXPECT_GT(next, 0u);
-    EXPECT_GT(broken(how, std::make_shared<RateStretch>(1.4, 1.2, 1.), still).first, 0u);
-    EXPECT_EQ(broken(how, std::make_shared<RateStretch>(1.4, 1.2, 1.), L).first, 0u);
+    EXPECT_GT(broken(how, std::make_shared<CriticalStretch>(1.4, 1.2, 1.), still).first, 0u);
+    EXPECT_EQ(broken(how, std::make_shared<CriticalStretch>(1.4, 1.2, 1.), L).first, 0u);
     EXPECT_GT(broken(how, std::make_shared<BondEnergy>(rubber, energy(rubber.nearest.law, 1.45)), still).first, 0u);
     EXPECT_EQ(broken(how, std::make_shared<BondEnergy>(rubber, energy(rubber.nearest.law, 1.6)), still).first, 0u);
   }

@@ -265,7 +265,7 @@ TEST(Contact, LedgerClosesWhereAPairOverlapsFromTheStart)
     state.bonds.add(left, 0);
     state.x[right] = state.x[left] + 0.8 * sheets::spacing;
     Simulation simulation(sheet, material, std::move(state), time_step,
-                          Fracture(sheet, material, 0.5, NoToughening{}, Eigen::Matrix2d::Identity()));
+                          Fracture(sheet, material, 0.5, GivenToughening{}, Eigen::Matrix2d::Identity()));
     simulation.enable_contact(contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 0.));
     const auto steps = static_cast<int>(std::lround(4e-5 / time_step));
     simulation.step();

@@ -71,7 +71,7 @@ TEST(Contact, LedgerClosesThroughACrackWhoseDebrisTouches)
   const TriangularLattice sheet = sheet_of(Orientation::rows_along_crack);
   running_crack::Choice choice;
   choice.stepping = 0.9 * time_step_limits(sheet, choice.material, 0.3).combined;
-  choice.toughening = NoToughening{};
+  choice.toughening = GivenToughening{};
   choice.contact = choice.contact_strength = 1.;
   const auto crack = running_crack::start(sheet, choice);
   std::size_t most = 0;

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "lattice/relaxation.h"
-#include "lattice/seed.h"
 #include "tests/lattice/sheets.h"
 
 namespace cutout_test

@@ -128,7 +128,7 @@ TEST(BondFactors, BelongToTheirBond)
       for (std::size_t kind = 0; kind < 2 * n_kinds_per_shell; ++kind)
       {
         const std::size_t place = sheet.index(row, column);
-        if (TriangularLattice::is_nearest(kind))
+        if (kind < n_kinds_per_shell)
         {
           EXPECT_EQ(of_nearest.of(place, kind), stiffness.of(place, kind));
         }
@@ -143,7 +143,7 @@ TEST(BondFactors, BelongToTheirBond)
   // Correlations of independent numbers: five standard errors.
   for (const double sum : {with_strength, with_next, with_above, with_kind, with_seed})
     EXPECT_LT(std::abs(sum) / n, 5. / std::sqrt(n));
-  EXPECT_TRUE(of_nearest.kinds[n_nearest_kinds].empty());
+  EXPECT_TRUE(of_nearest.kinds[n_kinds_per_shell].empty());
 }
 
 TEST(Disorder, RefusesStatesOfOtherMaterials)

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/lattice/reference_forces.h"
 #include "tests/lattice/running_crack.h"
 
 namespace fracture_test
@@ -47,7 +48,7 @@ struct TenSites
   double limit(std::size_t row, std::size_t column, std::size_t kind) const
   {
     const std::size_t place = sheet.index(row, column);
-    return state.bonds.present(place, kind) ? lattice::breaking_stretch_of(state, sheet.bond(place, kind)) : 0.;
+    return state.bonds.present(place, kind) ? breaking_stretch_of(state, sheet.bond(place, kind)) : 0.;
   }
 
   TriangularLattice sheet;
@@ -60,7 +61,7 @@ struct TenSites
 // Rows hold 3 + 2 + 3 bonds, the gaps 6 each; the cut corner takes one of a row and one of a gap with it.
 TEST(Fracture, CuttingASiteTakesItsBonds)
 {
-  const TenSites sheet{NoToughening{}};
+  const TenSites sheet{GivenToughening{}};
   EXPECT_EQ(sheet.n_bonds(), 20u - 2u);
   EXPECT_EQ(sheet.state.lost_bonds[sheet.sheet.index(2, 2)], 1);
   EXPECT_EQ(sheet.state.lost_bonds[sheet.sheet.index(1, 2)], 1);
@@ -71,7 +72,7 @@ TEST(Fracture, CuttingASiteTakesItsBonds)
 // sqrt(1.1^2 + 3/4) = 1.4. Only the first is beyond 1.5.
 TEST(Fracture, BreaksWhatIsBeyondTheLimitForGood)
 {
-  TenSites sheet{NoToughening{}};
+  TenSites sheet{GivenToughening{}};
   const std::size_t corner = sheet.sheet.index(0, 0);
   sheet.state.x[corner] -= 0.6;
   const std::vector<BrokenBond> broken = sheet.apply();
@@ -162,7 +163,7 @@ TEST(Fracture, FlagsARowIfAndOnlyIfOneOfItsBondsHasAnEvent)
 // Six bonds at most: the tip needs two losses. The corner's two bonds go; then its neighbours have lost one each.
 TEST(Fracture, TipIsTheRightMostSiteThatLostAQuarterOfItsBonds)
 {
-  TenSites sheet{NoToughening{}};
+  TenSites sheet{GivenToughening{}};
   EXPECT_FALSE(sheet.fracture.tip());
   sheet.state.x[sheet.sheet.index(0, 0)] -= 2.;
   EXPECT_EQ(sheet.apply().size(), 2u);
@@ -182,11 +183,11 @@ TEST(Fracture, TipIsTheRightMostSiteThatLostAQuarterOfItsBonds)
 // In a state that was cut or loaded from outside the tip may be any site.
 TEST(Fracture, FindsTheTipWhereverItIs)
 {
-  const TenSites whole{NoToughening{}};
+  const TenSites whole{GivenToughening{}};
   for (std::size_t row = 0; row < 3; ++row)
     for (std::size_t column = 0; column < whole.sheet.sites_in_row(row); ++column)
     {
-      TenSites sheet{NoToughening{}};
+      TenSites sheet{GivenToughening{}};
       const std::size_t place = sheet.sheet.index(row, column);
       sheet.state.lost_bonds[place] = 3;
       sheet.fracture.locate_tip(sheet.state);
@@ -211,7 +212,7 @@ TEST(Fracture, LeavesHeldSitesHeld)
                   state.bonds.clear(sheet.n_places());
                   state.bonds.add(bond.near, bond.kind);
                   Forces forces(sheet, material);
-                  Fracture fracture(sheet, material, 1.5, NoToughening{}, F);
+                  Fracture fracture(sheet, material, 1.5, GivenToughening{}, F);
                   fracture.configure(state, forces);
                   forces.evaluate(state, state.vx, state.vy);
                   EXPECT_EQ(fracture.apply(state, forces, state.vx, state.vy).size(), 1u);
@@ -232,7 +233,7 @@ TEST(Fracture, OwnsTheBreakingStretch)
   // Which must not pass silently for bonds that hold.
   Forces forces(sheet, material);
   forces.evaluate(state, state.vx, state.vy);
-  EXPECT_THROW(Fracture(sheet, material, 1.5, NoToughening{}, F).apply(state, forces, state.vx, state.vy),
+  EXPECT_THROW(Fracture(sheet, material, 1.5, GivenToughening{}, F).apply(state, forces, state.vx, state.vy),
                std::logic_error);
   state.x[far] += 0.2 * sheets::spacing;
   state.bonds.toughen(near, 0);
@@ -253,7 +254,7 @@ TEST(Fracture, OwnsTheBreakingStretch)
     simulation.step();
     return simulation.n_broken();
   };
-  const std::size_t all = n_broken(NoToughening{});
+  const std::size_t all = n_broken(GivenToughening{});
   EXPECT_GT(all, 1u);
   EXPECT_EQ(n_broken(GivenToughening{1.}), all);
   EXPECT_EQ(n_broken(GivenToughening{2.}), all - 1);
@@ -270,7 +271,7 @@ TEST(Fracture, CutsHeldSitesOutForGood)
   const Material material = sheets::rubber();
   const Eigen::Matrix2d F = sheets::stretched(1.2, 1.2);
   Simulation simulation(sheet, material, homogeneous_state(sheet, material, F, Edges::held), 1e-9,
-                        Fracture(sheet, material, 3., NoToughening{}, F));
+                        Fracture(sheet, material, 3., GivenToughening{}, F));
   const std::size_t corner = sheet.index(0, 0), next = sheet.index(0, 1);
   simulation.cut({corner});
   simulation.constrain({held_sites(simulation.state(), sheet), true, true, steady(sheets::stretched(400., 200.))});
@@ -288,7 +289,7 @@ TEST(Fracture, CutsGivenBonds)
   const Material material = sheets::rubber();
   const Eigen::Matrix2d F = sheets::stretched(1.2, 1.3);
   Simulation simulation(sheet, material, homogeneous_state(sheet, material, F, Edges::held), 1e-9,
-                        Fracture(sheet, material, unbreakable, NoToughening{}, F));
+                        Fracture(sheet, material, unbreakable, GivenToughening{}, F));
   const double before = simulation.energies().elastic;
   const std::size_t place = sheet.index(4, 3);
   simulation.cut_bonds({{place, 0}, {place, 4}, {place, 0}});
@@ -368,10 +369,10 @@ TEST(Fracture, RefusesRulesOutOfRange)
 {
   EXPECT_THROW(TenSites(GivenToughening{0.5}), std::invalid_argument);
   const TriangularLattice periodic(1., 10., 10., Orientation::rows_along_crack, {true, false});
-  EXPECT_THROW(Fracture(periodic, sheets::rubber(), 3., NoToughening{}, Eigen::Matrix2d::Identity()),
+  EXPECT_THROW(Fracture(periodic, sheets::rubber(), 3., GivenToughening{}, Eigen::Matrix2d::Identity()),
                std::invalid_argument);
-  EXPECT_THROW(TenSites(NoToughening{}).fracture.set_lookahead(-1.), std::invalid_argument);
-  EXPECT_THROW(TenSites(NoToughening{}, 0.), std::invalid_argument);
+  EXPECT_THROW(TenSites(GivenToughening{}).fracture.set_lookahead(-1.), std::invalid_argument);
+  EXPECT_THROW(TenSites(GivenToughening{}, 0.), std::invalid_argument);
   EXPECT_THROW(TenSites(BehindTipToughening{-1., 2.}), std::invalid_argument);
   EXPECT_THROW(TenSites(BehindTipToughening{1., 0.5}), std::invalid_argument);
   EXPECT_THROW(TenSites(RetractionToughening{1.2, 2.}), std::invalid_argument);

@@ -14,6 +14,13 @@ struct ReferenceForces
   std::vector<bool> row_has_events;
 };
 
+/// Stretch beyond which a bond that is present may break [-]; see BreakingRule::smallest_limit().
+inline double breaking_stretch_of(const latcon::lattice::State &state, const latcon::lattice::Bond &bond)
+{
+  return (state.bonds.toughened(bond.near, bond.kind) ? state.toughened_stretch : state.breaking_stretch) *
+         state.strength.of(bond.near, bond.kind);
+}
+
 /// Maxwell branches of a bond: {overstress after a sudden change to `stretch` [Pa], modulus [Pa], relaxation time [s]}.
 inline std::vector<std::array<double, 3>> overstressed_branches(const latcon::lattice::State &state,
                                                                 const latcon::lattice::Shell &shell, std::size_t place,

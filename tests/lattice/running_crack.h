@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lattice/seed.h"
+#include "lattice/cutout.h"
 #include "lattice/simulation.h"
 #include "lattice/site_fields.h"
 #include "lattice/time_step.h"

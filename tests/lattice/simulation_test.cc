@@ -28,7 +28,7 @@ TEST(Simulation, RefusesASecondContactAndLoadsOnABrokenSheet)
   const auto start = [&](double breaking_stretch)
   {
     return Simulation(sheet, material, state, 1e-9,
-                      Fracture(sheet, material, breaking_stretch, NoToughening{}, loading));
+                      Fracture(sheet, material, breaking_stretch, GivenToughening{}, loading));
   };
   Simulation whole = start(3.), cut = start(3.), broken = start(1.3);
   whole.load_ends(loading, end, end);
@@ -49,7 +49,7 @@ TEST(EnergyBalance, ClosesWhenMovingSitesAreCut)
   const Material material = sheets::rubber();
   const Eigen::Matrix2d F = sheets::stretched(1.4, 1.6);
   Simulation simulation(sheet, material, homogeneous_state(sheet, material, F, Edges::held), 2e-8,
-                        Fracture(sheet, material, unbreakable, NoToughening{}, F));
+                        Fracture(sheet, material, unbreakable, GivenToughening{}, F));
   simulation.set_velocities(Field(sheet.n_places(), 3.), Field(sheet.n_places(), -2.));
   for (int step = 0; step < 20; ++step)
     simulation.step();

@@ -35,7 +35,9 @@ TEST(SiteFields, AreSumsOverTheBondsOfASite)
         state.vx[place] = (rate * sheet.reference(place)).x();
         state.vy[place] = (rate * sheet.reference(place)).y();
       }
-      Forces(sheet, material).update_memory(state);
+      Forces(sheet, material)
+        .evaluate(state, state.vx, state.vy,
+                  {{}, {}, [](std::size_t, const double *, const double *) {}, &state.history});
       const std::size_t middle = sheet.index(sheet.rows() / 2, sheet.columns() / 2);
       Eigen::Matrix2d stress = Eigen::Matrix2d::Zero();
       double density = 0.;

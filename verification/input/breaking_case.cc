@@ -1,9 +1,6 @@
 #include <algorithm>
 #include <string>
 
-#include "lattice/bond_energy.h"
-#include "lattice/critical_stretch.h"
-#include "lattice/rate_stretch.h"
 #include "verification/input/case.h"
 
 namespace latcon::input
@@ -63,8 +60,6 @@ double BreakingCase::largest_factor() const
 std::shared_ptr<const lattice::BreakingRule> BreakingCase::make(const Case &input) const
 {
   const double stretch = *input.breaking_stretch;
-  if (rule == Rule::rate_stretch)
-    return std::make_shared<lattice::RateStretch>(stretch, rate_factor, rate_time);
   if (rule == Rule::bond_energy)
   {
     const lattice::Material material = input.material();
@@ -76,7 +71,7 @@ std::shared_ptr<const lattice::BreakingRule> BreakingCase::make(const Case &inpu
     of_shells[shell] = !input.has_shell(shell)        ? of_shells[0]
                        : shell < shell_factors.size() ? stretch * shell_factors[shell]
                                                       : stretch;
-  return std::make_shared<lattice::CriticalStretch>(of_shells);
+  return std::make_shared<lattice::CriticalStretch>(of_shells, rate_factor, rate_time);
 }
 
 } // namespace latcon::input

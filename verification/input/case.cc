@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "lattice/contact.h"
-#include "lattice/seed.h"
+#include "lattice/cutout.h"
 #include "support/dense.h"
 #include "verification/input/files.h"
 
@@ -235,7 +235,7 @@ lattice::Toughening Case::toughening_rule() const
   case Toughening::retraction:
     return lattice::RetractionToughening{toughening_fraction, toughening_factor};
   default:
-    return lattice::NoToughening{};
+    return lattice::GivenToughening{};
   }
 }
 

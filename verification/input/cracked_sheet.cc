@@ -1,4 +1,4 @@
-#include "lattice/seed.h"
+#include "lattice/cutout.h"
 #include "lattice/simulation.h"
 #include "verification/input/case.h"
 

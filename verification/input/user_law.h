@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "lattice/bonds/custom_bond.h"
+#include "lattice/bonds/laws.h"
 #include "verification/input/parameters.h"
 
 namespace latcon::input

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lattice/archive_rows.h"
+#include "lattice/bonds/require.h"
 #include "support/errors.h"
 #include "verification/analysis/fragments.h"
 
@@ -156,17 +156,17 @@ lattice::EnergyBalance CrackRecord::checked_energies()
 
 void CrackRecord::check_loaded() const
 {
-  using lattice::require_archived;
+  using lattice::require;
   const lattice::TriangularLattice &sheet = simulation_.lattice();
   const auto is_site = [&](std::size_t place) { return place < sheet.n_places() && sheet.is_site(place); };
-  require_archived(last_tip_.has_value() == !tip_.records().empty() && (!last_tip_ || is_site(*last_tip_)),
-                   "`last_tip` is not a site of the sheet");
-  require_archived(broken_.size() == simulation_.n_broken(), "the number of `broken_bonds` does not match the state");
+  require(last_tip_.has_value() == !tip_.records().empty() && (!last_tip_ || is_site(*last_tip_)),
+          "`last_tip` is not a site of the sheet");
+  require(broken_.size() == simulation_.n_broken(), "the number of `broken_bonds` does not match the state");
   require_increasing_times(broken_, simulation_.state().time, "broken_bonds",
                            [](const lattice::BrokenBond &bond) { return bond.time; });
   for (const lattice::BrokenBond &bond : broken_)
-    require_archived(is_site(bond.near) && is_site(bond.far) && bond.kind < simulation_.state().bonds.n_kinds(),
-                     "`broken_bonds` contains bonds that the sheet does not have");
+    require(is_site(bond.near) && is_site(bond.far) && bond.kind < simulation_.state().bonds.n_kinds(),
+            "`broken_bonds` contains bonds that the sheet does not have");
 }
 
 double CrackRecord::imbalance() const

@@ -24,7 +24,6 @@
 #include <vtkXMLPolyDataWriter.h>
 
 #include "lattice/site_fields.h"
-#include "lattice/strain_gradient.h"
 #include "support/atomic_file.h"
 #include "support/pvd.h"
 #include "support/text_wrap.h"

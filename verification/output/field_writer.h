@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lattice/archive_rows.h"
+#include "lattice/bonds/require.h"
 #include "lattice/state.h"
 #include "verification/analysis/near_tip_fields.h"
 
@@ -55,10 +55,9 @@ public:
   {
     archive("times", times_);
     if constexpr (Archive::loads)
-      lattice::require_archived(std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>()) ==
-                                    times_.end() &&
-                                  (times_.empty() || times_.front() >= 0.),
-                                "`times` of frames do not increase from 0");
+      lattice::require(std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>()) == times_.end() &&
+                         (times_.empty() || times_.front() >= 0.),
+                       "`times` of frames do not increase from 0");
   }
 
 private:

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "lattice/archive_rows.h"
+#include "lattice/bonds/require.h"
 #include "lattice/energy.h"
 #include "lattice/material.h"
 #include "verification/analysis/crack_records.h"
@@ -60,8 +60,8 @@ void require_increasing_times(const History &history, double now, const std::str
   double before = 0.;
   for (const auto &element : history)
   {
-    lattice::require_archived(time_of(element) >= before && time_of(element) <= now,
-                              "times of `" + name + "` do not increase up to the current time");
+    lattice::require(time_of(element) >= before && time_of(element) <= now,
+                     "times of `" + name + "` do not increase up to the current time");
     before = time_of(element);
   }
 }
@@ -151,10 +151,10 @@ public:
       archive("mechanism_energies", of_mechanisms_);
     if constexpr (Archive::loads)
     {
-      lattice::require_archived(!rows_.empty(), "`energies` is empty");
+      lattice::require(!rows_.empty(), "`energies` is empty");
       require_increasing_times(rows_, now, "energies", [](const Row &row) { return row.time; });
-      lattice::require_archived(of_mechanisms_.size() == 2 * mechanisms_.size() * rows_.size(),
-                                "the number of `mechanism_energies` does not match `energies`");
+      lattice::require(of_mechanisms_.size() == 2 * mechanisms_.size() * rows_.size(),
+                       "the number of `mechanism_energies` does not match `energies`");
     }
   }
 

@@ -189,12 +189,11 @@ void NearTipRecord::check_loaded() const
   {
     const std::size_t n = block.backward_speeds.size();
     samples += n;
-    lattice::require_archived(block.vortices.size() == n && block.following_speeds.size() == n &&
-                                block.asymmetry.size() <= n && block.wedge_angle.size() <= n,
-                              "`blocks` have different numbers of samples");
+    lattice::require(block.vortices.size() == n && block.following_speeds.size() == n && block.asymmetry.size() <= n &&
+                       block.wedge_angle.size() <= n,
+                     "`blocks` have different numbers of samples");
   }
-  lattice::require_archived(samples == sampler_.samples(),
-                            "the number of samples in `blocks` does not match the number taken");
+  lattice::require(samples == sampler_.samples(), "the number of samples in `blocks` does not match the number taken");
 }
 
 void NearTipRecord::step()

@@ -103,7 +103,8 @@ INSTANTIATE_TEST_SUITE_P(
     Variant{Orientation::rows_along_crack, 24., BehindTipToughening{behind, 3.}, 3., EndLoads::End::held},
     Variant{Orientation::rows_across_crack, 24., BehindTipToughening{behind, 3.}, 5., EndLoads::End::absorbing},
     Variant{Orientation::rows_along_crack, 24., RetractionToughening{0.8, 2.}, 0., EndLoads::End::absorbing},
-    Variant{Orientation::rows_along_crack, 16., NoToughening{}, 0., EndLoads::End::held, sheets::rubber_from_outside()},
+    Variant{Orientation::rows_along_crack, 16., GivenToughening{}, 0., EndLoads::End::held,
+            sheets::rubber_from_outside()},
     Variant{Orientation::rows_along_crack, 16., BehindTipToughening{behind, 3.}, 3., EndLoads::End::held,
             sheets::rubber_with_memory()},
     Variant{Orientation::rows_across_crack, 16., BehindTipToughening{behind, 3.}, 3., EndLoads::End::held,
@@ -111,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
     Variant{Orientation::rows_along_crack, 16., RetractionToughening{0.8, 2.}, 3., EndLoads::End::absorbing,
             sheets::disordered_rubber_of_three_shells()},
     // Nine rows: bands of one or two for five ranks.
-    Variant{Orientation::rows_along_crack, 7., NoToughening{}, 5., EndLoads::End::free},
+    Variant{Orientation::rows_along_crack, 7., GivenToughening{}, 5., EndLoads::End::free},
     Variant{Orientation::rows_along_crack,
             16.,
             BehindTipToughening{behind, 3.},
@@ -186,7 +187,7 @@ TEST(SharedHeldSites, AreNoTip)
   const Eigen::Matrix2d F = sheets::stretched(1.2, 1.2);
   const RowPartition band(sheet, MPI_COMM_WORLD);
   State state = homogeneous_state(band, material, F, Edges::held);
-  Fracture fracture(band, material, 3., NoToughening{}, F);
+  Fracture fracture(band, material, 3., GivenToughening{}, F);
   for (const std::size_t row : {std::size_t{0}, sheet.rows() - 1})
     for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
       state.lost_bonds[sheet.index(row, column)] = 5;

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "lattice/bond_factors.h"
+#include "lattice/state.h"
 #include "tests/verification/claims/faults.h"
 #include "verification/claims/disorder/disorder_claim.h"
 
@@ -57,7 +57,7 @@ TEST(EffectiveMedium, IsThatOfTheTriangularNet)
   const EffectiveMedium nearest =
     effective_medium(sheet, subjects::nearest_only(input), Distribution(Kind::uniform, 0.01));
   EXPECT_NEAR(sum(nearest.share), both, 1e-10);
-  for (std::size_t kind = 0; kind < lattice::n_nearest_kinds; ++kind)
+  for (std::size_t kind = 0; kind < lattice::n_kinds_per_shell; ++kind)
   {
     EXPECT_NEAR(nearest.share[kind], 2. / 3., 2. / static_cast<double>(sheet.n_sites()));
     // The fourth order, 1e-8, is left out.

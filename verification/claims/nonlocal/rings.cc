@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "lattice/cutout.h"
 #include "lattice/forces.h"
-#include "lattice/seed.h"
 #include "lattice/simulation.h"
 #include "lattice/site_fields.h"
 #include "support/largest_error.h"
@@ -196,7 +196,7 @@ StencilSheet::Cut StencilSheet::cut(double stretch) const
   const Eigen::Matrix2d F = stretch * Eigen::Matrix2d::Identity();
   lattice::Simulation cut(sheet_, material_, lattice::homogeneous_state(sheet_, material_, F, lattice::Edges::held),
                           lattice::TimeStepping(1.),
-                          lattice::Fracture(sheet_, material_, 1.5 * stretch, lattice::NoToughening(), F));
+                          lattice::Fracture(sheet_, material_, 1.5 * stretch, lattice::GivenToughening(), F));
   // Whole periods of the grid along x. The ends of the cut are off all points, and its line is between two of points.
   const lattice::Grid &grid = sheet_.grid();
   const double h = grid.spacing;

@@ -177,8 +177,9 @@ TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &mat
   lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::held);
   const std::vector<Crossing> schedule = crossings(drive, sheet, state);
   const lattice::TimeStepping stepping = time_stepping(drive, sheet, material);
-  lattice::Simulation simulation(sheet, material, std::move(state), stepping,
-                                 lattice::Fracture(sheet, material, lattice::unbreakable, lattice::NoToughening(), F));
+  lattice::Simulation simulation(
+    sheet, material, std::move(state), stepping,
+    lattice::Fracture(sheet, material, lattice::unbreakable, lattice::GivenToughening(), F));
   const lattice::SiteEvaluator evaluator(sheet, material);
 
   TipRun run{TipField(drive), {}};

@@ -151,7 +151,7 @@ private:
     support::Extremes elongations;
     for (std::size_t row = row_below_crack() - reach; row <= row_below_crack() + reach; ++row)
       for (std::size_t column = column_of_tip - 2 * reach; column <= column_of_tip + 2 * reach; ++column)
-        for (std::size_t kind = 0; kind < lattice::n_nearest_kinds; ++kind)
+        for (std::size_t kind = 0; kind < lattice::n_kinds_per_shell; ++kind)
         {
           const std::size_t place = sheet_.index(row, column);
           if (!crosses_crack(place, kind) && state.bonds.present(place, kind))

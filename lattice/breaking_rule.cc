@@ -1,8 +1,9 @@
-#include "lattice/bond_energy.h"
+#include "lattice/breaking_rule.h"
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
+
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {
@@ -14,10 +15,31 @@ constexpr double longest_searched = 1e6;
 
 } // namespace
 
+CriticalStretch::CriticalStretch(double stretch, double factor, double time) : factor_(factor), time_(time)
+{
+  require(stretch > 0., "the breaking stretch must be positive");
+  stretch_.fill(stretch);
+}
+
+double CriticalStretch::limit(const Bond &bond) const
+{
+  const double rate = factor_ > 1. ? time_ * std::max(bond.rate, 0.) : 0.;
+  return stretch_[bond.shell] * (1. + (factor_ - 1.) * (rate / (1. + rate))) * bond.toughening * bond.strength;
+}
+
+double CriticalStretch::smallest_limit(double toughening) const
+{
+  return *std::min_element(stretch_.begin(), stretch_.end()) * toughening;
+}
+
+double CriticalStretch::largest_limit(double toughening) const
+{
+  return *std::max_element(stretch_.begin(), stretch_.end()) * factor_ * toughening;
+}
+
 BondEnergy::BondEnergy(const Material &material, double energy) : material_(material), energy_(energy)
 {
-  if (!(energy > 0.))
-    throw std::invalid_argument("the critical energy of bonds must be positive");
+  require(energy > 0., "the critical energy of bonds must be positive");
 }
 
 double BondEnergy::stretch_at(std::size_t shell, double energy) const

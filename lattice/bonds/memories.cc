@@ -1,0 +1,106 @@
+#include "lattice/bonds/memories.h"
+
+#include <cmath>
+#include <string>
+
+#include "lattice/bonds/require.h"
+
+namespace latcon::lattice
+{
+namespace
+{
+
+struct Decay
+{
+  double factor; // e^-r
+  double mean;   // (1 - e^-r) / r, mean of e^-s for s from 0 to r
+};
+
+// By basic operations, whose bits do not depend on the processor: Taylor's series where it converges fast, then
+// e^-2r = (e^-r)^2.
+Decay decay(double r)
+{
+  constexpr double vanished = 750.; // e^-r is below the smallest double
+  if (r > vanished)
+    return {0., 1. / r};
+  constexpr double small = 0.5;
+  constexpr int n_terms = 14; // the next one is below 0.5^14 / 15! = 5e-17
+  int n_doublings = 0;
+  for (; r > small; r *= 0.5)
+    ++n_doublings;
+  double mean = 1.;
+  for (int n = n_terms; n >= 2; --n)
+    mean = 1. - r / n * mean;
+  Decay result{1. - r * mean, mean};
+  for (; n_doublings > 0; --n_doublings)
+    result = {result.factor * result.factor, 0.5 * result.mean * (1. + result.factor)};
+  return result;
+}
+
+} // namespace
+
+MaxwellMemory::MaxwellMemory(std::vector<Branch> branches) : branches_(std::move(branches))
+{
+  require(!branches_.empty() && branches_.size() <= max_history_variables,
+          "a Maxwell memory has 1 to " + std::to_string(max_history_variables) + " branches, not " +
+            std::to_string(branches_.size()));
+  for (const Branch &branch : branches_)
+    for (const double constant : {branch.modulus, branch.relaxation_time})
+      require(constant > 0. && std::isfinite(constant),
+              "a Maxwell branch needs a modulus > 0 and a relaxation time > 0, not " + std::to_string(branch.modulus) +
+                " Pa and " + std::to_string(branch.relaxation_time) + " s");
+}
+
+double MaxwellMemory::largest_stiffness() const
+{
+  double sum = 0.;
+  for (const Branch &branch : branches_)
+    sum += branch.modulus;
+  return sum;
+}
+
+double MaxwellMemory::stored_energy(std::size_t branch, double /*stretch*/, const double *overstress) const
+{
+  return 0.5 * overstress[branch] * overstress[branch] / branches_[branch].modulus;
+}
+
+MaxwellMemory::Step MaxwellMemory::step(double duration) const
+{
+  Step step{branches_.size(), {}, {}, {}};
+  for (std::size_t i = 0; i < branches_.size(); ++i)
+  {
+    const auto &[modulus, time] = branches_[i];
+    const Decay of_branch = decay(duration / time);
+    step.decay[i] = of_branch.factor;
+    step.gain[i] = modulus * of_branch.mean;
+    step.fluency[i] = 1. / (modulus * time);
+  }
+  return step;
+}
+
+PlasticMemory::PlasticMemory(double modulus, double yield_stress, double hardening)
+  : step_{modulus, yield_stress, hardening, 1. / (modulus + hardening)}
+{
+  require(modulus > 0. && yield_stress > 0. && hardening >= 0. && std::isfinite(modulus + yield_stress + hardening),
+          "a plastic memory needs a modulus > 0, a yield stress > 0 and a hardening >= 0, not " +
+            std::to_string(modulus) + " Pa, " + std::to_string(yield_stress) + " Pa and " + std::to_string(hardening) +
+            " Pa");
+}
+
+CustomMemory::CustomMemory(std::shared_ptr<const CustomMemoryLaw> law) : law_(std::move(law))
+{
+  require(law_ != nullptr, "a memory needs a law");
+  const std::size_t n = law_->n_variables();
+  require(n >= 1 && n <= max_history_variables,
+          "a memory has 1 to " + std::to_string(max_history_variables) + " variables, not " + std::to_string(n));
+  const double stiffness = law_->largest_stiffness();
+  require(stiffness >= 0. && std::isfinite(stiffness),
+          "a memory needs a finite stiffness >= 0, not " + std::to_string(stiffness) + " Pa");
+  std::array<double, max_history_variables> at_rest{};
+  const double overstress = law_->advance(0., 1., 1., at_rest.data());
+  require(overstress == 0. && law_->stored_energy(1., at_rest.data()) == 0. &&
+            law_->dissipation(1., at_rest.data()) == 0.,
+          "a memory holds neither overstress nor energy while its variables are 0, and dissipates nothing");
+}
+
+} // namespace latcon::lattice
