@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 using namespace dealii;
 
@@ -58,9 +59,9 @@ struct DynamicSolver::Residual
   Vector v_mean;    // with ghost entries [m/s]
   Vector residual;  // [N/m]
   Vector magnitude; // sums of the absolute values of its terms [N/m]
-  double free;      // norm of the residual over the free unknowns [N/m]
-  double reference; // norm of internal, viscous and inertial forces and loads over all unknowns [N/m]
-  double energy;    // of the mean state, minus the work of dead loads [J/m]
+  double free = 0.; // norm of the residual over the free unknowns [N/m]
+  double reference = 0.; // norm of internal, viscous and inertial forces and loads over all unknowns [N/m]
+  double energy = 0.;    // of the mean state, minus the work of dead loads [J/m]
 };
 
 DynamicSolver::Residual DynamicSolver::evaluate(const Step &step, const Vector &u) const
@@ -68,12 +69,8 @@ DynamicSolver::Residual DynamicSolver::evaluate(const Step &step, const Vector &
   const Vector a_1 = step.last_acceleration(u);
   const Vector v_1 = step.last_velocity(a_1);
   Residual state{sheet_.with_ghosts(Step::mean(step.rule.alpha_f, step.u, u)),
-                 sheet_.with_ghosts(Step::mean(step.rule.alpha_f, step.v, v_1)),
-                 sheet_.make_owned(),
-                 sheet_.make_owned(),
-                 0.,
-                 0.,
-                 0.};
+                 sheet_.with_ghosts(Step::mean(step.rule.alpha_f, step.v, v_1)), sheet_.make_owned(),
+                 sheet_.make_owned()};
   Vector inertial = sheet_.make_owned();
   Vector forces = sheet_.make_owned();
   multiply_by_mass(full_mass_, Step::mean(step.rule.alpha_m, step.a, a_1), inertial);
@@ -258,9 +255,10 @@ std::string DynamicSolver::attempt(const Step &step, Vector &u)
     // So exact that one further solution, with a kept tangent, reaches the usual tolerance of a step.
     constexpr double largest_forcing = 1e-5;
     const auto solve =
-      [&](const Residual &at, const Vector &, const double forcing, const bool keeps_tangent, Vector &change)
+      [&, has_tangent = settings_.keeps_tangent && linear_solver_->has_tangent()](
+        const Residual &at, const Vector &, const double forcing, const bool keeps_tangent, Vector &change) mutable
     {
-      if (!keeps_tangent)
+      if (!std::exchange(has_tangent, false) && !keeps_tangent)
         linear_solver_->update(at.u_mean, assembler(at.v_mean), level_assembler());
       Vector rhs = at.residual;
       rhs *= -1.;

@@ -35,6 +35,7 @@ void LinearSolver::update(const Sheet::Vector &u, const Assembler &assemble, con
       direct_ = std::make_unique<DirectSolver>();
     }
     assemble(sheet_, u, *matrix_);
+    is_stale_ = false;
     return;
   }
   if (!single_matrix_)

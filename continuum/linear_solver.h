@@ -63,6 +63,7 @@ public:
 
   /// Makes the next update() rebuild multigrid, because the matrices change substantially.
   void invalidate() { is_stale_ = true; }
+  bool has_tangent() const { return !is_stale_ && (matrix_ || single_matrix_); } ///< of the last update()
 
   /// Saves the status of the reused multigrid to an archive or loads it from there.
   template <class Archive>

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace dynamic_solver_test
@@ -71,6 +72,38 @@ TEST(DynamicSolver, IsOfSecondOrderInTimeWithItsLedger)
   for (const bool is_viscous : {true, false})
     expect_second_order(*moved(mesh, problem, generalised_alpha, 40, is_viscous),
                         *moved(mesh, problem, generalised_alpha, 80, is_viscous), is_viscous);
+}
+
+// A large motion ends at the same place. In short steps a kept tangent takes more iterations, in long ones it is soon
+// replaced.
+TEST(DynamicSolver, MayKeepItsTangentFromStepToStep)
+{
+  RectangleMesh mesh(rectangle(2, 2));
+  const Problem problem;
+  for (const int n_steps : {80, 10})
+  {
+    std::array<Vector, 2> end;
+    std::array<std::size_t, 2> n_iterations{};
+    for (const std::size_t keeps : {0, 1})
+    {
+      DynamicSettings settings = quadratic(final_time / n_steps, average_acceleration);
+      settings.keeps_tangent = keeps == 1;
+      DynamicSolver solver(mesh, Constitution(problem.law, problem.gradient), problem.held(), Inertia{density, 0.01},
+                           settings, &dashpots);
+      start(solver, nullptr, Problem::velocity());
+      for (int n = 0; n < n_steps; ++n)
+      {
+        solver.step();
+        n_iterations[keeps] += solver.last_report().iterations.size();
+      }
+      EXPECT_EQ(solver.n_divided_steps(), 0u);
+      end[keeps] = owned(solver.sheet(), solver.displacement());
+    }
+    const double size = end[0].l2_norm();
+    end[1] -= end[0];
+    EXPECT_LT(end[1].l2_norm(), n_steps * 1e-10 * size); // of the tolerance of each step
+    EXPECT_EQ(n_iterations[1] > n_iterations[0], n_steps == 80) << n_iterations[1] << " and " << n_iterations[0];
+  }
 }
 
 TEST(DynamicSolver, KeepsTheMomentumOfAFreeSheet)

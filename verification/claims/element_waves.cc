@@ -144,6 +144,7 @@ continuum::DynamicSettings settings_for(double time_step, const WaveMesh &resolu
   continuum::DynamicSettings settings{time_step};
   settings.degree = resolution.degree;
   settings.relative_tolerance = relative_tolerance;
+  settings.keeps_tangent = true;
   return settings;
 }
 
