@@ -53,18 +53,28 @@ LiftedShapes::LiftedShapes(const unsigned int degree)
   const QGauss<1> quadrature(degree + 1);
   const QGauss<2> cell(degree + 1);
   const FE_DGQLegendre<2> modes(degree - 1); // orthonormal polynomials on the unit cell
+  const auto values_at = [&modes](const Quadrature<2> &points)
+  {
+    FullMatrix<double> values(points.size(), modes.n_dofs_per_cell());
+    for (unsigned int p = 0; p < values.m(); ++p)
+      for (unsigned int m = 0; m < values.n(); ++m)
+        values(p, m) = modes.shape_value(m, points.point(p));
+    return values;
+  };
+  const FullMatrix<double> in_cell = values_at(cell);
   for (unsigned int face = 0; face < 4; ++face)
     for (unsigned int part = 0; part < 3; ++part)
     {
       const Quadrature<2> points =
         part == 0 ? QProjector<2>::project_to_face(ReferenceCells::Quadrilateral, quadrature, face)
                   : QProjector<2>::project_to_subface(ReferenceCells::Quadrilateral, quadrature, face, part - 1);
+      const FullMatrix<double> on_face = values_at(points);
       FullMatrix<double> &values = faces_[face][part].polynomial;
       values.reinit(cell.size(), points.size());
       for (unsigned int q = 0; q < values.m(); ++q)
         for (unsigned int f = 0; f < values.n(); ++f)
-          for (unsigned int m = 0; m < modes.n_dofs_per_cell(); ++m)
-            values(q, f) += cell.weight(q) * modes.shape_value(m, cell.point(q)) * modes.shape_value(m, points.point(f));
+          for (unsigned int m = 0; m < in_cell.n(); ++m)
+            values(q, f) += cell.weight(q) * in_cell(q, m) * on_face(f, m);
     }
 }
 
