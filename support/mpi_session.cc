@@ -20,6 +20,10 @@ MpiSession::MpiSession()
     setenv("OMPI_MCA_ess_singleton_isolated", "1", keep);
     setenv("OMPI_MCA_orte_create_session_dirs", "0", keep);
     setenv("OMPI_MCA_pml", "ob1", keep);
+    // A process that is alone needs few of Open MPI's modules, and none of hwloc's, which look for displays.
+    setenv("OMPI_MCA_btl", "self", keep);
+    setenv("OMPI_MCA_coll", "basic,self,libnbc", keep);
+    setenv("HWLOC_PLUGINS_PATH", "", keep);
   }
   int provided = MPI_THREAD_SINGLE;
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)

@@ -11,9 +11,10 @@ namespace latcon::support
 /// A process that was not started by a launcher is isolated: Open MPI creates neither a daemon nor a session folder for
 /// it. By default all such processes of a user on a machine share the folder `ompi.HOST.UID/jf.0/0/0` in $TMPDIR. Each
 /// process creates missing levels of the folder and removes empty levels when it ends, so a process fails to start if
-/// another one ends between its calls of mkdir. It does not look for networks either, which takes 0.2 s. Variables set
-/// by the user (OMPI_MCA_ess_singleton_isolated, OMPI_MCA_orte_create_session_dirs, OMPI_MCA_pml) take precedence.
-/// Ranks of `mpirun` and `srun` are left as the launcher set them up.
+/// another one ends between its calls of mkdir. It does not look for networks either, which takes 0.2 s, nor for
+/// devices and displays. Variables set by the user (OMPI_MCA_ess_singleton_isolated, OMPI_MCA_orte_create_session_dirs,
+/// OMPI_MCA_pml, OMPI_MCA_btl, OMPI_MCA_coll, HWLOC_PLUGINS_PATH) take precedence. Ranks of `mpirun` and `srun` are
+/// left as the launcher set them up.
 ///
 /// MPI does not get the arguments of the program. To be created once, before other threads start.
 class MpiSession

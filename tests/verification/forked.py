@@ -1,6 +1,7 @@
 """Runs latcon in forks of one process (fork_server.cc): MPI, libraries and Python's packages, which take a second, start once."""
 import contextlib
 import ctypes
+import gc
 import importlib
 import json
 import os
@@ -74,8 +75,11 @@ def prepare(words):
     if "compare" in words:
         importlib.import_module("latcon.compare_frames")
     if {"fracture", "study", "report", "compare"} & set(words) and not {"--no-report", "--dry-run"} & set(words):
-        for module in ("matplotlib.pyplot", "vtkmodules.util", "latcon.report.comparison", "latcon.report.study"):
+        for module in ("latcon.report.report", "latcon.report.claim_sections", "latcon.report.comparison", "latcon.report.study",
+                       "matplotlib.pyplot", "matplotlib._qhull", "vtkmodules.util.numpy_support", "vtkmodules.vtkIOXML", "argparse", "pkgutil"):
             importlib.import_module(module)
+        importlib.import_module("PIL.Image").preinit()
+    gc.freeze()  # a collection in a child would copy their memory
 
 
 def outcome(child, limit):

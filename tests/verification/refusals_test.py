@@ -14,8 +14,9 @@ NONLOCAL = {"Sheet/spacing": "1 mm", "Sheet/length": "30 mm", "Sheet/height": "1
 HISTORY = {"Loading/history times": "0.1 ms, 0.3 ms, 0.4003 ms, 0.7 ms", "Loading/history strain y": "1.8, 0.6, 0.6, 1.8"}
 # Words of a command, and entries that its cases share.
 COMMANDS = {"lattice": (["lattice"], {}), "continuum": (["continuum"], {}), "motion": (["continuum"], MOTION),
-            "fracture": (["fracture", "--skip-verification"], {}), "history": (["fracture", "--skip-verification"], HISTORY),
-            "nonlocal": (["fracture", "--side", "continuum", "--skip-verification"], NONLOCAL)}
+            "fracture": (["fracture", "--skip-verification", "--no-report"], {}),
+            "history": (["fracture", "--skip-verification", "--no-report"], HISTORY),
+            "nonlocal": (["fracture", "--side", "continuum", "--skip-verification", "--no-report"], NONLOCAL)}
 
 
 def listed(name):
