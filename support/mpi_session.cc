@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <exception>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include <mpi.h>
 #include <unistd.h>
@@ -14,20 +16,23 @@ namespace latcon::support
 
 MpiSession::MpiSession()
 {
+  // A process that is alone needs few of Open MPI's modules, and none of hwloc's, which look for displays.
+  std::vector<const char *> own;
   if (!is_started_by_launcher())
-  {
-    constexpr int keep = 0; // do not overwrite values set by the user
-    setenv("OMPI_MCA_ess_singleton_isolated", "1", keep);
-    setenv("OMPI_MCA_orte_create_session_dirs", "0", keep);
-    setenv("OMPI_MCA_pml", "ob1", keep);
-    // A process that is alone needs few of Open MPI's modules, and none of hwloc's, which look for displays.
-    setenv("OMPI_MCA_btl", "self", keep);
-    setenv("OMPI_MCA_coll", "basic,self,libnbc", keep);
-    setenv("HWLOC_PLUGINS_PATH", "", keep);
-  }
+    for (const auto &[name, value] :
+         {std::pair("OMPI_MCA_ess_singleton_isolated", "1"), std::pair("OMPI_MCA_orte_create_session_dirs", "0"),
+          std::pair("OMPI_MCA_pml", "ob1"), std::pair("OMPI_MCA_btl", "self"),
+          std::pair("OMPI_MCA_coll", "basic,self,libnbc"), std::pair("HWLOC_PLUGINS_PATH", "")})
+      if (std::getenv(name) == nullptr) // values set by the user stay
+      {
+        setenv(name, value, 1);
+        own.push_back(name);
+      }
   int provided = MPI_THREAD_SINGLE;
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
     throw std::runtime_error("MPI cannot be initialised");
+  for (const char *name : own) // ranks that this process starts need others
+    unsetenv(name);
   if (provided < MPI_THREAD_FUNNELED) // the main thread makes all calls
     throw std::runtime_error("this MPI library does not support programs with threads (MPI_THREAD_FUNNELED)");
 }
