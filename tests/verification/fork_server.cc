@@ -90,11 +90,12 @@ int execv(const char *path, char *const argv[])
 }
 
 // Ranks that wait for others (OMPI_MCA_mpi_yield_when_idle) sleep: tests share the cores, and one that yields gets its
-// core back only when the others' slices have ended, at each of its messages.
+// core back only when the others' slices have ended, at each of its messages. A process alone waits for nobody.
 int sched_yield() noexcept
 {
+  static const bool is_rank = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr;
   const timespec duration{0, 20000}; // 20 us
-  return nanosleep(&duration, nullptr);
+  return is_rank ? nanosleep(&duration, nullptr) : 0;
 }
 
 // A fork cannot end MPI, as latcon does before it becomes Python.
