@@ -147,7 +147,7 @@ TEST(SteadyCrackClaim, FailsForOnePercent)
   };
   for (const auto &[name, planted, row] : faults)
   {
-    const Results results = steady_cracks({3., {3.}, 0., planted}).results;
+    const Results results = steady_cracks({0.5, {1.75}, 0., 0.05, planted}).results;
     EXPECT_GE(faults::failing(results, row), 1u) << name << "\n" << results.verdict_text(10);
   }
 }

@@ -164,6 +164,7 @@ struct SteadyCrackSeries
   std::vector<double> drivings; ///< Delta / Delta_G, between the weakest under which a crack runs steadily and the
                                 ///< strongest under which only bonds between the middle rows break, which is the last
   double beyond;                ///< driving under which bonds off the crack break too; 0: not tried
+  double time_step = 0.025;     ///< of the runs; a longer one has larger tolerances, which follow from shorter ones
   /// Error that a test introduces into the simulator; none otherwise.
   std::function<void(CrackRunOptions &)> planted = [](CrackRunOptions &) {};
 };
@@ -176,7 +177,7 @@ struct SteadyCrackSeries
 /// Leaves the tables `steady_crack` (a row for each run) and, unless `quick`, `steady_crack_curve` (exact driving over
 /// speed, and whether only the bonds that should break do). A crack that does not run, or for which there is no exact
 /// solution, makes a row that fails.
-/// @param quick fewer drivings; about 20 s on one core, in full 60 s
+/// @param quick fewer drivings, and a longer time step between weak dashpots; about 10 s on one core, in full 60 s
 ClaimOutcome steady_crack_claim(bool quick);
 
 /// The rows of one series: what every crack of it has, beside the exact solution, within tolerances from refined runs.
