@@ -51,7 +51,7 @@ void require_memory(const MemoryNeed &need);
                                      double steps, double frames);
 
 /// Wall time of the small versions of the claims, and of the pictures and the page of a crack, on one core [s].
-inline constexpr double seconds_of_claims = 8., seconds_of_report = 9.; ///< for the pictures and the page
+inline constexpr double seconds_of_claims = 15., seconds_of_report = 4.; ///< for the pictures and the page
 
 /// Returns the number of steps in which a crack at the shear wave speed of the unloaded sheet reaches the stop
 /// position, at most all steps of the run.

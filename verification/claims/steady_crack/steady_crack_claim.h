@@ -127,9 +127,9 @@ TrappingWindow trapping_window(const CrackStrip &strip, std::size_t columns);
 struct CrackRunOptions
 {
   CrackStrip strip;
-  double driving;                ///< Delta / Delta_G of the held rows
-  double breaking_strain = 1e-4; ///< lam_f - 1 [-]
+  double driving; ///< Delta / Delta_G of the held rows
   double time_step = 0.025;
+  double breaking_strain = 1e-4; ///< lam_f - 1 [-]
   double length = 260.;       ///< of the strip; its left end is free, the right one held
   double window_begin = 110.; ///< what the tip does from here on is measured ...
   double window_end = 210.;   ///< ... up to here
@@ -164,7 +164,7 @@ struct SteadyCrackSeries
   std::vector<double> drivings; ///< Delta / Delta_G, between the weakest under which a crack runs steadily and the
                                 ///< strongest under which only bonds between the middle rows break, which is the last
   double beyond;                ///< driving under which bonds off the crack break too; 0: not tried
-  double time_step = 0.025;     ///< of the runs; a longer one has larger tolerances, which follow from shorter ones
+  double time_step = 0.025;     ///< of the runs; a longer one has larger tolerances
   /// Error that a test introduces into the simulator; none otherwise.
   std::function<void(CrackRunOptions &)> planted = [](CrackRunOptions &) {};
 };
@@ -177,7 +177,7 @@ struct SteadyCrackSeries
 /// Leaves the tables `steady_crack` (a row for each run) and, unless `quick`, `steady_crack_curve` (exact driving over
 /// speed, and whether only the bonds that should break do). A crack that does not run, or for which there is no exact
 /// solution, makes a row that fails.
-/// @param quick fewer drivings, and a longer time step between weak dashpots; about 10 s on one core, in full 60 s
+/// @param quick fewer drivings, twice the time step and weaker dashpots; about 12 s on one core, in full 60 s
 ClaimOutcome steady_crack_claim(bool quick);
 
 /// The rows of one series: what every crack of it has, beside the exact solution, within tolerances from refined runs.
