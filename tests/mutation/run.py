@@ -28,7 +28,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 TREE = ROOT / "build" / "mutation"
 BUILD = TREE / "build" / "develop"  # one object a source
 EQUIVALENTS = pathlib.Path(__file__).with_name("equivalents.txt")
-COMMANDS = ["CommandLine.KeepsItsContract", "CommandLine.RunsFiniteElementCases", "ExitCodes.AgreeWithRunJson", "NearTip.IsMeasuredAndWritten"]
+COMMANDS = ["CommandLine.KeepsItsContract", "CommandLine.RunsFiniteElementCases", "CommandLine.RefusesBadCases", "NearTip.IsMeasuredAndWritten"]
 CLAIMS = ["claims_tests", "verification_tests"]
 # Tests of ctest that should detect the faults of a source, by the longest prefix of its name.
 PLACES = {
