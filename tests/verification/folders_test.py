@@ -4,11 +4,12 @@ import os
 import pathlib
 import shutil
 import signal
+import subprocess
 import time
 
 import pytest
 
-from program import CASES, frames, latcon, latcon_on_ranks, wait_for
+from program import CASES, LATCON, frames, latcon, latcon_on_ranks, wait_for
 from verdicts_fixture import REFUSED
 
 from latcon.report.runs import find_runs
@@ -26,9 +27,9 @@ def contents(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-@pytest.fixture
-def study(tmp_path):
-    study = tmp_path / "study.json"
+@pytest.fixture(scope="module")
+def study(module_path):
+    study = module_path / "study.json"
     study.write_text(json.dumps({"title": "t", "base": QUICK, "runs": {"a": {}}, "claims": [
         {"claim": "c", "paper": "s", "rows": [{"run": "a", "quantity": "pattern"}]}]}))
     return study
@@ -38,6 +39,23 @@ def stop(process):
     process.send_signal(signal.SIGSTOP)
     tasks = pathlib.Path(f"/proc/{process.pid}/task")  # a thread that writes stops after the call
     assert wait_for(lambda: all(") T " in (task / "stat").read_text() for task in tasks.iterdir()), process)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def refused_study(study, module_path):
+    """A study of which a stopped process holds a run, started at first, as it waits for 10 s; the folder of that run."""
+    part = module_path / "out" / "runs" / "a-1.part"
+    part.mkdir(parents=True)
+    owner = subprocess.Popen([LATCON, *ENDLESS, "--output-dir", part], stdout=subprocess.DEVNULL)
+    assert wait_for((part / "lattice-0000.vtp").exists, owner)
+    stop(owner)
+    before = contents(part)
+    refused = subprocess.Popen([LATCON, "study", study, "--skip-verification", "--output-dir", module_path / "out"],
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    yield part, owner, before, refused
+    for process in (owner, refused):
+        process.kill()
+        process.wait()
 
 
 def commands(study, out):
@@ -54,10 +72,11 @@ def test_second_command_is_refused_and_writes_nothing(start, out, tmp_path, stud
     assert wait_for((out / "lattice-0000.vtp").exists, owner)
     stop(owner)
     before = contents(out)
-    for command in commands(study, out):
-        run = latcon(*command, expect=2)
-        assert f"{out} is in use by process {owner.pid} on " in run.stderr
-        assert "--output-dir" in run.stderr
+    for refused in [start(*command) for command in commands(study, out)]:  # each waits for a second
+        _, said = refused.communicate(timeout=600)
+        assert refused.returncode == 2, said
+        assert f"{out} is in use by process {owner.pid} on " in said
+        assert "--output-dir" in said
     latcon("lattice", *TINY, "--dry-run", "--output-dir", out)
     elsewhere = tmp_path / "elsewhere"
     latcon("report", out, "--animation", "--output-dir", elsewhere, "--quiet")
@@ -75,18 +94,6 @@ def test_ranks_hold_it_and_respect_it(start, out):
     assert "is in use by process" in run.stderr
     ranks.terminate()
     ranks.communicate()
-
-
-def test_runs_of_a_study_hold_theirs(start, study, out):
-    part = out / "runs" / "a-1.part"
-    part.mkdir(parents=True)
-    owner = start(*ENDLESS, "--output-dir", part)
-    assert wait_for((part / "lattice-0000.vtp").exists, owner)
-    stop(owner)
-    before = contents(part)
-    run = latcon("study", study, "--skip-verification", "--output-dir", out, expect=2)
-    assert f"{part} is in use by process {owner.pid} on " in run.stderr
-    assert contents(part) == before
 
 
 VICTIMS = {
@@ -200,3 +207,10 @@ def test_case_in_its_own_folder_is_not_overwritten(out):
     assert (out / "case.prm").read_text() == own
     latcon("lattice", *TINY, "--output-dir", out)
     latcon("lattice", out / "case.prm", "--output-dir", out, "--set", "Loading/strain x=0.1")
+
+
+def test_runs_of_a_study_hold_theirs(refused_study):
+    part, owner, before, refused = refused_study
+    assert f"{part} is in use by process {owner.pid} on " in refused.communicate(timeout=600)[1]
+    assert refused.returncode == 2
+    assert contents(part) == before
