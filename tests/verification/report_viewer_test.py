@@ -108,17 +108,16 @@ class TestViewer:
             assert self.canvas(name) == digests[0], name
 
     def hover(self, canvas):
-        """Values below points of a canvas: [(pointer, match of VALUES), ...]."""
+        """Values below points of a canvas: [(pointer, match of VALUES), ...]. A mouse would take a frame at each point."""
         left, top, width, height = self.place(f".viewer .{canvas}")
-        found = []
-        for u in np.linspace(0.05, 0.95, 12):
-            for v in np.linspace(0.08, 0.92, 7):
-                pointer = left + u * width, top + v * height
-                self.browser.mouse("mouseMoved", *pointer)
-                match = VALUES.match(self.text("values"))
-                if match:
-                    found.append((pointer, match))
+        pointers = [[left + u * width, top + v * height] for u in np.linspace(0.05, 0.95, 12) for v in np.linspace(0.08, 0.92, 7)]
+        texts = self.browser.value(f"""{pointers}.map(([clientX, clientY]) => {{
+            document.querySelector('.viewer .{canvas}').dispatchEvent(new PointerEvent('pointermove', {{clientX, clientY}}));
+            return document.querySelector('.viewer .values').textContent; }})""")
+        found = [(pointer, match) for pointer, match in zip(pointers, map(VALUES.match, texts)) if match]
         assert len(found) > 10
+        self.browser.mouse("mouseMoved", *found[0][0])
+        assert self.text("values") == found[0][1].string
         self.browser.mouse("mouseMoved", 1, 1)
         assert "Point at the sheet" in self.text("values")
         return found
