@@ -14,13 +14,13 @@ namespace latcon::lattice
 Simulation::Simulation(const RowPartition &band, const Material &material, State initial, TimeStepping time_stepping,
                        std::optional<Fracture> fracture)
   : band_(band), lattice_(band.lattice()), material_(material), state_(std::move(initial)),
-    time_stepping_(time_stepping), forces_(band, material),
-    integrator_(time_stepping.stages == 0
-                  ? velocity_verlet(band, forces_, time_stepping.step)
-                  : runge_kutta_chebyshev(band, forces_, time_stepping.step, time_stepping.stages)),
-    fracture_(std::move(fracture)),
+    time_stepping_(time_stepping), forces_(band, material), fracture_(std::move(fracture)),
     powers_(of_constraint(0), std::vector<double>(lattice_.rows(), 0.)), work_(powers_)
 {
+  if (time_stepping.stages == 0)
+    integrator_ = std::make_unique<VelocityVerlet>(band, forces_, time_stepping.step);
+  else
+    integrator_ = std::make_unique<RungeKuttaChebyshev>(band, forces_, time_stepping.step, time_stepping.stages);
   if (state_.history.empty())
     relax_memory(state_, band_, material_);
   bool fits = state_.history.kinds.size() == lattice_.n_kinds();
