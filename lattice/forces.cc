@@ -158,23 +158,24 @@ bool Forces::row_has_short_bonds_ahead(const State &state, const Field &vx, cons
          kernels::loops().any_short_ahead(row_of_bonds({state, vx, vy}, row, kinds), ahead, stretch);
 }
 
-kernels::RememberedRow Forces::remembered_row(const Motion &motion, std::size_t row, std::size_t kind,
-                                              double *mechanism_power) const
+void Forces::remember(const Motion &motion, std::size_t row, std::size_t kind, double *mechanism_power,
+                      Scratch &scratch) const
 {
   const std::size_t near = lattice_.index(row, 0);
   const BondHistory::Kind &history = motion.state.history.kinds[kind];
-  kernels::RememberedRow remembered{&material_.shell(lattice_, kind)->memory, &history.stretch[near], {}};
+  BondHistory::Kind *const updated = motion.history != nullptr ? &motion.history->kinds[kind] : nullptr;
+  // In place, part by part: see row_of_bonds().
+  kernels::RememberedRow &remembered = scratch.remembered[kind];
+  remembered.memory = &material_.shell(lattice_, kind)->memory;
+  remembered.stretch = &history.stretch[near];
+  remembered.new_stretch = updated != nullptr ? &updated->stretch[near] : nullptr;
   for (std::size_t v = 0; v < history.variables.size(); ++v)
-    remembered.variable[v] = &history.variables[v][near];
-  if (motion.history != nullptr)
   {
-    BondHistory::Kind &updated = motion.history->kinds[kind];
-    remembered.new_stretch = &updated.stretch[near];
-    for (std::size_t v = 0; v < updated.variables.size(); ++v)
-      remembered.new_variable[v] = &updated.variables[v][near];
+    remembered.variable[v] = &history.variables[v][near];
+    remembered.new_variable[v] = updated != nullptr ? &updated->variables[v][near] : nullptr;
   }
   remembered.dissipation = &mechanism_power[material_.first_mechanism(lattice_.shell(kind))];
-  return remembered;
+  scratch.kinds[kind].remembered = &remembered;
 }
 
 // The bonds of row `from` as those of `row`: the same, or below the edge of a periodic sheet. Those of stencils other
@@ -207,10 +208,7 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
       double *const lengths = &scratch.lengths[2 * (kind - first) * lattice_.stride()];
       kinds[kind].lengths = {lengths, lengths + lattice_.stride()};
       if (motion.state.history.remembers(kind))
-      {
-        scratch.remembered[kind] = remembered_row(motion, from, kind, sums.mechanism_power.data());
-        kinds[kind].remembered = &scratch.remembered[kind];
-      }
+        remember(motion, from, kind, sums.mechanism_power.data(), scratch);
     }
     kernels::loops().bonds_of_row(bonds, sums);
     bonds.n_ahead = 0;

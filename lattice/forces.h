@@ -153,8 +153,8 @@ private:
   kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, std::ptrdiff_t begin,
                                 Scratch &scratch) const;
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
-  kernels::RememberedRow remembered_row(const Motion &motion, std::size_t row, std::size_t kind,
-                                        double *mechanism_power) const;
+  void remember(const Motion &motion, std::size_t row, std::size_t kind, double *mechanism_power,
+                Scratch &scratch) const;
   SingleBond single_bond(const Motion &motion, const Bond &bond) const;
 
   RowPartition band_;
