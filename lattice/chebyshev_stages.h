@@ -25,7 +25,6 @@ public:
   /// @throws std::invalid_argument for fewer
   explicit ChebyshevStages(unsigned int stages);
 
-  unsigned int count() const { return static_cast<unsigned int>(stages_.size()) + 1; }
   double first() const { return first_; }
   const std::vector<Stage> &stages() const { return stages_; } ///< j = 2 ... s
 

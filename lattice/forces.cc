@@ -1,7 +1,6 @@
 #include "lattice/forces.h"
 
 #include <algorithm>
-#include <cmath>
 #include <variant>
 
 #include <omp.h>
@@ -12,8 +11,7 @@ namespace latcon::lattice
 Forces::Forces(const RowPartition &band, const Material &material)
   : band_(band), lattice_(band.lattice()), material_(material), n_kinds_(material.n_kinds(lattice_)),
     reach_(static_cast<std::ptrdiff_t>(lattice_.reach())),
-    columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_sums_(lattice_.rows()),
-    row_mechanism_power_(material.n_mechanisms(), Field(lattice_.rows(), 0.))
+    columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_sums_(lattice_.rows())
 {
   kernels::instruction_sets();
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
@@ -25,41 +23,17 @@ Forces::Forces(const RowPartition &band, const Material &material)
       constants_.back() = {rest_length, section, section * shell->viscosity / rest_length};
     }
   }
-  set_elapsed(0.);
   for (std::size_t number = 0; number < n_shells; ++number)
     if (const Shell *shell = material.in_shell(number))
       mechanism_gives_energy_.insert(mechanism_gives_energy_.end(), n_mechanisms(shell->memory),
-                                     dissipates_energy(memory_steps_[number]));
+                                     dissipates_energy(shell->memory));
 }
 
 void Forces::set_elapsed(double duration)
 {
   for (std::size_t number = 0; number < n_shells; ++number)
-    if (const Shell *shell = material_.in_shell(number))
-      memory_steps_[number] = memory_step(shell->memory, duration);
-}
-
-// Adds the overstress of the bonds of a kind that start in row `from` to what their law gives.
-void Forces::add_overstress(const Motion &motion, std::size_t from, const kernels::RowOfBonds &row,
-                            const kernels::BondsOfKind &bonds, std::size_t kind,
-                            std::vector<double> &mechanism_power) const
-{
-  if (!motion.state.history.remembers(kind))
-    return;
-  const std::size_t shell = lattice_.shell(kind), first = lattice_.index(from, 0);
-  const BondHistory::Kind &history = motion.state.history.kinds[kind];
-  kernels::RememberedRow remembered{&history.stretch[first], {}};
-  for (std::size_t v = 0; v < history.variables.size(); ++v)
-    remembered.variable[v] = &history.variables[v][first];
-  if (motion.history != nullptr)
-  {
-    BondHistory::Kind &updated = motion.history->kinds[kind];
-    remembered.new_stretch = &updated.stretch[first];
-    for (std::size_t v = 0; v < updated.variables.size(); ++v)
-      remembered.new_variable[v] = &updated.variables[v][first];
-  }
-  kernels::loops().add_overstress(memory_steps_[shell], row, bonds, remembered,
-                                  &mechanism_power[material_.first_mechanism(shell)]);
+    if (Shell *shell = material_.in_shell(number))
+      set_duration(shell->memory, duration);
 }
 
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy, const RowCallbacks &work)
@@ -124,10 +98,7 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
       for (const Field *field : work.fields)
         scratch.ahead.push_back(&(*field)[lattice_.index(index + lattice_.reach() + 1, 0)]);
     const Motion &of_row = row < end - reach_ ? updating : motion;
-    const kernels::RowSums sums = bonds_of_row(of_row, index, row, begin, scratch);
-    row_sums_[index] = sums;
-    for (std::size_t m = 0; m < row_mechanism_power_.size(); ++m)
-      row_mechanism_power_[m][index] = scratch.mechanism_power[m];
+    row_sums_[index] = bonds_of_row(of_row, index, row, begin, scratch);
     const std::array<double *, 2> on_sites = scratch.sums.at(row);
     // What bonds across a periodic edge do to images of sites is done to the sites.
     const auto columns = static_cast<std::ptrdiff_t>(lattice_.columns());
@@ -156,6 +127,8 @@ kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row,
   {
     // One by one: a whole that is copied would wait for its parts.
     kernels::BondsOfKind &bonds = kinds[kind];
+    const Shell *const shell = material_.shell(lattice_, kind);
+    bonds.law = shell != nullptr ? &shell->law : nullptr;
     bonds.constants = constants_[kind];
     bonds.shift = static_cast<std::ptrdiff_t>(lattice_.shift(kind, row));
     bonds.states = state.bonds.words(kind) + near;
@@ -164,6 +137,7 @@ kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row,
     bonds.retraction_stretch = retraction_stretch_.empty() ? 0. : retraction_stretch_[kind];
     bonds.stiffness = state.stiffness.from(near, kind);
     bonds.strength = state.strength.from(near, kind);
+    bonds.remembered = nullptr;
     bonds.length_ratio = lattice_.scattered() != nullptr ? &lattice_.scattered()->length_ratios[kind][near] : nullptr;
   }
   return {lattice_.columns(),     &state.x[near],          &state.y[near],   &motion.vx[near], &motion.vy[near],
@@ -180,8 +154,28 @@ bool Forces::row_has_short_bonds_ahead(const State &state, const Field &vx, cons
                                        double ahead, double stretch) const
 {
   std::vector<kernels::BondsOfKind> kinds;
-  return row_has_short_bonds(row) &&
+  return row_sums(row).has_short_bonds &&
          kernels::loops().any_short_ahead(row_of_bonds({state, vx, vy}, row, kinds), ahead, stretch);
+}
+
+void Forces::remember(const Motion &motion, std::size_t row, std::size_t kind, double *mechanism_power,
+                      Scratch &scratch) const
+{
+  const std::size_t near = lattice_.index(row, 0);
+  const BondHistory::Kind &history = motion.state.history.kinds[kind];
+  BondHistory::Kind *const updated = motion.history != nullptr ? &motion.history->kinds[kind] : nullptr;
+  // In place, part by part: see row_of_bonds().
+  kernels::RememberedRow &remembered = scratch.remembered[kind];
+  remembered.memory = &material_.shell(lattice_, kind)->memory;
+  remembered.stretch = &history.stretch[near];
+  remembered.new_stretch = updated != nullptr ? &updated->stretch[near] : nullptr;
+  for (std::size_t v = 0; v < history.variables.size(); ++v)
+  {
+    remembered.variable[v] = &history.variables[v][near];
+    remembered.new_variable[v] = updated != nullptr ? &updated->variables[v][near] : nullptr;
+  }
+  remembered.dissipation = &mechanism_power[material_.first_mechanism(lattice_.shell(kind))];
+  scratch.kinds[kind].remembered = &remembered;
 }
 
 // The bonds of row `from` as those of `row`: the same, or below the edge of a periodic sheet. Those of stencils other
@@ -196,49 +190,44 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   kernels::RowOfBonds bonds = row_of_bonds(motion, from, kinds);
   bonds.ahead = scratch.ahead.data();
   bonds.n_ahead = scratch.ahead.size();
-  scratch.mechanism_power.assign(row_mechanism_power_.size(), 0.);
+  scratch.remembered.resize(n_kinds_);
   kernels::RowSums sums;
+  sums.mechanism_power.assign(mechanism_gives_energy_.size(), 0.);
   for (std::size_t first = 0; first < n_kinds_; first += bonds.n_kinds)
   {
-    const Shell *const shell = material_.shell(lattice_, first);
     // The first two shells of the lattice at once.
     bonds.n_kinds =
       !gathers ? 1 : (first == 0 && material_.next_nearest && !has_factors ? 2 * n_kinds_per_shell : n_kinds_per_shell);
     const std::ptrdiff_t rows = lattice_.rows_across(first);
-    if (shell == nullptr || (!gathers && row + rows < begin))
+    if (kinds[first].law == nullptr || (!gathers && row + rows < begin))
       continue;
     bonds.kinds = &kinds[first];
     for (std::size_t kind = first; kind < first + bonds.n_kinds; ++kind)
     {
       kinds[kind].force = scratch.bonds[gathers ? kind : 0].at(row);
       double *const lengths = &scratch.lengths[2 * (kind - first) * lattice_.stride()];
-      kinds[kind].lengths = {};
-      if (!row_mechanism_power_.empty())
-        kinds[kind].lengths = {lengths, lengths + lattice_.stride()};
+      kinds[kind].lengths = {lengths, lengths + lattice_.stride()};
+      if (motion.state.history.remembers(kind))
+        remember(motion, from, kind, sums.mechanism_power.data(), scratch);
     }
-    kernels::loops().bonds_of_row(shell->law, material_.next_nearest ? material_.next_nearest->law : shell->law, bonds,
-                                  sums);
+    kernels::loops().bonds_of_row(bonds, sums);
     bonds.n_ahead = 0;
-    for (std::size_t kind = first; kind < first + bonds.n_kinds; ++kind)
-    {
-      add_overstress(motion, from, bonds, kinds[kind], kind, scratch.mechanism_power);
-      // A site gathers from the places around it, so bonds that start beyond a periodic edge must be there.
-      if (gathers && columns_repeat_)
-        for (double *component : kinds[kind].force)
-        {
-          std::copy_n(component, 2, component + columns);
-          std::copy_n(component + columns - 2, 2, component - 2);
-        }
-    }
+    // A site gathers from the places around it, so bonds that start beyond a periodic edge must be there.
+    for (std::size_t kind = first; kind < first + bonds.n_kinds && gathers && columns_repeat_; ++kind)
+      for (double *component : kinds[kind].force)
+      {
+        std::copy_n(component, 2, component + columns);
+        std::copy_n(component + columns - 2, 2, component - 2);
+      }
     const std::ptrdiff_t to = kinds[first].shift - rows * static_cast<std::ptrdiff_t>(lattice_.stride());
     for (std::size_t component = 0; component < 2 && !gathers; ++component)
       kernels::loops().scatter(columns, kinds[first].force[component],
                                row >= begin ? scratch.sums.at(row)[component] : nullptr,
                                scratch.sums.at(row + rows)[component] + to);
   }
-  for (std::size_t m = 0; m < row_mechanism_power_.size(); ++m)
+  for (std::size_t m = 0; m < sums.mechanism_power.size(); ++m)
     if (!mechanism_gives_energy_[m])
-      sums.viscous_power += scratch.mechanism_power[m];
+      sums.viscous_power += sums.mechanism_power[m];
   return sums;
 }
 
@@ -274,64 +263,45 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
   evaluate(state, vx, vy, {{}, {}, std::ref(keep)});
 }
 
-// Forces of a bond and on a site, by the operations of an evaluation of all, so that both have the same bits.
-
-kernels::BondForce kernels::bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx,
-                                       double dy, double dvx, double dvy, double length_ratio)
-{
-  dx *= length_ratio;
-  dy *= length_ratio;
-  const double distance = std::sqrt(dx * dx + dy * dy);
-  const double inverse = 1. / distance;
-  const double nx = length_ratio * (dx * inverse), ny = length_ratio * (dy * inverse);
-  const double rate = dvx * nx + dvy * ny;
-  const double stretch = (1. / bond.rest_length) * distance;
-  const double viscous = bond.damping * rate;
-  const double axial =
-    factor * (bond.cross_section * std::visit([&](const auto &of_kind)
-                                              { return formulas::force(of_kind, stretch, bond.rest_length * inverse); },
-                                              law) +
-              viscous);
-  return {axial * nx, axial * ny, nx, ny, stretch, factor * (viscous * rate)};
-}
-
 void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, const Bond &bond)
 {
   if (!band_.owns(bond.near))
     return;
-  const std::size_t row = lattice_.row_of(bond.near), shell = lattice_.shell(bond.kind);
-  const auto [force, dissipation] = single_bond({state, vx, vy}, bond);
-  row_sums_[row].viscous_power -= force.viscous_power;
+  kernels::RowSums &sums = row_sums_[lattice_.row_of(bond.near)];
+  const SingleBond removed = single_bond({state, vx, vy}, bond);
+  sums.viscous_power -= removed.viscous_power;
+  const std::size_t shell = lattice_.shell(bond.kind), first = material_.first_mechanism(shell);
   for (std::size_t m = 0; m < n_mechanisms(material_.in_shell(shell)->memory); ++m)
-    row_mechanism_power_[material_.first_mechanism(shell) + m][row] -= dissipation[m];
+    sums.mechanism_power[first + m] -= removed.dissipation[m];
 }
 
+// By the operations of the loops over rows, so that both have the same bits.
 Forces::SingleBond Forces::single_bond(const Motion &motion, const Bond &bond) const
 {
-  const State &state = motion.state;
-  const Field &vx = motion.vx, &vy = motion.vy;
+  const auto &[state, vx, vy, history] = motion;
   const auto [near, kind, far] = bond;
-  const kernels::BondConstants &constants = constants_[kind];
-  const double factor = state.stiffness.of(near, kind);
-  SingleBond single{kernels::bond_force(material_.shell(lattice_, kind)->law, constants, factor,
-                                        state.x[far] - state.x[near], state.y[far] - state.y[near], vx[far] - vx[near],
-                                        vy[far] - vy[near], lattice_.length_ratio(near, kind)),
-                    {}};
+  const auto &[rest_length, section, damping] = constants_[kind];
+  const Shell &shell = *material_.shell(lattice_, kind);
+  const double factor = state.stiffness.of(near, kind), ratio = lattice_.length_ratio(near, kind);
+  const Eigen::Vector2d r = ratio * Eigen::Vector2d(state.x[far] - state.x[near], state.y[far] - state.y[near]);
+  const double length = r.norm(), inverse = 1. / length;
+  const Eigen::Vector2d n = ratio * (r * inverse);
+  const double rate = Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near]).dot(n), viscous = damping * rate;
+  const double stretch = (1. / rest_length) * length, inverse_stretch = rest_length * inverse;
+  const double of_law =
+    std::visit([&](const auto &law) { return formulas::force(law, stretch, inverse_stretch); }, shell.law);
+  SingleBond single{factor * (section * of_law + viscous) * n, factor * (viscous * rate), {}};
   if (!state.history.remembers(kind))
     return single;
   auto variables = state.history.variables_of(near, kind);
-  const MemoryStep &step = memory_steps_[lattice_.shell(kind)];
-  const double axial = constants.cross_section *
-                       advance(step, state.history.kinds[kind].stretch[near], single.force.stretch, variables.data(),
-                               single.dissipation.data()) *
-                       factor;
-  single.force.x += axial * single.force.nx;
-  single.force.y += axial * single.force.ny;
+  const double overstress = advance(shell.memory, state.history.kinds[kind].stretch[near], stretch, variables.data(),
+                                    single.dissipation.data());
+  single.force += factor * (section * overstress) * n;
   for (double &power : single.dissipation)
   {
-    power = power * (constants.cross_section * constants.rest_length) * factor;
-    if (!dissipates_energy(step))
-      single.force.viscous_power += power;
+    power = power * (section * rest_length) * factor;
+    if (!dissipates_energy(shell.memory))
+      single.viscous_power += power;
   }
   return single;
 }
@@ -342,39 +312,30 @@ Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field
   {
     if (!state.bonds.present(bond.near, bond.kind))
       return {0., 0.};
-    const kernels::BondForce of_bond = single_bond({state, vx, vy}, bond).force;
-    return {of_bond.x, of_bond.y};
+    return single_bond({state, vx, vy}, bond).force;
   };
-  Eigen::Vector2d sum(0., 0.);
-  if (!lattice_.is_triangular())
+  if (lattice_.is_triangular())
   {
-    // In the order of an evaluation: rows from the lowest up, half-bond by half-bond.
-    for (std::ptrdiff_t below = reach_; below >= 0; --below)
-      for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-      {
-        if (below == 0)
-          sum += force(lattice_.bond(place, kind));
-        if (lattice_.rows_across(kind) == below)
-          sum -= force(lattice_.bond_into(place, kind));
-      }
-    return sum;
-  }
-  std::array<std::array<double, n_bond_kinds>, 2> start{}, end{};
-  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-  {
-    const Eigen::Vector2d from = force(lattice_.bond(place, kind)), into = force(lattice_.bond_into(place, kind));
-    for (std::size_t c = 0; c < 2; ++c)
+    std::array<Eigen::Vector2d, n_bond_kinds> start, end; // the first n_kinds_
+    for (std::size_t kind = 0; kind < n_kinds_; ++kind)
     {
-      start[c][kind] = from[static_cast<Eigen::Index>(c)];
-      end[c][kind] = into[static_cast<Eigen::Index>(c)];
+      start[kind] = force(lattice_.bond(place, kind));
+      end[kind] = force(lattice_.bond_into(place, kind));
     }
+    return n_kinds_ == n_bond_kinds ? formulas::sum_of_bonds<true>(start.data(), end.data())
+                                    : formulas::sum_of_bonds<false>(start.data(), end.data());
   }
-  const auto component = [&](std::size_t c)
-  {
-    return n_kinds_ == n_bond_kinds ? formulas::sum_of_bonds<true>(start[c], end[c])
-                                    : formulas::sum_of_bonds<false>(start[c], end[c]);
-  };
-  return {component(0), component(1)};
+  // In the order of an evaluation: rows from the lowest up, half-bond by half-bond.
+  Eigen::Vector2d sum(0., 0.);
+  for (std::ptrdiff_t below = reach_; below >= 0; --below)
+    for (std::size_t kind = 0; kind < n_kinds_; ++kind)
+    {
+      if (below == 0)
+        sum += force(lattice_.bond(place, kind));
+      if (lattice_.rows_across(kind) == below)
+        sum -= force(lattice_.bond_into(place, kind));
+    }
+  return sum;
 }
 
 } // namespace latcon::lattice

@@ -15,14 +15,12 @@ namespace latcon::lattice
 /// Forces on all sites from all bonds. The loops over a row are in row_kernels.h.
 ///
 /// A bond pulls with A0 psi'(lam) + A0 eta (v_rel . n) / l along its current direction n (theory.md, eq. (L.3)), and
-/// with the overstress A0 q of its memory (eq. (L.27)) if the state has a history. Every thread takes some of the rows
-/// from its lower to its upper end. It computes the bonds that start in a row, keeps those of the last three rows, and
-/// lets the sites of the row gather their bonds while these are in cache. Bonds that reach into these from below
-/// are computed once more there. The order of a gather is symmetric under both mirrors of the triangular lattice, so
-/// the bits of a result depend neither on the number of threads nor on which side of a symmetry line a site stands.
-///
-/// Other stencils have too many half-bonds to keep: each adds to the sums of the sites at its ends, half-bond by
-/// half-bond of the rows from the lowest up, which does not depend on the number of threads either.
+/// with the overstress A0 q of its memory (eq. (L.27)) if the state has a history. Every thread computes some of the
+/// rows from the lowest up: the bonds that start in a row, then the sums of its sites, which gather the bonds of the
+/// last three rows while these are in cache. Bonds that reach into its rows from below it computes once more. The order
+/// of a gather is symmetric under both mirrors of the triangular lattice, so the bits of a result depend neither on the
+/// number of threads nor on which side of a symmetry line a site stands. Other stencils have too many half-bonds to
+/// keep: each adds to the sums of the sites at its ends, in the order of rows and half-bonds.
 class Forces
 {
 public:
@@ -33,8 +31,7 @@ public:
   /// event), which is the default. For toughening on retraction.
   void set_retraction_threshold(const std::vector<double> &stretch) { retraction_stretch_ = stretch; }
 
-  /// Enables row_has_short_bonds() for bonds whose stretch is below `stretch` [-], but for linear ones; 0: for none,
-  /// the default.
+  /// Sets the stretch below which bonds are short [-], but for linear ones; 0: none is, the default.
   void set_shortness_threshold(double stretch) { shortness_limit_ = 1. / stretch; }
 
   /// Sets the time since the last update of the memory of bonds, in which they reached the positions at which forces
@@ -68,22 +65,10 @@ public:
   /// Force on one site [N/m] at the given velocities, by the operations of an evaluation of all.
   Eigen::Vector2d on_site(const State &state, const Field &vx, const Field &vy, std::size_t place) const;
 
-  /// Power the dashpots dissipated at the last evaluation, sum of A0 eta (v_rel . n)^2 / l [W/m] over the bonds that
-  /// start in a row of the band, those in the memory of bonds included.
-  double viscous_power(std::size_t row) const { return row_sums_[row].viscous_power; }
-
-  /// Power that each mechanism of Material::n_mechanisms() dissipated at the last evaluation [W/m], in the bonds that
-  /// start in a row of the band; a part of viscous_power().
-  double mechanism_power(std::size_t mechanism, std::size_t row) const { return row_mechanism_power_[mechanism][row]; }
-  /// Returns whether mechanism_power() is the energy [J/m] dissipated since the last update of the memory, which is no
-  /// part of viscous_power().
+  /// Sums over the bonds that start in a row of the band, as of the last evaluation.
+  const kernels::RowSums &row_sums(std::size_t row) const { return row_sums_[row]; }
+  /// Returns whether RowSums::mechanism_power is an energy, which is no part of the viscous power.
   bool gives_energy(std::size_t mechanism) const { return mechanism_gives_energy_[mechanism]; }
-
-  /// Returns whether a row has bonds that were stretched past their limit (or retracted) at the last evaluation.
-  bool row_has_events(std::size_t row) const { return row_sums_[row].has_events; }
-
-  /// Returns whether a row has short bonds, as of the last evaluation; see set_shortness_threshold().
-  bool row_has_short_bonds(std::size_t row) const { return row_sums_[row].has_short_bonds; }
 
   /// Returns whether one of the bonds that start in a row of the band will be past its limit, or will have retracted,
   /// after its ends have moved for `ahead` [s] at the velocities of the state.
@@ -94,7 +79,7 @@ public:
   bool row_has_short_bonds_ahead(const State &state, const Field &vx, const Field &vy, std::size_t row, double ahead,
                                  double stretch) const;
 
-  /// Takes a bond that has just broken out of viscous_power(), if it is there.
+  /// Takes a bond that has just broken out of the powers of its row, if it is in the band.
   /// @param state as at the last evaluation
   /// @param vx,vy velocities of that evaluation
   void remove_bond(const State &state, const Field &vx, const Field &vy, const Bond &bond);
@@ -135,7 +120,8 @@ private:
   /// What one bond does.
   struct SingleBond
   {
-    kernels::BondForce force;                              // with the overstress of its memory
+    Eigen::Vector2d force;                                 // on its near end [N/m]
+    double viscous_power;                                  // [W/m]
     std::array<double, max_history_variables> dissipation; // of each mechanism, 0 beyond [W/m], or [J/m]
   };
 
@@ -155,7 +141,7 @@ private:
     std::vector<LastRows> bonds = {};
     LastRows sums; // on the sites of the rows that bonds reach from one row
     std::vector<kernels::BondsOfKind> kinds = {};
-    std::vector<double> mechanism_power = {}; // of the bonds that start in a row
+    std::vector<kernels::RememberedRow> remembered = {}; // by kind
     std::vector<const double *> ahead = {};   // what is fetched during a row
     Field lengths;                            // of the bonds of a row with a memory, and their inverse
   };
@@ -167,14 +153,13 @@ private:
   kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, std::ptrdiff_t begin,
                                 Scratch &scratch) const;
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
-  void add_overstress(const Motion &motion, std::size_t from, const kernels::RowOfBonds &row,
-                      const kernels::BondsOfKind &bonds, std::size_t kind, std::vector<double> &mechanism_power) const;
+  void remember(const Motion &motion, std::size_t row, std::size_t kind, double *mechanism_power,
+                Scratch &scratch) const;
   SingleBond single_bond(const Motion &motion, const Bond &bond) const;
 
   RowPartition band_;
   const TriangularLattice &lattice_;
-  Material material_;
-  std::array<MemoryStep, n_shells> memory_steps_;
+  Material material_;                             // whose memories have the duration of set_elapsed()
   std::size_t n_kinds_;                           // of bonds: the first so many
   std::ptrdiff_t reach_;                          // of these, in rows
   std::vector<kernels::BondConstants> constants_; // by kind
@@ -185,7 +170,6 @@ private:
   std::vector<Scratch> scratch_; // one a thread
   Field fx_, fy_;
   std::vector<kernels::RowSums> row_sums_;
-  std::vector<Field> row_mechanism_power_; // [mechanism][row]
   std::vector<bool> mechanism_gives_energy_;
 };
 

@@ -60,10 +60,7 @@ Fracture::Event Fracture::event(const State &state, const Bond &bond, const Fiel
 {
   const auto [near, kind, far] = bond;
   const double ratio = lattice_.length_ratio(near, kind);
-  const Eigen::Vector2d along(state.x[far] - state.x[near], state.y[far] - state.y[near]);
-  const double rate = ratio * along.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near])) /
-                      (along.norm() * lattice_.rest_length(kind));
-  const double longest = limit(state, bond, rate);
+  const double longest = limit(state, bond, stretch_rate(state, lattice_, bond, vx, vy));
   const double shortest =
     retraction_stretch_.empty() || state.bonds.toughened(near, kind) ? 0. : retraction_stretch_[kind];
   const auto among = [](double value, double from, double to) {
@@ -149,7 +146,7 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
   std::vector<std::vector<Loss>> of_rows(lattice_.rows());
   const auto find = [&](std::size_t row)
   {
-    if (!(lookahead_ > 0. ? forces.row_has_events_ahead(state, row, lookahead_) : forces.row_has_events(row)))
+    if (!(lookahead_ > 0. ? forces.row_has_events_ahead(state, row, lookahead_) : forces.row_sums(row).has_events))
       return;
     for_each_bond(state, lattice_, {row, row + 1},
                   [&](const Bond &bond)

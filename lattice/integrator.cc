@@ -4,37 +4,18 @@
 #include <functional>
 
 #include "lattice/bonds/require.h"
-#include "lattice/row_kernels.h"
 
 namespace latcon::lattice
 {
-namespace
-{
-
-// Calls visit(place, acceleration) for every site force.
-template <class Visitor>
-void for_each_acceleration(const State &state, const std::vector<SiteForces *> &site_forces, const Visitor &visit)
-{
-  for (const SiteForces *forces : site_forces)
-    for (const auto &[place, force] : forces->last())
-      visit(place, Eigen::Vector2d(state.inverse_mass[place] * force));
-}
-
-} // namespace
 
 Integrator::Integrator(const RowPartition &band, Forces &forces, double time_step)
   : band_(band), lattice_(band.lattice()), forces_(forces), sent_(band.halo_sites(true)),
     received_(band.halo_sites(false)), interior_(band.rows()), time_step_(time_step)
 {
   require(time_step > 0., "time stepping needs a positive time step");
-  const std::size_t middle = (interior_.begin + interior_.end) / 2;
-  for (const std::vector<std::size_t> &to_rank : sent_)
-    for (const std::size_t place : to_rank)
-      // Within the reach of bonds of either edge of the band.
-      if (const std::size_t row = lattice_.row_of(place); row < middle)
-        interior_.begin = std::max(interior_.begin, row + 1);
-      else
-        interior_.end = std::min(interior_.end, row);
+  const std::size_t reach = band.is_shared() ? lattice_.reach() : 0;
+  interior_.begin = std::min(interior_.begin + reach, interior_.end);
+  interior_.end -= std::min(reach, interior_.end - interior_.begin);
 }
 
 std::vector<Field *> Integrator::evaluated_fields(State &state)
@@ -96,14 +77,6 @@ void Integrator::exchange_ghosts(State &state)
         (*velocity)[image.place] = (*velocity)[image.site];
 }
 
-void Integrator::kick(State &state, std::size_t row, const double *fx, const double *fy, double duration) const
-{
-  const std::size_t begin = lattice_.index(row, 0), n = lattice_.columns();
-  const double *const inverse_mass = &state.inverse_mass[begin];
-  kernels::loops().kick(duration, n, fx, inverse_mass, &state.ax[begin], &state.vx[begin]);
-  kernels::loops().kick(duration, n, fy, inverse_mass, &state.ay[begin], &state.vy[begin]);
-}
-
 void Integrator::accelerate(State &state)
 {
   // Threads may still read the velocities of rows next to theirs, so that only accelerations are written.
@@ -128,25 +101,25 @@ void Integrator::evaluate_site_forces(State &state)
 void Integrator::accelerate_sites(State &state)
 {
   of_bonds_.clear();
-  for_each_acceleration(state, site_forces_,
-                        [&](std::size_t place, const Eigen::Vector2d &acceleration)
-                        {
-                          of_bonds_.push_back({place, state.ax[place], state.ay[place]});
-                          state.ax[place] += acceleration.x();
-                          state.ay[place] += acceleration.y();
-                        });
+  for (const SiteForces *forces : site_forces_)
+    for (const auto &[place, force] : forces->last())
+    {
+      of_bonds_.push_back({place, state.ax[place], state.ay[place]});
+      state.ax[place] += state.inverse_mass[place] * force.x();
+      state.ay[place] += state.inverse_mass[place] * force.y();
+    }
   for (const RollerVelocity &roller : rollers_)
     (roller.component == 0 ? state.ax : state.ay)[roller.place] = 0.;
 }
 
 void Integrator::kick_sites(State &state, double duration) const
 {
-  for_each_acceleration(state, site_forces_,
-                        [&](std::size_t place, const Eigen::Vector2d &acceleration)
-                        {
-                          state.vx[place] += duration * acceleration.x();
-                          state.vy[place] += duration * acceleration.y();
-                        });
+  for (const SiteForces *forces : site_forces_)
+    for (const auto &[place, force] : forces->last())
+    {
+      state.vx[place] += duration * (state.inverse_mass[place] * force.x());
+      state.vy[place] += duration * (state.inverse_mass[place] * force.y());
+    }
   for (const RollerVelocity &roller : rollers_)
     (roller.component == 0 ? state.vx : state.vy)[roller.place] = roller.velocity;
 }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <utility>
 #include <vector>
 
+#include "lattice/chebyshev_stages.h"
 #include "lattice/forces.h"
 #include "lattice/site_forces.h"
 
@@ -32,8 +32,8 @@ public:
   /// Adds forces to those of the bonds, at the same positions and velocities; they must outlive this object.
   void add(SiteForces &forces) { site_forces_.push_back(&forces); }
 
-  /// Finds the components of own sites that keep their velocity in `state` while the other one follows the forces; for
-  /// a state that was loaded, otherwise initialise() does.
+  /// Finds the components of own sites that keep their velocity in `state`; for a state that was loaded, otherwise
+  /// initialise() does.
   void find_rollers(const State &state);
 
   /// Computes the accelerations a state starts with; needed once, and again after a change from outside. Collective.
@@ -49,21 +49,18 @@ public:
   /// Evaluates the added forces anew, at the last positions and velocities. Collective.
   void evaluate_site_forces(State &state);
 
-  /// Accelerations at the end of the last step anew: for those sites at `places` that are in the band, which lost bonds
-  /// then, and with the site forces as last evaluated.
+  /// Updates the accelerations at the end of the last step of own sites among `places`, which lost bonds then, with the
+  /// site forces as last evaluated.
   void update_accelerations(State &state, const std::vector<std::size_t> &places);
 
 protected:
   /// Brings what forces are evaluated at up to date in the halo and at images. Collective.
   void exchange_ghosts(State &state);
-  /// Moves all rows of the band to where forces are evaluated next: rows that other ranks need now, the others in that
+  /// Moves the rows of the band to where forces are evaluated next: those that other ranks need now, the others in that
   /// evaluation, while they are in cache, unless the sheet is periodic. Collective.
-  /// @param move moves a row; must outlive that evaluation @return what the evaluation is to begin with
+  /// @param move moves a row; must outlive that evaluation @return its callbacks so far
   Forces::RowCallbacks move_rows(State &state, const std::function<void(std::size_t row)> &move);
-  /// Accelerations and velocities of a row after forces on its sites have acted for `duration` [s].
-  void kick(State &state, std::size_t row, const double *fx, const double *fy, double duration) const;
-  /// Forces of bonds and of all that was added, at the present positions and velocities, as accelerations.
-  /// Updates the memory of bonds to these positions.
+  /// Computes the accelerations by all forces at the present positions and velocities. Updates the memory of bonds.
   void accelerate(State &state);
   /// Adds the accelerations by site forces to those of a state; along a roller's fixed component there is none.
   void accelerate_sites(State &state);
@@ -80,7 +77,7 @@ private:
   std::vector<Field *> evaluated_fields(State &state);
 
   SitesOfRanks sent_, received_; // of the halo
-  Rows interior_;                // no other rank needs these
+  Rows interior_;                // beyond the reach of the bonds of other ranks
   double time_step_;
   std::vector<SiteForces *> site_forces_;
   struct RollerVelocity
@@ -103,8 +100,13 @@ private:
 ///   a' = f(x', v_pred) / m, v' = v_half + (h/2) a'.
 /// The dashpots see v_pred = v + h a, a second-order prediction of v', so the scheme stays explicit, takes one force
 /// evaluation a step and converges at second order with and without viscosity. Without it, it is plain velocity Verlet.
-/// @param time_step h [s], > 0; see TimeStepLimits
-std::unique_ptr<Integrator> velocity_verlet(const RowPartition &band, Forces &forces, double time_step);
+class VelocityVerlet : public Integrator
+{
+public:
+  /// @param time_step h [s], > 0; see TimeStepLimits
+  VelocityVerlet(const RowPartition &band, Forces &forces, double time_step);
+  void step(State &state) override;
+};
 
 /// Runge-Kutta-Chebyshev method of second order for y = (x, v), y' = (v, a(x, v)) (theory.md, eqs. (L.17) to (L.20),
 /// (L.22)).
@@ -112,8 +114,25 @@ std::unique_ptr<Integrator> velocity_verlet(const RowPartition &band, Forces &fo
 /// Each of the s stages of a step evaluates all forces at its own positions and velocities. The stable step grows with
 /// s^2, so that a given time takes fewer evaluations the longer the steps are. Shorter steps take fewer stages: no more
 /// than (L.22) requires.
-/// @param time_step h [s], > 0 @param stages s of steps of that length, >= 2
-std::unique_ptr<Integrator> runge_kutta_chebyshev(const RowPartition &band, Forces &forces, double time_step,
-                                                  unsigned int stages);
+class RungeKuttaChebyshev : public Integrator
+{
+public:
+  /// @param time_step h [s], > 0 @param stages s of steps of that length, >= 2
+  RungeKuttaChebyshev(const RowPartition &band, Forces &forces, double time_step, unsigned int stages);
+  void set_time_step(double time_step) override;
+  void step(State &state) override;
+
+private:
+  /// Positions and velocities.
+  struct Motion
+  {
+    Field x, y, vx, vy;
+  };
+
+  ChebyshevStages stages_;
+  double damping_limit_; // beta over h of the stages and step at the start [1/s]
+  Motion start_;         // of the step, in own rows
+  Motion previous_;      // those of the stage before the one that the state holds
+};
 
 } // namespace latcon::lattice

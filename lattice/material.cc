@@ -37,17 +37,16 @@ Material without_memory(Material material)
 {
   for (std::size_t number = 0; number < n_shells; ++number)
     if (Shell *shell = material.in_shell(number))
-      shell->memory = NoMemory();
+      shell->memory = {};
   return material;
 }
 
 Material without_dashpots(Material material)
 {
-  material = without_memory(std::move(material));
   for (std::size_t number = 0; number < n_shells; ++number)
     if (Shell *shell = material.in_shell(number))
       shell->viscosity = 0.;
-  return material;
+  return without_memory(std::move(material));
 }
 
 } // namespace latcon::lattice

@@ -3,8 +3,7 @@
 #include <optional>
 #include <utility>
 
-#include "lattice/bonds/bond_law.h"
-#include "lattice/bonds/bond_memory.h"
+#include "lattice/bonds/formulas.h"
 #include "lattice/disorder.h"
 #include "lattice/triangular_lattice.h"
 
@@ -20,7 +19,7 @@ struct Shell
   /// eta [Pa s], >= 0: viscosity of the Kelvin dashpot along the bond.
   double viscosity;
   /// Overstress that depends on the past of a bond; none by default.
-  BondMemory memory = NoMemory();
+  BondMemory memory = {};
 };
 
 /// Material of the sheet. All extensive quantities of the lattice are per unit sheet thickness h, which cancels

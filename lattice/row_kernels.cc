@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "lattice/instruction_sets.h"
@@ -56,10 +56,10 @@ HWY_INLINE void find_lengths(const RowOfBonds &row, std::size_t site, Lengths &l
     const BondsOfKind &bonds = row.kinds[kind];
     const Lanes dx = difference<has_factors>(bonds, row.x, site, x),
                 dy = difference<has_factors>(bonds, row.y, site, y);
-    const Lanes length = square_root(dx * dx + dy * dy);
+    const Lanes length = hn::Sqrt(dx * dx + dy * dy);
     const auto present = mask_of_bit(states, bonds.present);
-    store(where(present, length), lengths.length[kind]);
-    store(where(present, reciprocal(length)), lengths.inverse[kind]);
+    store(hn::IfThenElseZero(present, length), lengths.length[kind]);
+    store(hn::IfThenElseZero(present, lanes(1.) / length), lengths.inverse[kind]);
   }
 }
 
@@ -129,8 +129,8 @@ HWY_INLINE void bonds_of_kind(const Law &law, const BondConstants &bond, const R
   so_far.power = so_far.power + power;
   // It is 0 for absent bonds.
   if constexpr (Law::stiffens_when_short)
-    so_far.shortness.v = hn::Max(so_far.shortness.v, inverse_stretch.v);
-  so_far.longest.v = hn::Max(so_far.longest.v, stretch.v);
+    so_far.shortness = hn::Max(so_far.shortness, inverse_stretch);
+  so_far.longest = hn::Max(so_far.longest, stretch);
 }
 
 // @tparam n_kinds one, those of a shell, or of two shells, of which the second has the second law
@@ -148,7 +148,8 @@ void bonds_of_laws(const Law law, const SecondLaw second_law, const RowOfBonds &
   const double *const *const ahead = row.ahead;
   const std::size_t n_ahead = row.n_ahead;
   const double first_limit = std::min(row.breaking_stretch, row.toughened_stretch);
-  const bool keeps_lengths = kinds[0].lengths[0] != nullptr;
+  const bool keeps_lengths =
+    std::any_of(kinds.begin(), kinds.end(), [](const BondsOfKind &bonds) { return bonds.remembered != nullptr; });
   const bool asks_each = kinds[0].strength != nullptr || kinds[0].retraction_stretch > 0.;
   Lanes power[block];
   for (Lanes &sum : power)
@@ -190,43 +191,26 @@ void bonds_of_laws(const Law law, const SecondLaw second_law, const RowOfBonds &
     sum = so_far.power;
     shortness = so_far.shortness;
     // Few bonds are near a limit that all have, so whose it is can be asked then.
-    if (HWY_UNLIKELY(!has_events && (asks_each || !hn::AllFalse(D(), hn::Gt(so_far.longest.v, lanes(first_limit).v)))))
+    if (HWY_UNLIKELY(!has_events && (asks_each || !hn::AllFalse(D(), hn::Gt(so_far.longest, lanes(first_limit))))))
       has_events = any_event(given, site, here);
     turn = 1 - turn;
   }
   sums.viscous_power = add(sums.viscous_power, power);
   sums.has_events = sums.has_events || has_events;
-  sums.has_short_bonds = sums.has_short_bonds || !hn::AllFalse(D(), hn::Gt(shortness.v, lanes(row.shortness_limit).v));
+  sums.has_short_bonds = sums.has_short_bonds || !hn::AllFalse(D(), hn::Gt(shortness, lanes(row.shortness_limit)));
 }
 
-void bonds_of_row(const BondLaw &law, const BondLaw &second_law, const RowOfBonds &row, RowSums &sums)
-{
-  const auto of_law = [&](const auto &first)
-  {
-    if (row.n_kinds == 1)
-      bonds_of_laws<1, true>(first, first, row, sums);
-    else if (row.kinds->stiffness != nullptr || row.kinds->strength != nullptr)
-      bonds_of_laws<n_kinds_per_shell, true>(first, first, row, sums);
-    else if (row.n_kinds == n_kinds_per_shell)
-      bonds_of_laws<n_kinds_per_shell, false>(first, first, row, sums);
-    else
-      std::visit([&](const auto &second) { bonds_of_laws<2 * n_kinds_per_shell, false>(first, second, row, sums); },
-                 second_law);
-  };
-  std::visit(of_law, law);
-}
-
-// @tparam n_branches of a Maxwell memory, so that their variables stay in registers; 0: any number
-template <std::size_t n_branches, class Step>
+// Adds the overstress of the bonds of a kind to their forces.
+// @tparam n_branches of a Maxwell memory, so that their variables stay in registers; 0: any number of variables
+template <std::size_t n_branches, class Memory>
 // cppcheck-suppress passedByValue ; copies, which no store can change
-void overstress_of_step(Step step, const RowOfBonds row, const BondsOfKind bonds, const RememberedRow remembered,
-                        double *power)
+void add_overstress(const Memory &memory, const RowOfBonds row, const BondsOfKind bonds, const RememberedRow remembered)
 {
-  if constexpr (n_branches > 0)
-    step.n = n_branches;
+  const std::size_t n = n_branches > 0 ? n_branches : memory.n_variables();
+  const std::size_t n_mechanisms = n_branches > 0 ? n_branches : memory.n_mechanisms();
   constexpr std::size_t n_sums = n_branches > 0 ? n_branches : max_history_variables;
   Lanes sums[n_sums][block];
-  for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
+  for (std::size_t m = 0; m < n_mechanisms; ++m)
     for (Lanes &sum : sums[m])
       sum = lanes(0.);
   const double section = bonds.constants.cross_section, volume = section * bonds.constants.rest_length;
@@ -240,48 +224,64 @@ void overstress_of_step(Step step, const RowOfBonds row, const BondsOfKind bonds
                 ny = ratio * (difference<true>(bonds, row.y, site, load(row.y + site)) * inverse);
     const Lanes stretch = stretch_of(bonds.constants, bonds.lengths[0] + site);
     Lanes variables[n_sums], dissipation[n_sums];
-    for (std::size_t v = 0; v < step.n; ++v)
+    for (std::size_t v = 0; v < n; ++v)
       variables[v] = load(remembered.variable[v] + site);
-    const Lanes stress = advance(step, load(remembered.stretch + site), stretch, variables, dissipation);
+    const Lanes stress = advance(memory, n, load(remembered.stretch + site), stretch, variables, dissipation);
     if (remembered.new_stretch != nullptr)
     {
-      for (std::size_t v = 0; v < step.n; ++v)
-        store(where(present, variables[v]), remembered.new_variable[v] + site);
+      for (std::size_t v = 0; v < n; ++v)
+        store(hn::IfThenElseZero(present, variables[v]), remembered.new_variable[v] + site);
       store(stretch, remembered.new_stretch + site);
     }
     const Lanes factor = load_factors(bonds.stiffness, site);
-    const Lanes axial = factor * (section * where(present, stress));
+    const Lanes axial = factor * (section * hn::IfThenElseZero(present, stress));
     store(load(fx + site) + axial * nx, fx + site);
     store(load(fy + site) + axial * ny, fy + site);
-    for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
+    for (std::size_t m = 0; m < n_mechanisms; ++m)
     {
       Lanes &sum = sums[m][site % block / width()];
-      sum = sum + where(present, factor * dissipation[m]);
+      sum = sum + hn::IfThenElseZero(present, factor * dissipation[m]);
     }
   }
-  for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
-    power[m] += volume * add(0., sums[m]);
+  for (std::size_t m = 0; m < n_mechanisms; ++m)
+    remembered.dissipation[m] += volume * add(0., sums[m]);
 }
 
-void add_overstress(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
-                    const RememberedRow &remembered, double *power)
+void bonds_of_row(const RowOfBonds &row, RowSums &sums)
 {
-  const auto of_step = [&](const auto &of_kind)
+  const auto of_laws = [&](const auto &first, const auto &second)
   {
-    using Step = std::decay_t<decltype(of_kind)>;
-    if constexpr (std::is_same_v<Step, MaxwellMemory::Step>)
-    {
-      if (of_kind.n == 1)
-        return overstress_of_step<1>(of_kind, row, bonds, remembered, power);
-      if (of_kind.n == 2)
-        return overstress_of_step<2>(of_kind, row, bonds, remembered, power);
-      if (of_kind.n == 3)
-        return overstress_of_step<3>(of_kind, row, bonds, remembered, power);
-    }
-    if constexpr (!std::is_same_v<Step, NoMemory::Step>)
-      overstress_of_step<0>(of_kind, row, bonds, remembered, power);
+    if (row.n_kinds == 1)
+      bonds_of_laws<1, true>(first, first, row, sums);
+    else if (row.kinds->stiffness != nullptr || row.kinds->strength != nullptr)
+      bonds_of_laws<n_kinds_per_shell, true>(first, first, row, sums);
+    else if (row.n_kinds == n_kinds_per_shell)
+      bonds_of_laws<n_kinds_per_shell, false>(first, first, row, sums);
+    else
+      bonds_of_laws<2 * n_kinds_per_shell, false>(first, second, row, sums);
   };
-  std::visit(of_step, step);
+  std::visit(of_laws, *row.kinds[0].law, *row.kinds[row.n_kinds - 1].law);
+  for (std::size_t kind = 0; kind < row.n_kinds; ++kind)
+  {
+    const BondsOfKind &bonds = row.kinds[kind];
+    if (bonds.remembered == nullptr)
+      continue;
+    const auto of_memory = [&](const auto &memory)
+    {
+      if constexpr (std::is_same_v<std::decay_t<decltype(memory)>, MaxwellMemory>)
+        switch (memory.n_variables())
+        {
+        case 1:
+          return add_overstress<1>(memory, row, bonds, *bonds.remembered);
+        case 2:
+          return add_overstress<2>(memory, row, bonds, *bonds.remembered);
+        case 3:
+          return add_overstress<3>(memory, row, bonds, *bonds.remembered);
+        }
+      add_overstress<0>(memory, row, bonds, *bonds.remembered);
+    };
+    std::visit(of_memory, *bonds.remembered->memory);
+  }
 }
 
 // Whether test(bonds of a kind, first site, vectors between the ends of bonds, their rates) holds for a bond of a row.
@@ -321,10 +321,10 @@ bool any_short_ahead(const RowOfBonds &row, double ahead, double stretch)
                   {
                     // length + ahead min(product, 0) / length <= short length, without root or quotient.
                     const Lanes square = dx * dx + dy * dy, product = dx * dvx + dy * dvy;
-                    const Lanes then_by_now = square + ahead * Lanes{hn::Min(product.v, lanes(0.).v)};
+                    const Lanes then_by_now = square + ahead * hn::Min(product, lanes(0.));
                     const double length = stretch * bonds.constants.rest_length;
-                    const auto is_short = hn::Or(hn::Le(then_by_now.v, lanes(0.).v),
-                                                 hn::Le((then_by_now * then_by_now).v, (length * length * square).v));
+                    const auto is_short = hn::Or(hn::Le(then_by_now, lanes(0.)),
+                                                 hn::Le(then_by_now * then_by_now, length * length * square));
                     return hn::And(mask_of_bit(load_states(bonds.states + site), bonds.present), is_short);
                   });
 }
@@ -333,7 +333,6 @@ const Loops &LoopsOfTarget()
 {
   static const Loops loops{hwy::TargetName(HWY_TARGET),
                            bonds_of_row,
-                           add_overstress,
                            gather_row,
                            scatter,
                            any_event_ahead,
@@ -357,43 +356,42 @@ HWY_EXPORT(LoopsOfTarget);
 namespace
 {
 
-// Each of a set of targets; better ones have lower bits.
-std::vector<std::int64_t> split(std::int64_t targets)
+void use_targets(std::int64_t targets)
 {
-  std::vector<std::int64_t> each;
-  for (; targets != 0; targets &= targets - 1)
-    each.push_back(targets & -targets);
-  return each;
+  hwy::SetSupportedTargetsForTest(targets);
+  hwy::GetChosenTarget().Update(targets);
 }
 
-// Instruction sets that this processor has and for which the loops were compiled, up to the one that the environment
-// names.
-std::int64_t allowed_targets()
+using Targets = std::vector<std::pair<std::string, std::int64_t>>;
+
+// Instruction sets that this processor has and for which the loops were compiled, the best first: from the one on that
+// the environment names.
+Targets find_targets()
 {
   const std::int64_t all = hwy::SupportedTargets() & HWY_TARGETS;
+  Targets targets;
+  std::string names;
+  for (std::int64_t left = all; left != 0; left &= left - 1) // better ones have lower bits
+  {
+    targets.emplace_back(hwy::TargetName(left & -left), left & -left);
+    names += (names.empty() ? "" : ", ") + targets.back().first;
+  }
   const char *const best = std::getenv("LATCON_INSTRUCTION_SET");
   if (best == nullptr)
-    return all;
-  std::string names;
-  for (const std::int64_t target : split(all))
-  {
-    if (std::strcmp(hwy::TargetName(target), best) == 0)
-    {
-      const std::int64_t allowed = all & -target;
-      hwy::SetSupportedTargetsForTest(allowed);
-      hwy::GetChosenTarget().Update(allowed);
-      return allowed;
-    }
-    names += std::string(names.empty() ? "" : ", ") + hwy::TargetName(target);
-  }
-  throw std::invalid_argument("environment variable LATCON_INSTRUCTION_SET: `" + std::string(best) +
-                              "` is none of the instruction sets on this machine: " + names);
+    return targets;
+  while (!targets.empty() && targets.front().first != best)
+    targets.erase(targets.begin());
+  if (targets.empty())
+    throw std::invalid_argument("environment variable LATCON_INSTRUCTION_SET: `" + std::string(best) +
+                                "` is none of the instruction sets on this machine: " + names);
+  use_targets(all & -targets.front().second);
+  return targets;
 }
 
-const std::vector<std::int64_t> &targets()
+const Targets &targets()
 {
-  static const std::vector<std::int64_t> allowed = split(allowed_targets());
-  return allowed;
+  static const Targets found = find_targets();
+  return found;
 }
 
 } // namespace
@@ -401,21 +399,17 @@ const std::vector<std::int64_t> &targets()
 std::vector<std::string> instruction_sets()
 {
   std::vector<std::string> names;
-  for (const std::int64_t target : targets())
-    names.emplace_back(hwy::TargetName(target));
+  for (const auto &[name, target] : targets())
+    names.push_back(name);
   return names;
 }
 
-void use_instruction_set(const std::string &name)
+void use_instruction_set(const std::string &wanted)
 {
-  for (const std::int64_t target : targets())
-    if (hwy::TargetName(target) == name)
-    {
-      hwy::SetSupportedTargetsForTest(target);
-      hwy::GetChosenTarget().Update(target);
-      return;
-    }
-  throw std::invalid_argument("there is no instruction set " + name + " here");
+  for (const auto &[name, target] : targets())
+    if (name == wanted)
+      return use_targets(target);
+  throw std::invalid_argument("there is no instruction set " + wanted + " here");
 }
 
 const Loops &loops()

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "lattice/bond_states.h"
-#include "lattice/bonds/bond_law.h"
-#include "lattice/bonds/bond_memory.h"
+#include "lattice/bonds/formulas.h"
 #include "lattice/chebyshev_stages.h"
 
 /// @file
@@ -28,9 +27,22 @@ struct BondConstants
   double damping = 0.;       ///< A0 eta / (h l) [Pa s]
 };
 
+/// History of the bonds of one kind that start in a row, by places counted from its first site.
+struct RememberedRow
+{
+  const BondMemory *memory;                                   ///< with the duration since the last update
+  const double *stretch;                                      ///< at the last update [-]
+  std::array<const double *, max_history_variables> variable; ///< of the memory
+  /// The same, to be updated to the present; null: not updated. Absent bonds remember 0.
+  double *new_stretch = nullptr;
+  std::array<double *, max_history_variables> new_variable = {};
+  double *dissipation = nullptr; ///< of each mechanism, what is added to; see RowSums
+};
+
 /// The bonds of one kind, a half-bond of a stencil, that start in a row, with places counted from its first site.
 struct BondsOfKind
 {
+  const BondLaw *law;
   BondConstants constants;
   std::ptrdiff_t shift;                ///< from a site to the far end of its bond
   const BondStates::Word *states;      ///< of sites: the words that hold this kind and all others of a call
@@ -40,10 +52,9 @@ struct BondsOfKind
   /// Rest length of the kind over that of a bond, by site; null: all 1. The length of a bond times this ratio is that
   /// of a bond of the kind with the same stretch, and its gradient is what rates and forces are projected on.
   const double *length_ratio = nullptr;
-  std::array<double *, 2> force{}; ///< on the near ends, x (0) and y (1) [N/m]: what is computed
-  /// Lengths [m] and inverse lengths that bonds_of_row() keeps for add_overstress(), 0 for absent bonds; null in the
-  /// first of the kinds: not kept.
-  std::array<double *, 2> lengths{};
+  const RememberedRow *remembered = nullptr; ///< null: no memory
+  std::array<double *, 2> force{};           ///< on the near ends, x (0) and y (1) [N/m]: what is computed
+  std::array<double *, 2> lengths{};         ///< scratch for a call of bonds of which some have a memory
 };
 
 /// The sites of a row, with places counted from its first site, and the bonds that start there.
@@ -64,19 +75,13 @@ struct RowOfBonds
 /// Sums over the bonds that start in a row.
 struct RowSums
 {
-  double viscous_power = 0.;    ///< of their dashpots [W/m]
+  /// Of dashpots, A0 eta (v_rel . n)^2 / l [W/m], those in memories included, as bonds_of_row() does not.
+  double viscous_power = 0.;
+  /// Of each mechanism of Material::n_mechanisms(): what memories dissipate [W/m], or have since their last update
+  /// [J/m]; see dissipates_energy().
+  std::vector<double> mechanism_power = {};
   bool has_events = false;      ///< whether one is past its limit, or has retracted
   bool has_short_bonds = false; ///< whether one has an inverse stretch above RowOfBonds::shortness_limit
-};
-
-/// History of the bonds of one kind that start in a row, by places counted from its first site.
-struct RememberedRow
-{
-  const double *stretch;                                      ///< at the last update [-]
-  std::array<const double *, max_history_variables> variable; ///< of BondMemory
-  /// The same, to be updated to the present; null: not updated. Absent bonds remember 0.
-  double *new_stretch = nullptr;
-  std::array<double *, max_history_variables> new_variable = {};
 };
 
 /// The loops of one instruction set.
@@ -84,16 +89,10 @@ struct Loops
 {
   const char *instruction_set; ///< its name
 
-  /// Computes the forces of all bonds of a row (theory.md, eq. (L.3)) and adds to `sums` those over the bonds.
-  /// @param law of the first n_kinds_per_shell kinds @param second_law of the others
+  /// Computes the forces of all bonds of a row (theory.md, eq. (L.3)), with the overstress of those with a memory, the
+  /// present stretch being reached in the time since the last update, and adds to `sums` those over the bonds.
   /// @param row of one kind, of the n_kinds_per_shell of a shell, or, for bonds without factors, of two shells
-  void (*bonds_of_row)(const BondLaw &law, const BondLaw &second_law, const RowOfBonds &row, RowSums &sums);
-
-  /// Adds the overstress of the bonds of one kind that start in a row to their `force`, the present stretch being
-  /// reached in the duration of `step` since the last update. Takes the `lengths` that bonds_of_row() has kept.
-  /// @param power what each mechanism dissipates in them is added [W/m], or [J/m] for energies; see BondMemory
-  void (*add_overstress)(const MemoryStep &step, const RowOfBonds &row, const BondsOfKind &bonds,
-                         const RememberedRow &remembered, double *power);
+  void (*bonds_of_row)(const RowOfBonds &row, RowSums &sums);
 
   /// A component of the forces on the n sites of a row: those on the near ends of the bonds that start at a site, less
   /// those of the bonds that end there, [kind][site]. Kinds without a shell must be there and hold zeros.
@@ -137,19 +136,6 @@ struct Loops
 };
 /// Those of the instruction set in use.
 const Loops &loops();
-
-/// A bond's force, one at a time: the operations of the loops, so that both have the same bits.
-struct BondForce
-{
-  double x, y;   ///< on the near end [N/m], the opposite on the far end
-  double nx, ny; ///< direction from the near to the far end, times the ratio of lengths
-  double stretch;
-  double viscous_power; ///< [W/m]
-};
-/// Returns the force of a bond whose ends are at a distance (dx, dy) [m] and move apart with (dvx, dvy) [m/s].
-/// @param factor,length_ratio of the bond, see BondsOfKind
-BondForce bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx, double dy, double dvx,
-                     double dvy, double length_ratio = 1.);
 
 /// Returns the names of the instruction sets that this processor has and the loops exist for, the best first. The
 /// last is for any processor: "SCALAR", or with some compilers "EMU128". The environment variable

@@ -10,38 +10,29 @@
 
 namespace latcon::lattice
 {
-namespace
-{
-
-// Throws unless each kind of bonds has the variables of its memory at every place.
-void require_history(const State &state, const TriangularLattice &lattice, const Material &material)
-{
-  require(state.history.kinds.size() == lattice.n_kinds(), "the history of the bonds does not fit the lattice");
-  for (std::size_t kind = 0; kind < state.history.kinds.size(); ++kind)
-  {
-    const BondHistory::Kind &history = state.history.kinds[kind];
-    const Shell *shell = material.shell(lattice, kind);
-    bool fits = history.variables.size() == (shell != nullptr ? n_variables(shell->memory) : 0);
-    for (const Field &variable : history.variables)
-      fits = fits && variable.size() == lattice.n_places() && history.stretch.size() == lattice.n_places();
-    require(fits, "the history of the bonds does not fit the memories of the material");
-  }
-}
-
-} // namespace
 
 Simulation::Simulation(const RowPartition &band, const Material &material, State initial, TimeStepping time_stepping,
                        std::optional<Fracture> fracture)
   : band_(band), lattice_(band.lattice()), material_(material), state_(std::move(initial)),
-    time_stepping_(time_stepping), forces_(band, material),
-    integrator_(time_stepping.stages == 0
-                  ? velocity_verlet(band, forces_, time_stepping.step)
-                  : runge_kutta_chebyshev(band, forces_, time_stepping.step, time_stepping.stages)),
-    fracture_(std::move(fracture)), powers_(of_constraint(0), std::vector<double>(lattice_.rows(), 0.)), work_(powers_)
+    time_stepping_(time_stepping), forces_(band, material), fracture_(std::move(fracture)),
+    powers_(of_constraint(0), std::vector<double>(lattice_.rows(), 0.)), work_(powers_)
 {
+  if (time_stepping.stages == 0)
+    integrator_ = std::make_unique<VelocityVerlet>(band, forces_, time_stepping.step);
+  else
+    integrator_ = std::make_unique<RungeKuttaChebyshev>(band, forces_, time_stepping.step, time_stepping.stages);
   if (state_.history.empty())
     relax_memory(state_, band_, material_);
-  require_history(state_, lattice_, material_);
+  bool fits = state_.history.kinds.size() == lattice_.n_kinds();
+  for (std::size_t kind = 0; fits && kind < lattice_.n_kinds(); ++kind)
+  {
+    const BondHistory::Kind &history = state_.history.kinds[kind];
+    const Shell *shell = material_.shell(lattice_, kind);
+    fits = history.variables.size() == (shell != nullptr ? n_variables(shell->memory) : 0);
+    for (const Field &variable : history.variables)
+      fits = fits && variable.size() == lattice_.n_places() && history.stretch.size() == lattice_.n_places();
+  }
+  require(fits, "the history of the bonds does not fit the lattice or the memories of the material");
   require(state_.stiffness.empty() == (material_.disorder.stiffness.is_none() && lattice_.scattered() == nullptr),
           "the stiffness of the bonds does not have the disorder of the material");
   if (fracture_)
@@ -57,7 +48,7 @@ void Simulation::reinitialize_forces()
   if (contact_)
     contact_->find_candidates(state_);
   integrator_->initialise(state_);
-  update_powers();
+  update_powers(0.);
   parts_ = needed_parts();
   band_.all_gather(std::vector<char>(), &parts_);
 }
@@ -69,31 +60,24 @@ int Simulation::needed_parts() const
   const double h = time_stepping_.step;
   const std::optional<ContactLaw> contact = contact_ ? std::optional(contact_->law()) : std::nullopt;
   const Field &vx = integrator_->evaluated_vx(state_), &vy = integrator_->evaluated_vy(state_);
-  const auto divide_for = [&](const Bond &short_bond, int &parts)
+  const auto divide_for = [&](const Bond &bond, int &parts)
   {
-    const auto [near, kind, far] = short_bond;
-    const Shell *const shell = material_.shell(lattice_, kind);
-    if (shell == nullptr || !stiffens_when_short(shell->law))
+    if (!stiffens_when_short(material_.shell(lattice_, bond.kind)->law))
       return;
-    const double ratio = lattice_.length_ratio(near, kind);
-    const Eigen::Vector2d bond =
-      ratio * Eigen::Vector2d(state_.x[far] - state_.x[near], state_.y[far] - state_.y[near]);
-    const double product = bond.dot(ratio * Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near]));
-    const double now = stretch(state_, lattice_, short_bond);
-    const double rate = product / (bond.norm() * lattice_.rest_length(kind));
+    const double now = stretch(state_, lattice_, bond), rate = stretch_rate(state_, lattice_, bond, vx, vy);
     int needed = 1;
     for (; needed < most_parts; needed *= 2)
     {
-      const double then = now + std::min(rate, 0.) * h / needed;
+      const double part = h / needed, then = now + std::min(rate, 0.) * part;
       if (!(then < short_stretch) ||
-          !(h / needed > recoil_step(time_stepping_, lattice_, material_, kind, std::max(then, shortest), contact)))
+          !(part > recoil_step(time_stepping_, lattice_, material_, bond.kind, std::max(then, shortest), contact)))
         break;
     }
     parts = std::max(parts, needed);
   };
   std::vector<std::size_t> rows;
   for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
-    if (forces_.row_has_short_bonds(row))
+    if (forces_.row_sums(row).has_short_bonds)
       rows.push_back(row);
   int parts = 1;
   const auto n = static_cast<std::ptrdiff_t>(rows.size());
@@ -118,40 +102,35 @@ std::string Simulation::name_of(std::size_t account) const
                                     : "constraint_" + std::to_string(account - of_constraint(0));
 }
 
-void Simulation::update_powers()
+// Powers at the last evaluation. Their work over the `duration` since the one before follows by the trapezoidal rule.
+void Simulation::update_powers(double duration)
 {
+  const Ledger before = powers_;
   for (std::vector<double> &power : powers_)
     std::fill(power.begin(), power.end(), 0.);
   for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
   {
-    powers_[viscous][row] = forces_.viscous_power(row);
-    for (std::size_t m = 0; m < material_.n_mechanisms(); ++m)
-      powers_[mechanisms + m][row] = forces_.mechanism_power(m, row);
+    const kernels::RowSums &sums = forces_.row_sums(row);
+    powers_[viscous][row] = sums.viscous_power;
+    for (std::size_t m = 0; m < sums.mechanism_power.size(); ++m)
+      powers_[mechanisms + m][row] = sums.mechanism_power[m];
   }
-  const auto power = [this](const SiteForce &on)
-  { return on.force.dot(Eigen::Vector2d(state_.vx[on.place], state_.vy[on.place])); };
   std::vector<const SiteForces *> site_forces;
+  const auto add = [&](const SiteForces &forces, Account account, double sign)
+  {
+    for (const auto &[place, force] : forces.last())
+      powers_[account][lattice_.row_of(place)] += sign * force.dot(Eigen::Vector2d(state_.vx[place], state_.vy[place]));
+    site_forces.push_back(&forces);
+  };
   if (contact_)
-  {
-    for (const SiteForce &on : contact_->last())
-      powers_[contacts][lattice_.row_of(on.place)] -= power(on);
-    site_forces.push_back(&*contact_);
-  }
+    add(*contact_, contacts, -1.);
   for (const std::unique_ptr<SiteForces> &added : added_forces_)
-  {
-    for (const SiteForce &on : added->last())
-      powers_[boundary][lattice_.row_of(on.place)] += power(on);
-    site_forces.push_back(added.get());
-  }
+    add(*added, boundary, 1.);
   for (std::size_t c = 0; c < constraints_.size(); ++c)
     constraints_[c].add_power(state_, forces_, integrator_->evaluated_vx(state_), integrator_->evaluated_vy(state_),
                               site_forces, powers_[of_constraint(c)]);
-}
-
-// Trapezoidal rule over a time step, or a part of one.
-void Simulation::add_work(const Ledger &before, double duration)
-{
-  const double half = 0.5 * duration;
+  if (!(duration > 0.))
+    return;
   for (std::size_t account = 0; account < powers_.size(); ++account)
   {
     const bool is_energy =
@@ -159,7 +138,7 @@ void Simulation::add_work(const Ledger &before, double duration)
     for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
     {
       const double now = powers_[account][row];
-      work_[account][row] += is_energy ? now : half * (before[account][row] + now);
+      work_[account][row] += is_energy ? now : 0.5 * duration * (before[account][row] + now);
       if (is_energy)
         work_[viscous][row] += now;
     }
@@ -248,17 +227,6 @@ std::size_t Simulation::constrain(const Constraint &constraint)
   return constraints_.size() - 1;
 }
 
-// Velocities of constrained sites for the next `duration` [s]. Forces are evaluated anew only where they change.
-void Simulation::prescribe_motion(double duration)
-{
-  bool changed = false;
-  for (std::size_t c = 0; c < constraints_.size(); ++c)
-    if (constraints_[c].prescribe(state_, material_, state_.time, state_.time + duration, work_[of_constraint(c)]))
-      changed = true;
-  if (changed)
-    reinitialize_forces();
-}
-
 const std::vector<BrokenBond> &Simulation::step()
 {
   const double h = time_stepping_.step, end = state_.time + h;
@@ -276,15 +244,19 @@ const std::vector<BrokenBond> &Simulation::step()
 
 void Simulation::advance(double duration, double end)
 {
-  prescribe_motion(duration);
+  // Forces are evaluated anew only where the velocities of constrained sites change.
+  bool changed = false;
+  for (std::size_t c = 0; c < constraints_.size(); ++c)
+    if (constraints_[c].prescribe(state_, material_, state_.time, state_.time + duration, work_[of_constraint(c)]))
+      changed = true;
+  if (changed)
+    reinitialize_forces();
   integrator_->set_time_step(duration);
   integrator_->step(state_);
   state_.time = end; // without the round-off of added parts: what breaks from here on breaks then
 
   // Powers are taken before bonds break, so that each interval of the trapezoidal rule sees one set of bonds.
-  const Ledger before = powers_;
-  update_powers();
-  add_work(before, duration);
+  update_powers(duration);
   parts_ = needed_parts();
   if (!fracture_)
   {
@@ -314,7 +286,7 @@ void Simulation::advance(double duration, double end)
     integrator_->evaluate_site_forces(state_);
   }
   integrator_->update_accelerations(state_, ends);
-  update_powers();
+  update_powers(0.);
 }
 
 void Simulation::save(Snapshot &snapshot)
@@ -357,19 +329,14 @@ void Simulation::check_loaded(const BondStates &before, double energy) const
           "`parts` of a step are no power of two up to " + std::to_string(most_parts));
   // It was computed from the same input: only another compiler may have rounded otherwise.
   require(std::abs(initial_energy_ - energy) <= 1e-9 * std::abs(energy), "`initial_energy` is not that of the case");
-  for (const std::size_t row : band_.known_rows())
-    for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
-    {
-      const std::size_t place = lattice_.index(row, column);
-      for (std::size_t kind = 0; kind < before.n_kinds(); ++kind)
-        require(before.present(place, kind) ||
-                  (!state_.bonds.present(place, kind) && !state_.bonds.toughened(place, kind)),
-                "`bonds` has some that the sheet never had");
-    }
-  for (std::size_t row = 0; row < lattice_.rows(); ++row)
-    for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
-      require(state_.lost_bonds[lattice_.index(row, column)] <= material_.coordination(lattice_),
-              "`lost_bonds` are more than a site has");
+  for (std::size_t place = 0; place < lattice_.n_places(); ++place)
+  {
+    for (std::size_t kind = 0; kind < before.n_kinds(); ++kind)
+      require(before.present(place, kind) ||
+                (!state_.bonds.present(place, kind) && !state_.bonds.toughened(place, kind)),
+              "`bonds` has some that the sheet never had");
+    require(state_.lost_bonds[place] <= material_.coordination(lattice_), "`lost_bonds` are more than a site has");
+  }
 }
 
 EnergyBalance Simulation::energies() const

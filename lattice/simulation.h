@@ -47,13 +47,12 @@ public:
   /// fracture rules
   void cut(const std::vector<std::size_t> &places);
 
-  /// Cuts bonds out of the sheet now, whatever their stretch, as a crack on a schedule does. Bonds that are absent
-  /// already are left out. @param bonds place where each starts and its kind, the same on all ranks
+  /// Cuts those of some bonds that are present out of the sheet, whatever their stretch, as a crack on a schedule does.
+  /// @param bonds place where each starts and its kind, the same on all ranks
   /// @throws std::logic_error without fracture rules; std::invalid_argument for what is no bond of a site
   void cut_bonds(const std::vector<std::pair<std::size_t, std::size_t>> &bonds);
 
-  /// Stops sites, and prescribes their motion from the next step on. Kinetic energy that they had leaves the initial
-  /// one.
+  /// Stops sites, whose kinetic energy leaves the initial one, and prescribes their motion from the next step on.
   /// @return number of the constraint
   /// @throws std::invalid_argument for what is no site; std::logic_error where another constraint holds a component
   std::size_t constrain(const Constraint &constraint);
@@ -84,11 +83,11 @@ public:
   const State &gather() { return gather({0, lattice_.rows()}); }
 
   /// Saves what changes from step to step, or loads it into a simulation that was set up like the one that was saved,
-  /// before its first step; that goes on with the same bits, on any number of ranks. Collective.
+  /// before its first step; that continues with the same bits, on any number of ranks. Collective.
   /// @param archive called as archive(name, value) with numbers, vectors, matrices, and objects that have a function
-  /// like this one; `Archive::loads` tells which way. To save, the first rank's values are the whole; to load, all
-  /// ranks get the whole. @throws std::invalid_argument if fields are of a sheet of another size, or bonds, counts or
-  /// energy are none that the simulation can have come to
+  /// like this one; loads if `Archive::loads`. The first rank saves the whole, and all ranks load the whole.
+  /// @throws std::invalid_argument if fields are of a sheet of another size, or bonds, counts or energy are none that
+  /// the simulation can have come to
   template <class Archive>
   void archive(Archive &archive);
 
@@ -141,9 +140,7 @@ private:
     return elastic_energy(state_, band_, material_) + memory_energy(state_, band_, material_);
   }
   void reinitialize_forces();
-  void prescribe_motion(double duration);
-  void update_powers();
-  void add_work(const Ledger &before, double duration);
+  void update_powers(double duration);
   void advance(double duration, double end);
   int needed_parts() const;
   /// Refuses a loaded state that cannot have followed from the one set up, of which these were bonds and energy.

@@ -9,14 +9,6 @@
 namespace latcon::lattice
 {
 
-SiteEvaluator::SiteEvaluator(const TriangularLattice &lattice, const Material &material)
-  : lattice_(lattice), material_(material)
-{
-  for (std::size_t number = 0; number < n_shells; ++number)
-    if (const Shell *shell = material_.in_shell(number))
-      at_rest_[number] = memory_step(shell->memory, 0.);
-}
-
 SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
 {
   SiteValues values;
@@ -42,7 +34,7 @@ SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
         auto variables = state.history.variables_of(near, kind);
         std::array<double, max_history_variables> dissipation{};
         const double then = state.history.kinds[kind].stretch[near];
-        axial += section * advance(at_rest_[lattice_.shell(kind)], then, then, variables.data(), dissipation.data());
+        axial += section * advance(shell.memory, then, then, variables.data(), dissipation.data());
       }
       ++values.bonds;
       values.strain_energy_density += 0.5 * section * rest_length * energy(shell.law, stretch);

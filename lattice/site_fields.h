@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -38,7 +37,7 @@ class SiteEvaluator
 {
 public:
   /// The lattice must outlive this object.
-  SiteEvaluator(const TriangularLattice &lattice, const Material &material);
+  SiteEvaluator(const TriangularLattice &lattice, const Material &material) : lattice_(lattice), material_(material) {}
 
   /// @param place of a site, not in the margin
   SiteValues at(const State &state, std::size_t place) const;
@@ -46,7 +45,6 @@ public:
 private:
   const TriangularLattice &lattice_;
   Material material_;
-  std::array<MemoryStep, n_shells> at_rest_; // updates of the memories over no time
 };
 
 /// SiteValues of all sites, by their places; in the margin those of no bonds.

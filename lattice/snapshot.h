@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -84,8 +83,8 @@ public:
       auto &chunks = snapshot_.chunks_;
       if constexpr (loads)
       {
-        if (n_chunks_ == chunks.size() || chunks[n_chunks_].size() != n * sizeof(T))
-          throw std::invalid_argument("the snapshot is of another simulation");
+        require(n_chunks_ < chunks.size() && chunks[n_chunks_].size() == n * sizeof(T),
+                "the snapshot is of another simulation");
         if (n > 0)
           std::memcpy(first, chunks[n_chunks_].data(), n * sizeof(T));
       }

@@ -195,4 +195,13 @@ double stretch(const State &state, const TriangularLattice &lattice, const Bond 
   return std::sqrt(scaled_x * scaled_x + scaled_y * scaled_y) * (1. / lattice.rest_length(bond.kind));
 }
 
+double stretch_rate(const State &state, const TriangularLattice &lattice, const Bond &bond, const Field &vx,
+                    const Field &vy)
+{
+  const auto [near, kind, far] = bond;
+  const Eigen::Vector2d along(state.x[far] - state.x[near], state.y[far] - state.y[near]);
+  return lattice.length_ratio(near, kind) * along.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near])) /
+         (along.norm() * lattice.rest_length(kind));
+}
+
 } // namespace latcon::lattice

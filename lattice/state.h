@@ -178,6 +178,10 @@ void relax_memory(State &state, const RowPartition &band, const Material &materi
 /// Current stretch |x_j - x_i| / l of a bond [-].
 double stretch(const State &state, const TriangularLattice &lattice, const Bond &bond);
 
+/// Its rate [1/s] with the velocities vx, vy [m/s].
+double stretch_rate(const State &state, const TriangularLattice &lattice, const Bond &bond, const Field &vx,
+                    const Field &vy);
+
 /// Calls operation(row) for each of some rows, which are shared out among threads. For operations that couple no two
 /// sites, whose bits then cannot depend on how.
 template <class RowOperation>

@@ -29,14 +29,12 @@ struct TimeStepLimits
 
 /// Limits that hold in every configuration in which no bond is shorter than `smallest_stretch`.
 ///
-/// omega^2 <= 2 sum_j A0 psi''_max / (l m) and gamma <= 2 sum_j A0 eta / (l m), sums over the bonds of a site and
-/// psi''_max = largest_stiffness(law, smallest_stretch): bonds all in line would attain them. With disorder all bonds
-/// are taken to be as stiff as the distribution allows. In the undeformed lattice
-/// of nearest neighbours the true limit is larger by a factor of 2 for the dashpots (attained by the shortest waves),
-/// of sqrt2 for the springs.
-/// In a sheet whose sites may touch (theory.md, eq. (L.14)) the bound is for a site with all its bonds, as they are in
-/// the undeformed lattice, and six contacts around it too. It differs only for contacts that are stiffer or more
-/// viscous than the bonds that they replace.
+/// omega^2 <= 2 sum_j A0 psi''_max / (l m) and gamma <= 2 sum_j A0 eta / (l m), sums over the bonds of a site, all as
+/// stiff as disorder allows, with psi''_max = largest_stiffness(law, smallest_stretch): bonds all in line would attain
+/// them. In the undeformed lattice of nearest neighbours the true limit is larger by a factor of 2 for the dashpots
+/// (attained by the shortest waves), of sqrt2 for the springs.
+/// Where sites may touch (theory.md, eq. (L.14)) the bound is also for a site with all its bonds and six contacts
+/// around it. It differs only for contacts that are stiffer or more viscous than the bonds that they replace.
 /// @param smallest_stretch lam_min [-] in (0, 1] @param contact none: sites do not touch
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
                                 const std::optional<ContactLaw> &contact = std::nullopt);
@@ -62,10 +60,10 @@ double watched_stretch(const TimeStepping &stepping, const TriangularLattice &la
 double largest_stretch_rate(const TriangularLattice &lattice, const Material &material, double breaking_stretch);
 
 /// Step of Runge-Kutta-Chebyshev at which waves and the breaking of bonds are resolved [s]: a share of the elastic
-/// limit of the undeformed sheet, or, where it is smaller, h = 1 / kappa: all oscillating modes are stable then for any
-/// number of stages (theory.md, eq. (L.22)). kappa is the largest psi''_max / eta.
-/// Where sites may touch it also resolves and keeps stable a site with six contacts (theory.md, eqs. (L.14) and (L.23))
-/// and the jump of a contact's dashpot, h <= m/c.
+/// limit of the undeformed sheet, or 1 / kappa, kappa being the largest psi''_max / eta, if that is smaller: all
+/// oscillating modes are stable then for any number of stages (theory.md, eq. (L.22)). Where sites may touch it also
+/// resolves and keeps stable a site with six contacts (eqs. (L.14) and (L.23)) and the jump of a contact's dashpot,
+/// h <= m/c.
 /// @return 0 where a shell, or the contact, has no dashpots: the method is not made for oscillations that nothing damps
 double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
                       const std::optional<ContactLaw> &contact = std::nullopt);

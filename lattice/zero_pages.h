@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <new>
 #include <type_traits>
-#include <utility>
 
 namespace latcon::lattice
 {
@@ -42,12 +41,7 @@ struct ZeroPages
   }
   void deallocate(T *memory, std::size_t) { std::free(reinterpret_cast<void **>(memory)[-1]); }
 
-  void construct(T *) {}
-  template <class... Values>
-  void construct(T *element, Values &&...values)
-  {
-    ::new (static_cast<void *>(element)) T(std::forward<Values>(values)...);
-  }
+  void construct(T *) {} // without a value
 
   friend bool operator==(const ZeroPages &, const ZeroPages &) { return true; }
   friend bool operator!=(const ZeroPages &, const ZeroPages &) { return false; }

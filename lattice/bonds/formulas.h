@@ -21,24 +21,42 @@ inline double clamped(double value, double limit)
   return value > limit ? limit : value < -limit ? -limit : value;
 }
 
-/// User-defined law.
-inline double force_of_each(const CustomBond &law, double stretch)
+/// User-defined law. Absent bonds have no length.
+inline double force(const CustomBond &bond, double stretch, double /*inverse*/)
 {
-  return law.force(stretch);
+  return stretch > 0. ? bond.law()->force(stretch) : 0.;
 }
-/// User-defined memory. Absent bonds have no length.
-inline double advance_each(const CustomMemory::Step &step, double before, double now, double *variables,
-                           double &dissipation)
+/// User-defined memory.
+inline double advance(const CustomMemory &memory, std::size_t /*n*/, double before, double now, double *variables,
+                      double *dissipation)
 {
-  dissipation = 0.;
+  *dissipation = 0.;
   if (!(now > 0.))
     return 0.;
-  const double earlier = step.dissipates_energy ? step.law->dissipation(before, variables) : 0.;
-  const double overstress = step.law->advance(step.duration, before, now, variables);
-  dissipation = step.law->dissipation(now, variables) - earlier;
+  const double earlier = memory.dissipates_energy() ? memory.law().dissipation(before, variables) : 0.;
+  const double overstress = memory.law().advance(memory.duration(), before, now, variables);
+  *dissipation = memory.law().dissipation(now, variables) - earlier;
   return overstress;
 }
 
 #include "lattice/bonds/formulas.inc"
 
 } // namespace latcon::lattice::formulas
+
+namespace latcon::lattice
+{
+
+/// psi' [Pa].
+inline double force(const BondLaw &law, double stretch)
+{
+  return std::visit([stretch](const auto &l) { return formulas::force(l, stretch, 1. / stretch); }, law);
+}
+/// Overstress of a bond after an update of its variables by the formula of its memory [Pa].
+/// @param dissipation of each mechanism, see memories.h
+inline double advance(const BondMemory &memory, double before, double now, double *variables, double *dissipation)
+{
+  return std::visit(
+    [&](const auto &m) { return formulas::advance(m, m.n_variables(), before, now, variables, dissipation); }, memory);
+}
+
+} // namespace latcon::lattice

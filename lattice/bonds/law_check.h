@@ -9,7 +9,8 @@
 namespace latcon::lattice
 {
 
-/// A bond law that a lattice cannot have; what() says which of its values is wrong, at which stretch.
+/// A bond law that a lattice cannot have; what() says which of its values is wrong, at which stretch, or why its
+/// library cannot be used.
 class InvalidBondLaw : public std::invalid_argument
 {
 public:

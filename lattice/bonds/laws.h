@@ -3,12 +3,18 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <variant>
 
 #include "lattice/bonds/require.h"
 
 /// @file
-/// The laws that a bond may have (bond_law.h): its energy psi per reference volume and the derivatives psi', psi'' [Pa]
-/// as functions of the stretch lam [-].
+/// Bond laws: energy, force and stiffness as functions of the stretch alone. What a bond adds that depends on its past
+/// is its memory (memories.h).
+///
+/// A bond of rest length l and cross-section A0 stores A0 l psi(lam), lam = |x_j - x_i| / l > 0 being its stretch, and
+/// pulls with the axial force A0 psi'(lam), tension positive. A law gives psi, psi' and psi'' in Pa: a class here its
+/// constants, energy, stiffness and limits, formulas.inc its force for any type of number. `stiffens_when_short` is
+/// whether short bonds may require divided time steps; not those of laws as stiff at any stretch.
 namespace latcon::lattice
 {
 
@@ -29,7 +35,7 @@ struct MooneyRivlinBond
   double a; ///< [Pa], >= 0
   double b; ///< [Pa], >= 0
 
-  static constexpr bool stiffens_when_short = true; ///< whether short bonds may require divided steps
+  static constexpr bool stiffens_when_short = true;
 
   /// psi(lam) [Pa], energy per reference volume of the bond.
   double energy(double stretch) const
@@ -62,23 +68,18 @@ struct LinearBond
 
   double modulus; ///< e [Pa], > 0
 
-  static constexpr bool stiffens_when_short = false; ///< whether short bonds may require divided steps
+  static constexpr bool stiffens_when_short = false;
 
-  /// psi(lam) [Pa].
-  double energy(double stretch) const { return 0.5 * modulus * (stretch - 1.) * (stretch - 1.); }
-
-  /// psi''(lam) [Pa].
-  double stiffness(double /*stretch*/) const { return modulus; }
-
-  /// Constant for this law.
-  double largest_stiffness(double /*smallest_stretch*/) const { return modulus; }
+  double energy(double stretch) const { return 0.5 * modulus * (stretch - 1.) * (stretch - 1.); } ///< psi(lam) [Pa]
+  double stiffness(double /*stretch*/) const { return modulus; }                                  ///< psi''(lam) [Pa]
+  double largest_stiffness(double /*smallest_stretch*/) const { return modulus; }                 ///< [Pa]
 };
 
 /// User-defined bond law: derive from it, and construct a Shell with a CustomBond of it.
 ///
-/// The law gives psi and its derivatives as functions of the stretch lam [-] alone, as bond_law.h defines them. They
-/// must be smooth for every lam > 0 that a bond may reach before it breaks, and the bond must be free of energy and
-/// force at rest and stiff there: psi(1) = psi'(1) = 0, psi''(1) > 0.
+/// The law gives psi and its derivatives as functions of the stretch lam [-] alone, as defined above. They must be
+/// smooth for every lam > 0 that a bond may reach before it breaks, and the bond must be free of energy and force at
+/// rest and stiff there: psi(1) = psi'(1) = 0, psi''(1) > 0.
 ///
 /// Several threads call the functions at once, with any lam > 0, also beyond the stretch at which bonds break: they may
 /// not change anything, nor throw. Where the law has no value they return NaN or infinity. That spreads to the sites of
@@ -119,31 +120,40 @@ public:
   /// stiffness) or not stiff at rest
   explicit CustomBond(std::shared_ptr<const CustomBondLaw> law);
 
-  static constexpr bool stiffens_when_short = true; ///< whether short bonds may require divided steps
+  static constexpr bool stiffens_when_short = true;
 
   double energy(double stretch) const { return law_->energy(stretch); }       ///< psi(lam) [Pa]
   double stiffness(double stretch) const { return law_->stiffness(stretch); } ///< psi''(lam) [Pa]
   double largest_stiffness(double smallest_stretch) const { return law_->largest_stiffness(smallest_stretch); }
-
-  /// psi'(lam) [Pa]; 0 for absent bonds, which have no length.
-  double force(double stretch) const { return stretch > 0. ? law_->force(stretch) : 0.; }
-
-  /// psi' [Pa] of n bonds, in place of their stretches, as force() gives it.
-  void forces(std::size_t n, double *stretches) const
-  {
-    double present[max_bonds], of_law[max_bonds];
-    for (std::size_t i = 0; i < n; ++i)
-      present[i] = stretches[i] > 0. ? stretches[i] : 1.;
-    law_->forces(n, present, of_law);
-    for (std::size_t i = 0; i < n; ++i)
-      stretches[i] = stretches[i] > 0. ? of_law[i] : 0.;
-  }
-  static constexpr std::size_t max_bonds = 8; ///< of one call of forces()
 
   const std::shared_ptr<const CustomBondLaw> &law() const { return law_; }
 
 private:
   std::shared_ptr<const CustomBondLaw> law_;
 };
+
+/// Bond law of one shell.
+using BondLaw = std::variant<MooneyRivlinBond, LinearBond, CustomBond>;
+
+/// psi [Pa].
+inline double energy(const BondLaw &law, double stretch)
+{
+  return std::visit([stretch](const auto &l) { return l.energy(stretch); }, law);
+}
+/// psi'' [Pa].
+inline double stiffness(const BondLaw &law, double stretch)
+{
+  return std::visit([stretch](const auto &l) { return l.stiffness(stretch); }, law);
+}
+/// Largest psi'' [Pa] of all stretches from `smallest_stretch` [-] on that a bond reaches.
+inline double largest_stiffness(const BondLaw &law, double smallest_stretch)
+{
+  return std::visit([smallest_stretch](const auto &l) { return l.largest_stiffness(smallest_stretch); }, law);
+}
+/// Returns whether short bonds may require divided time steps.
+inline bool stiffens_when_short(const BondLaw &law)
+{
+  return std::visit([](const auto &l) { return l.stiffens_when_short; }, law);
+}
 
 } // namespace latcon::lattice

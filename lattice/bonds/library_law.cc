@@ -1,6 +1,5 @@
 #include "lattice/bonds/library_law.h"
 
-#include <functional>
 #include <sstream>
 #include <utility>
 
@@ -18,7 +17,7 @@ Function *function_of(void *library, const char *name)
 {
   void *const address = dlsym(library, name);
   if (address == nullptr)
-    throw UnusableLibrary(std::string("it has no function `") + name + "`; see lattice/bonds/bond_law_library.h");
+    throw InvalidBondLaw(std::string("it has no function `") + name + "`; see lattice/bonds/bond_law_library.h");
   return reinterpret_cast<Function *>(address); // NOLINT: the way of POSIX
 }
 
@@ -33,24 +32,24 @@ LawLibrary::LawLibrary(const std::string &path)
   if (library == nullptr)
   {
     const char *const reason = dlerror();
-    throw UnusableLibrary(reason != nullptr ? reason : "it cannot be loaded");
+    throw InvalidBondLaw(reason != nullptr ? reason : "it cannot be loaded");
   }
   const int version = function_of<decltype(latcon_bond_law_version)>(library, "latcon_bond_law_version")();
   if (version != LATCON_BOND_LAW_VERSION)
-    throw UnusableLibrary("it has version " + std::to_string(version) +
-                          " of the interface; required: " + std::to_string(LATCON_BOND_LAW_VERSION));
+    throw InvalidBondLaw("it has version " + std::to_string(version) +
+                         " of the interface; required: " + std::to_string(LATCON_BOND_LAW_VERSION));
   const char *const names = function_of<decltype(latcon_bond_law_parameters)>(library, "latcon_bond_law_parameters")();
   std::istringstream words(names != nullptr ? names : "");
   for (std::string word; words >> word;)
-    parameters_.push_back(word);
-  force_ = function_of<decltype(latcon_bond_law_force)>(library, "latcon_bond_law_force");
-  derivatives_ = function_of<decltype(latcon_bond_law_derivatives)>(library, "latcon_bond_law_derivatives");
+    parameters.push_back(word);
+  force = function_of<decltype(latcon_bond_law_force)>(library, "latcon_bond_law_force");
+  derivatives = function_of<decltype(latcon_bond_law_derivatives)>(library, "latcon_bond_law_derivatives");
 }
 
 LibraryLaw::LibraryLaw(LawLibrary library, std::vector<double> parameters, double longest)
   : library_(std::move(library)), parameters_(std::move(parameters))
 {
-  require(parameters_.size() == library_.parameters().size(), "a law needs one value for each of its parameters");
+  require(parameters_.size() == library_.parameters.size(), "a law needs one value for each of its parameters");
   at_rest_ = derivatives(1.)[0];
   check(longest);
   const auto derivative = [this](std::size_t k) { return [this, k](double l) { return derivatives(l)[k]; }; };
@@ -61,7 +60,7 @@ LibraryLaw::LibraryLaw(LawLibrary library, std::vector<double> parameters, doubl
 std::array<double, 5> LibraryLaw::derivatives(double stretch) const noexcept
 {
   std::array<double, 5> psi{};
-  library_.derivatives_(stretch, parameters_.data(), psi.data());
+  library_.derivatives(stretch, parameters_.data(), psi.data());
   psi[0] -= at_rest_;
   return psi;
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,42 +10,28 @@
 namespace latcon::lattice
 {
 
-/// A shared library that cannot be used as a bond law; what() gives the reason.
-class UnusableLibrary : public std::runtime_error
-{
-public:
-  using std::runtime_error::runtime_error;
-};
-
 /// A shared library with the functions of bond_law_library.h. It remains loaded until the program ends.
-class LawLibrary
+struct LawLibrary
 {
-public:
-  /// @throws UnusableLibrary for a file that cannot be loaded, a missing function, or another version of the interface
+  /// @throws InvalidBondLaw for a file that cannot be loaded, a missing function, or another version of the interface
   explicit LawLibrary(const std::string &path);
 
-  /// Names of the parameters, in their order.
-  const std::vector<std::string> &parameters() const { return parameters_; }
-
-private:
-  friend class LibraryLaw;
-
-  decltype(&latcon_bond_law_force) force_ = nullptr;
-  decltype(&latcon_bond_law_derivatives) derivatives_ = nullptr;
-  std::vector<std::string> parameters_;
+  std::vector<std::string> parameters; ///< their names, in order
+  decltype(&latcon_bond_law_force) force;
+  decltype(&latcon_bond_law_derivatives) derivatives;
 };
 
 /// Bond law of a shared library.
 class LibraryLaw : public CheckedLaw
 {
 public:
-  /// @param parameters values [SI], one for each name in library.parameters()
+  /// @param parameters values [SI], one for each name in library.parameters
   /// @param longest largest stretch of an unbroken bond [-], > 1
   /// @throws InvalidBondLaw as check_law does for stretches from smallest_checked_stretch on
   LibraryLaw(LawLibrary library, std::vector<double> parameters, double longest);
 
   double energy(double stretch) const noexcept override { return derivatives(stretch)[0]; }
-  double force(double stretch) const noexcept override { return library_.force_(stretch, parameters_.data()); }
+  double force(double stretch) const noexcept override { return library_.force(stretch, parameters_.data()); }
   double stiffness(double stretch) const noexcept override { return derivatives(stretch)[2]; }
 
   /// psi and its first four derivatives [Pa], with psi(1) = 0.

@@ -18,7 +18,7 @@ struct Decay
 
 // By basic operations, whose bits do not depend on the processor: Taylor's series where it converges fast, then
 // e^-2r = (e^-r)^2.
-Decay decay(double r)
+Decay decay_over(double r)
 {
   constexpr double vanished = 750.; // e^-r is below the smallest double
   if (r > vanished)
@@ -41,14 +41,14 @@ Decay decay(double r)
 
 MaxwellMemory::MaxwellMemory(std::vector<Branch> branches) : branches_(std::move(branches))
 {
-  require(!branches_.empty() && branches_.size() <= max_history_variables,
-          "a Maxwell memory has 1 to " + std::to_string(max_history_variables) + " branches, not " +
-            std::to_string(branches_.size()));
-  for (const Branch &branch : branches_)
-    for (const double constant : {branch.modulus, branch.relaxation_time})
-      require(constant > 0. && std::isfinite(constant),
-              "a Maxwell branch needs a modulus > 0 and a relaxation time > 0, not " + std::to_string(branch.modulus) +
-                " Pa and " + std::to_string(branch.relaxation_time) + " s");
+  require(branches_.size() <= max_history_variables, "a Maxwell memory has at most " +
+                                                       std::to_string(max_history_variables) + " branches, not " +
+                                                       std::to_string(branches_.size()));
+  for (const auto &[modulus, time] : branches_)
+    require(modulus > 0. && time > 0. && std::isfinite(modulus) && std::isfinite(time),
+            "a Maxwell branch needs a modulus > 0 and a relaxation time > 0, not " + std::to_string(modulus) +
+              " Pa and " + std::to_string(time) + " s");
+  set_duration(0.);
 }
 
 double MaxwellMemory::largest_stiffness() const
@@ -64,27 +64,24 @@ double MaxwellMemory::stored_energy(std::size_t branch, double /*stretch*/, cons
   return 0.5 * overstress[branch] * overstress[branch] / branches_[branch].modulus;
 }
 
-MaxwellMemory::Step MaxwellMemory::step(double duration) const
+void MaxwellMemory::set_duration(double duration)
 {
-  Step step{branches_.size(), {}, {}, {}};
   for (std::size_t i = 0; i < branches_.size(); ++i)
   {
     const auto &[modulus, time] = branches_[i];
-    const Decay of_branch = decay(duration / time);
-    step.decay[i] = of_branch.factor;
-    step.gain[i] = modulus * of_branch.mean;
-    step.fluency[i] = 1. / (modulus * time);
+    const Decay of_branch = decay_over(duration / time);
+    decay[i] = of_branch.factor;
+    gain[i] = modulus * of_branch.mean;
+    fluency[i] = 1. / (modulus * time);
   }
-  return step;
 }
 
-PlasticMemory::PlasticMemory(double modulus, double yield_stress, double hardening)
-  : step_{modulus, yield_stress, hardening, 1. / (modulus + hardening)}
+PlasticMemory::PlasticMemory(double E, double Y, double K)
+  : modulus(E), yield_stress(Y), hardening(K), slip(1. / (E + K))
 {
-  require(modulus > 0. && yield_stress > 0. && hardening >= 0. && std::isfinite(modulus + yield_stress + hardening),
-          "a plastic memory needs a modulus > 0, a yield stress > 0 and a hardening >= 0, not " +
-            std::to_string(modulus) + " Pa, " + std::to_string(yield_stress) + " Pa and " + std::to_string(hardening) +
-            " Pa");
+  require(E > 0. && Y > 0. && K >= 0. && std::isfinite(E + Y + K),
+          "a plastic memory needs a modulus > 0, a yield stress > 0 and a hardening >= 0, not " + std::to_string(E) +
+            " Pa, " + std::to_string(Y) + " Pa and " + std::to_string(K) + " Pa");
 }
 
 CustomMemory::CustomMemory(std::shared_ptr<const CustomMemoryLaw> law) : law_(std::move(law))

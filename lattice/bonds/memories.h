@@ -3,10 +3,18 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <variant>
 #include <vector>
 
 /// @file
-/// The memories that a bond may have (bond_memory.h).
+/// Memories of bonds: overstresses q that depend on the past of a bond through a number of variables per bond,
+///   sigma = psi'(lam) + eta lam' + q   (theory.md, eq. (L.27)).
+///
+/// A memory declares its number of variables, the mechanisms by which it stores and dissipates energy, and a bound on
+/// its stiffness. `set_duration` prepares it for updates over one duration, 0 by default; `advance` (formulas.inc) is
+/// the formula of an update. Variables are 0 at rest and are stored by BondHistory. `advance` gives the power that each
+/// mechanism dissipates at the end of an update, or, if `dissipates_energy`, the energy that it dissipates in the
+/// update.
 namespace latcon::lattice
 {
 
@@ -27,9 +35,9 @@ public:
     double relaxation_time; ///< tau [s], > 0
   };
 
-  /// @param branches 1 to max_history_variables of them
-  /// @throws std::invalid_argument for another number of branches, or one whose constants are not positive and finite
-  explicit MaxwellMemory(std::vector<Branch> branches);
+  /// @param branches at most max_history_variables of them; none: the bond has no memory
+  /// @throws std::invalid_argument for more branches, or one whose constants are not positive and finite
+  explicit MaxwellMemory(std::vector<Branch> branches = {});
 
   const std::vector<Branch> &branches() const { return branches_; }
   std::size_t n_variables() const { return branches_.size(); }
@@ -41,18 +49,13 @@ public:
   /// Energy in the spring of one branch per reference volume of the bond, q_i^2 / (2 E_i) [Pa].
   double stored_energy(std::size_t branch, double stretch, const double *overstress) const;
 
-  /// Coefficients of an update over one duration.
-  struct Step
-  {
-    static constexpr bool dissipates_energy = false;
-    std::size_t n; ///< branches
-    std::size_t n_mechanisms() const { return n; }
-    std::array<double, max_history_variables> decay;   ///< e^(-h/tau) [-]
-    std::array<double, max_history_variables> gain;    ///< E tau/h (1 - e^(-h/tau)) [Pa]; E for h = 0
-    std::array<double, max_history_variables> fluency; ///< 1 / (E tau) [1 / (Pa s)]
-  };
-  /// @param duration h [s], >= 0
-  Step step(double duration) const;
+  bool dissipates_energy() const { return false; }
+  void set_duration(double duration);
+
+  // Coefficients of an update over h.
+  std::array<double, max_history_variables> decay{};   ///< e^(-h/tau) [-]
+  std::array<double, max_history_variables> gain{};    ///< E tau/h (1 - e^(-h/tau)) [Pa]; E for h = 0
+  std::array<double, max_history_variables> fluency{}; ///< 1 / (E tau) [1 / (Pa s)]
 
 private:
   std::vector<Branch> branches_;
@@ -61,38 +64,28 @@ private:
 /// A spring in series with a friction slider that hardens, parallel to the elastic law and the dashpot of a bond:
 /// plastic stretch that does not depend on the rate (theory.md, eq. (L.41)). The variables of a bond are its overstress
 /// q [Pa] and its accumulated plastic stretch alpha [-]. An update is exact for a stretch that changes in one direction
-/// (theory.md, eq. (L.42)).
-class PlasticMemory
+/// (theory.md, eq. (L.42)), over any duration.
+struct PlasticMemory
 {
-public:
-  /// @param modulus E of the spring [Pa], > 0
-  /// @param yield_stress Y [Pa] below which the slider is at rest, > 0
-  /// @param hardening K [Pa], >= 0: growth of the yield stress with alpha
+  /// @param E modulus of the spring [Pa], > 0
+  /// @param Y yield stress [Pa] below which the slider is at rest, > 0
+  /// @param K hardening [Pa], >= 0: growth of the yield stress with alpha
   /// @throws std::invalid_argument for others
-  PlasticMemory(double modulus, double yield_stress, double hardening);
+  PlasticMemory(double E, double Y, double K);
+
+  double modulus, yield_stress, hardening; ///< E, Y, K [Pa]
+  double slip;                             ///< 1 / (E + K) [1/Pa]
 
   std::size_t n_variables() const { return 2; }
   std::size_t n_mechanisms() const { return 1; }
-  double largest_stiffness() const { return step_.modulus; }
+  double largest_stiffness() const { return modulus; }
   /// Energy in the spring per reference volume of the bond, q^2 / (2 E) [Pa].
   double stored_energy(std::size_t /*mechanism*/, double /*stretch*/, const double *variables) const
   {
-    return 0.5 * variables[0] * variables[0] / step_.modulus;
+    return 0.5 * variables[0] * variables[0] / modulus;
   }
-
-  /// Coefficients of an update, which are those of any duration.
-  struct Step
-  {
-    static constexpr bool dissipates_energy = true; ///< see BondMemory
-    static constexpr std::size_t n = 2;
-    std::size_t n_mechanisms() const { return 1; }
-    double modulus, yield_stress, hardening; ///< E, Y, K [Pa]
-    double slip;                             ///< 1 / (E + K) [1/Pa]
-  };
-  Step step(double /*duration*/) const { return step_; }
-
-private:
-  Step step_;
+  bool dissipates_energy() const { return true; }
+  void set_duration(double /*duration*/) {}
 };
 
 /// User-defined memory of a bond: derive from it, and construct a Shell with a CustomMemory of it.
@@ -130,7 +123,7 @@ public:
   virtual double largest_stiffness() const noexcept = 0;
 };
 
-/// A bond with a user-defined memory.
+/// A bond with a user-defined memory, whose energies are those of the law as a whole.
 class CustomMemory
 {
 public:
@@ -138,28 +131,55 @@ public:
   /// finite stiffness >= 0, or with overstress, stored energy or dissipation at rest
   explicit CustomMemory(std::shared_ptr<const CustomMemoryLaw> law);
 
+  const CustomMemoryLaw &law() const { return *law_; }
   std::size_t n_variables() const { return law_->n_variables(); }
-  /// Energies are those of the law as a whole.
   std::size_t n_mechanisms() const { return 1; }
   double largest_stiffness() const { return law_->largest_stiffness(); }
   double stored_energy(std::size_t /*mechanism*/, double stretch, const double *variables) const
   {
     return law_->stored_energy(stretch, variables);
   }
-
-  /// An update over one duration.
-  struct Step
-  {
-    const CustomMemoryLaw *law;
-    double duration; ///< [s]
-    std::size_t n;   ///< variables
-    bool dissipates_energy;
-    std::size_t n_mechanisms() const { return 1; }
-  };
-  Step step(double duration) const { return {law_.get(), duration, n_variables(), law_->is_rate_independent()}; }
+  bool dissipates_energy() const { return law_->is_rate_independent(); }
+  void set_duration(double duration) { duration_ = duration; }
+  double duration() const { return duration_; } ///< [s]
 
 private:
   std::shared_ptr<const CustomMemoryLaw> law_;
+  double duration_ = 0.;
 };
+
+/// Memory of the bonds of one shell; none by default.
+using BondMemory = std::variant<MaxwellMemory, PlasticMemory, CustomMemory>;
+
+/// Number of variables per bond; 0: no memory.
+inline std::size_t n_variables(const BondMemory &memory)
+{
+  return std::visit([](const auto &m) { return m.n_variables(); }, memory);
+}
+/// Number of mechanisms whose energies are recorded one by one, at most n_variables(): branches of a MaxwellMemory.
+inline std::size_t n_mechanisms(const BondMemory &memory)
+{
+  return std::visit([](const auto &m) { return m.n_mechanisms(); }, memory);
+}
+/// Bound on dq/dlam in fast motion [Pa].
+inline double largest_stiffness(const BondMemory &memory)
+{
+  return std::visit([](const auto &m) { return m.largest_stiffness(); }, memory);
+}
+/// Energy that one mechanism stores per reference volume of a bond [Pa].
+inline double stored_energy(const BondMemory &memory, std::size_t mechanism, double stretch, const double *variables)
+{
+  return std::visit([&](const auto &m) { return m.stored_energy(mechanism, stretch, variables); }, memory);
+}
+/// Returns whether an update gives the energy that each mechanism dissipates, and not its power.
+inline bool dissipates_energy(const BondMemory &memory)
+{
+  return std::visit([](const auto &m) { return m.dissipates_energy(); }, memory);
+}
+/// Sets the duration of the updates to come [s], >= 0.
+inline void set_duration(BondMemory &memory, double duration)
+{
+  std::visit([duration](auto &m) { m.set_duration(duration); }, memory);
+}
 
 } // namespace latcon::lattice

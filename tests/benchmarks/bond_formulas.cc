@@ -22,8 +22,8 @@ double BondFormulas(const MooneyRivlinBond &given_law, const BondConstants &give
   for (std::size_t i = 0; i < n; i += width())
   {
     const Lanes x = load(dx + i), y = load(dy + i);
-    const Lanes length = square_root(x * x + y * y);
-    const Lanes inverse = reciprocal(length);
+    const Lanes length = hn::Sqrt(x * x + y * y);
+    const Lanes inverse = lanes(1.) / length;
     const Lanes nx = x * inverse, ny = y * inverse;
     const Lanes rate = load(dvx + i) * nx + load(dvy + i) * ny;
     const Lanes stretch = (1. / bond.rest_length) * length;

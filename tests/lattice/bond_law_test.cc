@@ -1,4 +1,4 @@
-#include "lattice/bonds/bond_law.h"
+#include "lattice/bonds/formulas.h"
 
 #include <cmath>
 #include <limits>

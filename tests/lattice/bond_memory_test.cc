@@ -1,4 +1,4 @@
-#include "lattice/bonds/bond_memory.h"
+#include "lattice/bonds/memories.h"
 
 #include <cmath>
 #include <memory>

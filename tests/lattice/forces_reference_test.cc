@@ -24,7 +24,7 @@ double viscous_power(const Forces &forces, const TriangularLattice &sheet)
 {
   double sum = 0.;
   for (std::size_t row = 0; row < sheet.rows(); ++row)
-    sum += forces.viscous_power(row);
+    sum += forces.row_sums(row).viscous_power;
   return sum;
 }
 
@@ -159,7 +159,7 @@ TEST(Forces, AreThoseOfTheReference)
       // All terms are positive, so the sum is as good as its terms and its number of additions: a few thousand.
       ASSERT_NEAR(viscous_power(forces, sheet), expected.viscous_power, 1e-12 * expected.viscous_power);
       for (std::size_t row = 0; row < sheet.rows(); ++row)
-        ASSERT_EQ(forces.row_has_events(row), expected.row_has_events[row]) << row;
+        ASSERT_EQ(forces.row_sums(row).has_events, expected.row_has_events[row]) << row;
       if (watch)
         some_retract_alone |=
           expected.row_has_events != reference_forces(state, sheet, subject.material).row_has_events;
@@ -198,7 +198,7 @@ TEST(Forces, FindRowsWithShortBonds)
     Forces forces(sheet, material);
     forces.evaluate(state, state.vx, state.vy);
     for (std::size_t row = 0; row < sheet.rows(); ++row)
-      EXPECT_FALSE(forces.row_has_short_bonds(row)); // none are watched
+      EXPECT_FALSE(forces.row_sums(row).has_short_bonds); // none are watched
     const auto expect = [&](const std::vector<double> &shortest, double limit, const auto &has_short)
     {
       for (std::size_t row = 0; row < sheet.rows(); ++row)
@@ -215,7 +215,7 @@ TEST(Forces, FindRowsWithShortBonds)
       forces.set_shortness_threshold(limit);
       forces.evaluate(state, state.vx, state.vy);
       expect(shortest_bonds(state, sheet, material, 0.), limit,
-             [&](std::size_t row) { return forces.row_has_short_bonds(row); });
+             [&](std::size_t row) { return forces.row_sums(row).has_short_bonds; });
     }
     if (std::holds_alternative<LinearBond>(material.nearest.law))
       return;
@@ -261,7 +261,7 @@ TEST(Forces, BitsDoNotDependOnTheInstructionSet)
       ASSERT_TRUE(same_bits(other.fy(), best.fy())) << set;
       ASSERT_EQ(viscous_power(other, sheet), viscous_power(best, sheet)) << set;
       for (std::size_t row = 0; row < sheet.rows(); ++row)
-        ASSERT_EQ(other.row_has_events(row), best.row_has_events(row)) << set;
+        ASSERT_EQ(other.row_sums(row).has_events, best.row_sums(row).has_events) << set;
     }
   }
   kernels::use_instruction_set(sets.front());

@@ -139,7 +139,7 @@ TEST(Fracture, FlagsARowIfAndOnlyIfOneOfItsBondsHasAnEvent)
             fracture.set_lookahead(ahead);
             forces.evaluate(trial, trial.vx, trial.vy);
             const bool flagged =
-              ahead > 0. ? forces.row_has_events_ahead(trial, row, ahead) : forces.row_has_events(row);
+              ahead > 0. ? forces.row_has_events_ahead(trial, row, ahead) : forces.row_sums(row).has_events;
             // Applied to a sheet with all rows flagged, by another bond of each that is far beyond its limit.
             State crowded = trial;
             const std::size_t other = sheet.index(row, 0);

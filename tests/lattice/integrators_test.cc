@@ -144,10 +144,10 @@ TEST(VelocityVerlet, DampingLimitOfOneDashpotIsOne)
     state.vx[left] = -1e-6;
     state.vx[left + 1] = 1e-6;
     Forces forces(sheet, material);
-    const std::unique_ptr<Integrator> verlet = velocity_verlet(sheet, forces, z / gamma);
-    verlet->initialise(state);
+    VelocityVerlet verlet(sheet, forces, z / gamma);
+    verlet.initialise(state);
     for (int step = 0; step < steps; ++step)
-      verlet->step(state);
+      verlet.step(state);
     return std::abs(state.vx[left + 1] - state.vx[left]) / 2e-6;
   };
   EXPECT_LT(relative_velocity_after(0.99, 2000), 1.);

@@ -116,7 +116,7 @@ lattice::BondMemory ShellCase::memory() const
     return lattice::PlasticMemory(plastic_modulus, yield_stress, hardening);
   if (branch_moduli.empty() || branch_moduli.size() != relaxation_times.size() ||
       branch_moduli.size() > lattice::max_history_variables)
-    return lattice::NoMemory();
+    return {};
   std::vector<lattice::MaxwellMemory::Branch> branches;
   for (std::size_t i = 0; i < branch_moduli.size(); ++i)
     branches.push_back({branch_moduli[i], relaxation_times[i]});

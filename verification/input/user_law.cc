@@ -171,14 +171,10 @@ std::shared_ptr<const lattice::CustomBondLaw> UserLaw::law(bool is_library, cons
     const LoadedLibrary &loaded = loaded_library(library);
     if (!sha256.empty() && loaded.sha256 != sha256)
       throw Problem("library sha256", "the library " + printable(library) + " has the SHA-256 " + loaded.sha256);
-    std::vector<double> in_order = in_order_of_library(loaded.functions.parameters(), given);
+    std::vector<double> in_order = in_order_of_library(loaded.functions.parameters, given);
     return std::make_shared<lattice::LibraryLaw>(loaded.functions, std::move(in_order), longest);
   }
   catch (const InvalidExpression &error)
-  {
-    throw Problem(entry, error.what());
-  }
-  catch (const lattice::UnusableLibrary &error)
   {
     throw Problem(entry, error.what());
   }

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lattice/bonds/bond_law.h"
+#include "lattice/bonds/formulas.h"
 #include "lattice/bonds/law_check.h"
 #include "verification/input/expression_parser.h"
 
@@ -81,14 +81,6 @@ TEST(ExpressionLaw, IsTheBuiltInLaw)
       EXPECT_NEAR(law.largest_stiffness(l), built_in.largest_stiffness(l), rounding * stiffness) << l;
     }
   }
-}
-
-TEST(ExpressionLaw, LeavesAbsentBondsWithoutForce)
-{
-  const lattice::CustomBond bond(std::make_shared<ExpressionLaw>(law_of("l - log(l)")));
-  std::array<double, 4> stretches{0., 1.5, 0., 2.};
-  bond.forces(4, stretches.data());
-  EXPECT_EQ(stretches, (std::array<double, 4>{0., bond.force(1.5), 0., bond.force(2.)}));
 }
 
 // Stiffest at the end, in the middle, and nowhere finite.
