@@ -8,7 +8,6 @@
 
 #include <Eigen/SparseCore>
 
-#include "lattice/disorder.h"
 #include "lattice/triangular_lattice.h"
 
 namespace latcon::lattice
@@ -87,28 +86,6 @@ void maximise_entropy(const Exponents &J, Eigen::VectorXd &weights)
 
 } // namespace
 
-Eigen::Vector2d Scatter::displacement(std::ptrdiff_t row, std::ptrdiff_t column) const
-{
-  const std::uint64_t point = static_cast<std::uint64_t>(row) << 32u | static_cast<std::uint32_t>(column),
-                      key = splitmix64(splitmix64(splitmix64(seed) + 3) + point);
-  return amplitude * Eigen::Vector2d(symmetric_uniform(splitmix64(key)), symmetric_uniform(splitmix64(key + 1)));
-}
-
-std::vector<HalfBond> scattered_stencil(const Grid &grid, const std::vector<Ring> &rings, const Scatter &scatter)
-{
-  const double h = grid.spacing, width = (1. + std::sqrt(8.) * scatter.amplitude) * h;
-  std::vector<HalfBond> stencil;
-  for (const Ring &ring : rings)
-  {
-    const int rows = static_cast<int>(std::ceil(1.2 * (ring.radius + width) / h)), columns = 2 * rows;
-    for (int row = 0; row <= rows; ++row)
-      for (int column = columns; column >= (row == 0 ? 1 : -columns); --column)
-        if (const Eigen::Vector2d R = grid.vector(column, row); std::abs(R.norm() - ring.radius) < width)
-          stencil.push_back({column, row, R, R.norm(), 1., ring.shell, ring.radius});
-  }
-  return stencil;
-}
-
 ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
   : weights(lattice.n_kinds(), std::vector<double>(lattice.n_places())), length_ratios(weights),
     bounding_weights(lattice.n_kinds()), shortest(std::numeric_limits<double>::infinity())
@@ -116,15 +93,13 @@ ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
   const double h = lattice.spacing();
   std::vector<std::ptrdiff_t> number(lattice.n_places(), -1);
   std::vector<Eigen::Vector2d> points(lattice.n_places());
-  std::ptrdiff_t n = 0;
+  const auto n = static_cast<std::ptrdiff_t>(lattice.n_sites());
   for (std::size_t place = 0; place < lattice.n_places(); ++place)
   {
     points[place] = lattice.reference(place);
-    if (lattice.is_site(place))
-      number[place] = n++;
+    if (lattice.is_occupied(place))
+      number[place] = static_cast<std::ptrdiff_t>(lattice.site_number(lattice.canonical_place(place)));
   }
-  for (const TriangularLattice::Image &image : lattice.images())
-    number[image.place] = number[image.site];
 
   for (std::size_t first = 0, end = 0; first < lattice.n_kinds(); first = end)
   {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -79,7 +80,18 @@ std::vector<HalfBond> triangular_stencil(const Grid &grid);
 /// The rings that shells of the triangular lattice with spacing d [m] sample: of nearest and next-nearest neighbours.
 std::vector<Ring> lattice_rings(double d, Orientation orientation, double half_width);
 
-/// Half-bonds of rings on a grid.
+/// Random displacements of the points of a grid, independent of each other and of the number of points.
+struct Scatter
+{
+  double amplitude = 0.;  ///< largest displacement along x and along y, over the spacing [-], 0 to 0.5; 0: none
+  std::uint64_t seed = 0; ///< of the displacements, which are uniform in the square
+
+  /// Displacement of a point over the spacing [-].
+  Eigen::Vector2d displacement(std::ptrdiff_t row, std::ptrdiff_t column) const;
+};
+
+/// Half-bonds of rings on a grid. Those of scattered points are of all the pairs that a ring can join, in all
+/// directions; a sheet's construction gives them their weights, see ScatteredBonds.
 ///
 /// A bond belongs to a ring if its length is nearer than h to the radius l and its direction in one of the arcs. Its
 /// weight falls linearly to 0 with that distance. A relative correction, the smallest in the mean square, then gives
@@ -94,6 +106,6 @@ std::vector<Ring> lattice_rings(double d, Orientation orientation, double half_w
 ///
 /// On a triangular grid of the lattice's spacing, six directions give the first half-bonds of triangular_stencil(), bit
 /// for bit.
-std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings);
+std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings, const Scatter &scatter = {});
 
 } // namespace latcon::lattice

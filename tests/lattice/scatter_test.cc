@@ -55,7 +55,7 @@ TEST(Scatter, GivesEachPointTheAreaLawAndNearlyNoForce)
     const ScatteredBonds &bonds = *lattice.scattered();
     latcon::support::LargestError sums;
     double odd = 0., before = 0., shortest = HUGE_VAL;
-    for (const std::size_t place : sheets::sites(lattice))
+    for (const std::size_t place : lattice.sites())
     {
       std::array<double, 2> sum{};
       std::array<Eigen::Vector2d, 2> pull{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()}, raw = pull;
@@ -96,7 +96,7 @@ TEST(Scatter, HasTimeStepsForTheMostCrowdedPoint)
   const Material material = without_dashpots(sheets::rubber());
   const State state = homogeneous_state(lattice, material, Eigen::Matrix2d::Identity(), Edges::held);
   double highest = 0.;
-  for (const std::size_t place : sheets::sites(lattice))
+  for (const std::size_t place : lattice.sites())
   {
     double rate = 0.;
     for_each_bond_of_site(state, lattice, place,
@@ -125,7 +125,7 @@ TEST(Scatter, CountsTheBondsOfEachPointForTheTip)
   for_each_bond_of_site(state, lattice, place, [&](const Bond &) { ++bonds; });
   EXPECT_EQ(material.coordination(lattice, place), bonds);
   EXPECT_NEAR(material.mean_coordination(lattice), bonds, 0.25 * bonds);
-  Fracture fracture(lattice, material, 3., GivenToughening(), Eigen::Matrix2d::Identity());
+  Fracture fracture(lattice, material, 3., Toughening(), Eigen::Matrix2d::Identity());
   state.lost_bonds[place] = static_cast<std::uint8_t>((bonds + 3) / 4 - 1);
   fracture.locate_tip(state);
   EXPECT_FALSE(fracture.tip());

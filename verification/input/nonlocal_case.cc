@@ -91,12 +91,7 @@ lattice::TriangularLattice NonlocalCase::new_sheet(const Case &input) const
                              [&](const lattice::Ring &ring) { return !input.has_shell(ring.shell); }),
               rings.end());
   const lattice::Scatter scattered{scatter, input.noise_seed};
-  return {points,
-          scatter > 0. ? lattice::scattered_stencil(points, rings, scattered) : lattice::ring_stencil(points, rings),
-          input.spacing,
-          input.length,
-          input.height,
-          {},
+  return {points,   lattice::ring_stencil(points, rings, scattered), input.spacing, input.length, input.height, {},
           scattered};
 }
 

@@ -327,10 +327,9 @@ std::vector<lattice::HalfBond> planted_bonds(const bridge::Subject &subject, con
   std::vector<lattice::Ring> rings =
     bridge::rings_of(subject.material, subject.spacing, subject.orientation, half_width);
   options.planted_rings(rings);
-  if (scatter > 0.)
-    return lattice::scattered_stencil(grid, rings, {scatter, 1});
-  std::vector<lattice::HalfBond> bonds = lattice::ring_stencil(grid, rings);
-  options.planted_bonds(bonds);
+  std::vector<lattice::HalfBond> bonds = lattice::ring_stencil(grid, rings, {scatter, 1});
+  if (scatter == 0.)
+    options.planted_bonds(bonds);
   return bonds;
 }
 
