@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <iterator>
 
 #include "lattice/bonds/require.h"
 
@@ -83,12 +82,10 @@ PrescribedMotion::PrescribedMotion(const RowPartition &band, Constraint constrai
 
 bool PrescribedMotion::overlaps(const PrescribedMotion &other) const
 {
-  if ((components(constraint_) & components(other.constraint_)) == 0)
-    return false;
-  std::vector<std::size_t> both;
-  std::set_intersection(constraint_.sites.begin(), constraint_.sites.end(), other.constraint_.sites.begin(),
-                        other.constraint_.sites.end(), std::back_inserter(both));
-  return !both.empty();
+  const std::vector<std::size_t> &own = constraint_.sites, &others = other.constraint_.sites;
+  return (components(constraint_) & components(other.constraint_)) != 0 &&
+         std::any_of(own.begin(), own.end(),
+                     [&](std::size_t place) { return std::binary_search(others.begin(), others.end(), place); });
 }
 
 bool PrescribedMotion::prescribe(State &state, const Material &material, double from, double to,

@@ -94,22 +94,14 @@ void Contact::list(const State &state, std::size_t place, const Eigen::Vector2d 
   cells_.move(place, candidate.listed_at, here);
   candidate.is_listed = true;
   candidate.listed_at = here;
-  boost::container::flat_set<std::size_t> found;
+  candidate.above.clear();
   cells_.for_each_near(here,
                        [&](const LinkCells::Point &other)
                        {
                          if (other.id != place && (other.position - here).squaredNorm() <= reach * reach &&
                              may_touch(state, place, other.id))
-                           found.insert(other.id);
+                           candidates_[std::min(place, other.id)].above.insert(std::max(place, other.id));
                        });
-  if (found == candidate.neighbours)
-    return;
-  for (const std::size_t other : candidate.neighbours)
-    if (found.count(other) == 0)
-      candidates_[other].neighbours.erase(place);
-  for (const std::size_t other : found)
-    candidates_[other].neighbours.insert(place);
-  candidate.neighbours = std::move(found);
 }
 
 // Returns whether no bond joins two sites, at least one of which is in the band. Sites that never had a bond are in
@@ -130,16 +122,20 @@ void Contact::find_exchanged_sites()
 {
   for (SitesOfRanks *sites : {&sent_, &received_})
     sites->assign(band_.n_ranks(), {});
-  for (const auto &[place, candidate] : candidates_)
-    for (const std::size_t neighbour : candidate.neighbours)
+  for (const auto &[first, candidate] : candidates_)
+    for (const std::size_t second : candidate.above)
+      if (owns(first) != owns(second))
+      {
+        const auto [mine, theirs] = owns(first) ? std::pair(first, second) : std::pair(second, first);
+        const std::size_t rank = band_.owner(lattice_.row_of(theirs));
+        sent_[rank].push_back(mine);
+        received_[rank].push_back(theirs);
+      }
+  for (SitesOfRanks *sites : {&sent_, &received_})
+    for (std::vector<std::size_t> &of_rank : *sites)
     {
-      const bool is_sent = owns(place);
-      if (is_sent == owns(neighbour))
-        continue;
-      std::vector<std::size_t> &sites =
-        is_sent ? sent_[band_.owner(lattice_.row_of(neighbour))] : received_[band_.owner(lattice_.row_of(place))];
-      if (sites.empty() || sites.back() != place)
-        sites.push_back(place);
+      std::sort(of_rank.begin(), of_rank.end());
+      of_rank.erase(std::unique(of_rank.begin(), of_rank.end()), of_rank.end());
     }
 }
 
@@ -178,11 +174,8 @@ const std::vector<SiteForce> &Contact::evaluate(State &state, Field &vx, Field &
     forces.clear();
     const auto end = candidates_.nth(candidates_.size() * (share + 1) / n_shares);
     for (auto first = candidates_.nth(candidates_.size() * share / n_shares); first != end; ++first)
-    {
-      const auto &near = first->second.neighbours;
-      for (auto second = near.upper_bound(first->first); second != near.end(); ++second)
-        add_pair(first->first, *second, forces);
-    }
+      for (const std::size_t second : first->second.above)
+        add_pair(first->first, second, forces);
   }
   forces_.clear();
   for (const std::vector<SiteForce> &of_share : forces_of_shares_) // the order of pairs, however many shares

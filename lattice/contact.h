@@ -57,7 +57,6 @@ public:
   const std::vector<SiteForce> &evaluate(State &state, Field &vx, Field &vy) override;
 
   const ContactLaw &law() const { return law_; } ///< as given
-  std::size_t n_candidates() const { return candidates_.size(); }
   /// Returns how often candidates were listed, each for itself.
   std::size_t n_listings() const { return n_listings_; }
 
@@ -67,7 +66,8 @@ private:
     bool is_listed = false; // since it last lost a bond
     // Its position then [m]; infinitely far: not listed yet.
     Eigen::Vector2d listed_at = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
-    boost::container::flat_set<std::size_t> neighbours; // places in its list
+    // Candidates at larger places in its list, or in whose list it is; some have left since.
+    boost::container::flat_set<std::size_t> above;
   };
 
   bool owns(std::size_t place) const { return place >= own_.begin && place < own_.end; }

@@ -84,9 +84,6 @@ void cut_out(State &state, const TriangularLattice &lattice, const Cutout &cutou
     return hole != nullptr ? (X - Eigen::Vector2d(0.5 * lattice.length(), 0.)).norm() < hole->radius - room
                            : std::abs(X.y()) <= room && X.x() <= notch + room;
   };
-  // Through the slit between sites.
-  const auto through_notch = [&](const Eigen::Vector2d &X, const Eigen::Vector2d &R)
-  { return hole == nullptr && X.y() * (X.y() + R.y()) < 0. && X.x() - X.y() / R.y() * R.x() <= notch + room; };
   for (std::size_t place = 0; place < lattice.n_places(); ++place)
     if (lattice.is_occupied(place) && in_piece(lattice.reference(lattice.canonical_place(place))))
     {
@@ -97,10 +94,12 @@ void cut_out(State &state, const TriangularLattice &lattice, const Cutout &cutou
   for_each_bond(state, lattice,
                 [&](const Bond &bond)
                 {
-                  if (state.removed[bond.near] != 0 || state.removed[bond.far] != 0 ||
-                      through_notch(lattice.reference(bond.near), lattice.bond_vector(bond)))
+                  if (state.removed[bond.near] != 0 || state.removed[bond.far] != 0)
                     state.bonds.remove(bond.near, bond.kind);
                 });
+  if (hole == nullptr) // through the slit between sites
+    for (const auto &[place, kind] : bonds_across(lattice, -lattice.spacing(), notch + room, 0.))
+      state.bonds.remove(place, kind);
 }
 
 std::vector<std::pair<std::size_t, std::size_t>> bonds_across(const TriangularLattice &lattice, double from, double to,

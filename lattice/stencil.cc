@@ -90,13 +90,8 @@ bool reach_all_points(const std::vector<HalfBond> &bonds)
 
 Eigen::Vector2d Grid::from_row_frame(double along, double across) const
 {
-  double u = along * spacing, v = across * (kind == Kind::triangular ? half_sqrt3 : 1.) * spacing;
-  if (orientation == Orientation::rows_across_crack)
-    std::swap(u, v);
-  if (rotation == 0.)
-    return {u, v};
-  const double c = std::cos(rotation), s = std::sin(rotation);
-  return {c * u - s * v, s * u + c * v};
+  const double u = along * spacing, v = across * pitch() * spacing;
+  return orientation == Orientation::rows_along_crack ? Eigen::Vector2d(u, v) : Eigen::Vector2d(v, u);
 }
 
 Eigen::Vector2d Scatter::displacement(std::ptrdiff_t row, std::ptrdiff_t column) const

@@ -32,14 +32,13 @@ struct Grid
 {
   enum class Kind
   {
-    triangular, ///< a1 = h (1, 0), a2 = h (1, sqrt3) / 2 with rows along the crack, before the rotation
+    triangular, ///< a1 = h (1, 0), a2 = h (1, sqrt3) / 2 with rows along the crack
     square      ///< a1 = h (1, 0), a2 = h (0, 1) likewise
   };
 
   Kind kind;
-  double spacing;       ///< h [m], > 0
-  double rotation = 0.; ///< of the whole grid, counter-clockwise [rad]
-  /// Direction of its rows before the rotation; x and y are exchanged where they are across the crack.
+  double spacing; ///< h [m], > 0
+  /// Direction of its rows; x and y are exchanged where they are across the crack.
   Orientation orientation = Orientation::rows_along_crack;
 
   /// Vector of so many spacings along the rows and rows across them [m].
@@ -50,8 +49,8 @@ struct Grid
   {
     return from_row_frame(columns + (kind == Kind::triangular ? 0.5 * rows : 0.), rows);
   }
-  /// Reference area of a point [m^2].
-  double cell_area() const { return (kind == Kind::triangular ? half_sqrt3 : 1.) * spacing * spacing; }
+  double pitch() const { return kind == Kind::triangular ? half_sqrt3 : 1.; } ///< distance of rows, in spacings
+  double cell_area() const { return pitch() * spacing * spacing; }            ///< reference area of a point [m^2]
 };
 
 /// A bond of a stencil, seen from one of its ends.

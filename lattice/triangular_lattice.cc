@@ -36,8 +36,8 @@ bool has_triangular_kinds(const Grid &grid, const std::vector<HalfBond> &stencil
 
 TriangularLattice::TriangularLattice(double spacing, double length, double height, Orientation orientation,
                                      Periodic periodic)
-  : TriangularLattice({Grid::Kind::triangular, spacing, 0., orientation},
-                      triangular_stencil({Grid::Kind::triangular, spacing, 0., orientation}), spacing, length, height,
+  : TriangularLattice({Grid::Kind::triangular, spacing, orientation},
+                      triangular_stencil({Grid::Kind::triangular, spacing, orientation}), spacing, length, height,
                       periodic)
 {
 }
@@ -49,8 +49,7 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
 {
   const double spacing = grid.spacing;
   require(spacing > 0. && length > 0. && height > 0. && d > 0., "a lattice needs positive spacing, length and height");
-  require(grid.rotation == 0. && !stencil.empty() && stencil.size() <= most_kinds,
-          "a sheet has 1 to 127 half-bonds on a grid that is not rotated");
+  require(!stencil.empty() && stencil.size() <= most_kinds, "a sheet has 1 to 127 half-bonds");
   int columns_reach = 0;
   for (const HalfBond &bond : stencil_)
   {
@@ -62,7 +61,7 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
   // An odd number of sites across the crack puts one on the line y = 0; rows repeat in pairs.
   const double along = rows_along_x() ? length : height, across = rows_along_x() ? height : length;
   columns_ = repeats_along() ? intervals(along, spacing) : intervals(along, spacing, !rows_along_x()) + 1;
-  rows_ = intervals(across, pitch() * spacing, rows_along_x() || repeats_across()) + (repeats_across() ? 0 : 1);
+  rows_ = intervals(across, grid.pitch() * spacing, rows_along_x() || repeats_across()) + (repeats_across() ? 0 : 1);
   // The margin of a periodic sheet is filled from the sheet once around, so it must not be wider.
   require(columns_ >= (repeats_along() ? column_reach_ : 3) && rows_ >= (repeats_across() ? reach_ : 2),
           "the sheet is too small for its lattice spacing: fewer than two rows or three columns");

@@ -51,7 +51,7 @@ struct Bond
 /// A rectangular sheet in its reference configuration: sites of a grid, joined by the half-bonds of a stencil.
 ///
 /// The stencil is that of the triangular lattice (theory.md, section "The lattice"), or of rings of bonds on a
-/// triangular or square grid that is not rotated. Sites of a triangular grid stand in rows, spacing h along a row, row
+/// triangular or square grid. Sites of a triangular grid stand in rows, spacing h along a row, row
 /// pitch (sqrt3 / 2) h, every second row shifted by h / 2 and one site shorter. The sheet is its own mirror image about
 /// the line y = 0, to the last bit of its coordinates. About the centre line along y it is, to round-off, if the number
 /// of rows is odd, as it always is with rows along x; not if it is even, since the first row then has a site more than
@@ -79,10 +79,10 @@ public:
   TriangularLattice(double spacing, double length, double height, Orientation orientation, Periodic periodic = {});
 
   /// A sheet of a nonlocal continuum.
-  /// @param grid without rotation @param stencil of it, by increasing shell; see ring_stencil()
+  /// @param stencil of the grid, by increasing shell; see ring_stencil()
   /// @param d spacing of the lattice whose shells the rings are [m], > 0
   /// @param scatter of the points, which the stencil is for too
-  /// @throws std::invalid_argument also for a grid that is rotated, or more half-bonds than `most_kinds`
+  /// @throws std::invalid_argument also for more half-bonds than `most_kinds`
   TriangularLattice(const Grid &grid, const std::vector<HalfBond> &stencil, double d, double length, double height,
                     Periodic periodic = {}, const Scatter &scatter = {});
   static constexpr std::size_t most_kinds = 127; ///< half-bonds: those that a site has lost are counted in a byte
@@ -216,7 +216,6 @@ private:
   bool repeats_along() const { return rows_along_x() ? periodic_.x : periodic_.y; }  // the rows
   bool repeats_across() const { return rows_along_x() ? periodic_.y : periodic_.x; } // the rows
   bool rows_alternate() const { return rows_shift() && !repeats_along(); }           // in length
-  double pitch() const { return rows_shift() ? half_sqrt3 : 1.; }          // of rows, in spacings
   Eigen::Vector2d extent() const
   {
     return grid_.from_row_frame(static_cast<double>(repeats_along() ? columns_ : columns_ - 1),

@@ -83,7 +83,7 @@ lattice::TriangularLattice NonlocalCase::sheet(const Case &input) const
 
 lattice::TriangularLattice NonlocalCase::new_sheet(const Case &input) const
 {
-  const lattice::Grid points{grid, input.spacing / refinement, 0., input.orientation};
+  const lattice::Grid points{grid, input.spacing / refinement, input.orientation};
   std::vector<lattice::Ring> rings =
     lattice::lattice_rings(input.spacing, input.orientation, std::min(half_width, M_PI / 6.));
   rings.push_back({2. * input.spacing, rings[0].direction, 2, rings[0].half_width});

@@ -63,7 +63,7 @@ void ring_convergence(const bridge::Subject &subject, const NonlocalOptions &opt
       for (int i = 0; i < grids_per_middle; ++i)
       {
         const double m = middle * (0.87 + 0.28 * i / (grids_per_middle - 1));
-        const RingErrors errors = errors_of({kind, subject.spacing / m, 0., subject.orientation});
+        const RingErrors errors = errors_of({kind, subject.spacing / m, subject.orientation});
         for (std::size_t q = 0; q < n_ring_quantities; ++q)
           squares[q] += errors[q] * errors[q] / (2. * grids_per_middle);
       }
