@@ -106,8 +106,8 @@ std::vector<std::pair<std::size_t, std::size_t>> bonds_across(const TriangularLa
                                                               double Y)
 {
   std::vector<std::pair<std::size_t, std::size_t>> bonds;
-  for (const std::size_t place : lattice.sites())
-    for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+  for (std::size_t place = 0; place < lattice.n_places(); ++place)
+    for (std::size_t kind = 0; kind < lattice.n_kinds() && lattice.is_site(place); ++kind)
       if (const Bond bond = lattice.bond(place, kind); lattice.has_bond(place, kind) && lattice.is_site(bond.far))
       {
         const Eigen::Vector2d X = lattice.reference(place), R = lattice.bond_vector(bond);

@@ -177,8 +177,9 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
 
 void Fracture::locate_tip(State &state)
 {
-  for (const std::size_t place : lattice_.sites())
-    consider_tip(state, place);
+  for (std::size_t place = 0; place < lattice_.n_places(); ++place)
+    if (lattice_.is_site(place))
+      consider_tip(state, place);
   toughened_to_ = -std::numeric_limits<double>::infinity();
   toughen_behind_tip(state);
 }

@@ -360,8 +360,8 @@ void Simulation::check_loaded(const BondStates &before, double energy) const
       require(before.present(place, kind) ||
                 (!state_.bonds.present(place, kind) && !state_.bonds.toughened(place, kind)),
               "`bonds` has some that the sheet never had");
-  for (const std::size_t place : lattice_.sites())
-    require(state_.lost_bonds[place] <= material_.coordination(lattice_), "`lost_bonds` are more than a site has");
+  for (const std::uint8_t lost : state_.lost_bonds)
+    require(lost <= material_.coordination(lattice_), "`lost_bonds` are more than a site has");
 }
 
 EnergyBalance Simulation::energies() const

@@ -1,8 +1,6 @@
 #include "lattice/state.h"
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -77,8 +75,10 @@ std::vector<std::size_t> sites_at(const TriangularLattice &lattice, const Materi
           return true;
     return false;
   };
-  std::vector<std::size_t> sites = lattice.sites();
-  sites.erase(std::remove_if(sites.begin(), sites.end(), std::not_fn(reaches_beyond)), sites.end());
+  std::vector<std::size_t> sites;
+  for (std::size_t place = 0; place < lattice.n_places(); ++place) // without a list of all, which ranks may not hold
+    if (lattice.is_site(place) && reaches_beyond(place))
+      sites.push_back(place);
   return sites;
 }
 

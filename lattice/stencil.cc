@@ -59,11 +59,10 @@ void correct(std::vector<HalfBond> &bonds)
     sum += bond.weight;
   for (std::size_t i = 0; i < bonds.size(); ++i)
   {
-    root[i] = std::sqrt(bonds[i].weight / sum);
+    bonds[i].weight /= sum;
+    root[i] = std::sqrt(bonds[i].weight);
     scaled.col(i) = root[i] * harmonics(bonds[i].vector);
   }
-  for (HalfBond &bond : bonds)
-    bond.weight /= sum;
   const Eigen::VectorXd missing = Eigen::VectorXd::Unit(5, 0) - scaled * root;
   if (missing.norm() < 1e-14) // three directions have these moments
     return;

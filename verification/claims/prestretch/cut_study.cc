@@ -147,7 +147,7 @@ CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet
   const lattice::State whole = lattice::homogeneous_state(lattice, subject.material, sheet.F, sheet.held);
   CutLattice cut{sheet, lattice, whole, {}, {}, {}, 0., {}, 0., {}, 0., 0.};
   lattice::cut_out(cut.state, lattice, sheet.cutout);
-  cut.relaxation =
+  cut.residual =
     lattice::relax(cut.state, lattice, subject.material, 1e-8 * subject.theory.shear_modulus * subject.spacing);
   cut.fields = lattice::site_fields(cut.state, lattice, subject.material);
 
@@ -244,7 +244,7 @@ std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutSt
     const auto add =
       [&](const std::string &law, const continuum::Constitution &constitution, const bridge::EquivalentSheet &at)
     {
-      CutResult result{size, law, {}, {}, lattice.relaxation.residual / (subject.theory.shear_modulus * d), {}, {}};
+      CutResult result{size, law, {}, {}, lattice.residual / (subject.theory.shear_modulus * d), {}, {}};
       std::optional<CutSolution> found = compare(lattice, at, constitution, study.mesh, result.failure);
       if (found)
         result.errors = found->errors;
