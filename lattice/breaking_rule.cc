@@ -7,13 +7,6 @@
 
 namespace latcon::lattice
 {
-namespace
-{
-
-// Beyond it no law is evaluated.
-constexpr double longest_searched = 1e6;
-
-} // namespace
 
 CriticalStretch::CriticalStretch(double stretch, double factor, double time) : factor_(factor), time_(time)
 {
@@ -44,14 +37,15 @@ BondEnergy::BondEnergy(const Material &material, double energy) : material_(mate
 
 double BondEnergy::stretch_at(std::size_t shell, double energy) const
 {
+  constexpr double longest = 1e6; // beyond it no law is evaluated
   const BondLaw &law = material_.in_shell(shell)->law;
   const auto stored = [&](double stretch) { return lattice::energy(law, stretch) - lattice::energy(law, 1.); };
   if (!(energy > 0.))
     return 1.;
   double low = 1., high = 2.;
-  for (; high < longest_searched && stored(high) < energy; high *= 2.)
+  for (; high < longest && stored(high) < energy; high *= 2.)
     low = high;
-  if (high >= longest_searched)
+  if (high >= longest)
     return std::numeric_limits<double>::infinity();
   while (high - low > 4e-16 * high)
   {

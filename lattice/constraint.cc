@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <iterator>
 
 #include "lattice/bonds/require.h"
 
@@ -83,20 +82,10 @@ PrescribedMotion::PrescribedMotion(const RowPartition &band, Constraint constrai
 
 bool PrescribedMotion::overlaps(const PrescribedMotion &other) const
 {
-  if ((components(constraint_) & components(other.constraint_)) == 0)
-    return false;
-  std::vector<std::size_t> both;
-  std::set_intersection(constraint_.sites.begin(), constraint_.sites.end(), other.constraint_.sites.begin(),
-                        other.constraint_.sites.end(), std::back_inserter(both));
-  return !both.empty();
-}
-
-template <class Visitor>
-void PrescribedMotion::for_each_known(const State &state, const Visitor &visit) const
-{
-  for (const std::size_t place : constraint_.sites)
-    if (band_.is_relevant(place) && state.removed[place] == 0)
-      visit(place);
+  const std::vector<std::size_t> &own = constraint_.sites, &others = other.constraint_.sites;
+  return (components(constraint_) & components(other.constraint_)) != 0 &&
+         std::any_of(own.begin(), own.end(),
+                     [&](std::size_t place) { return std::binary_search(others.begin(), others.end(), place); });
 }
 
 bool PrescribedMotion::prescribe(State &state, const Material &material, double from, double to,
@@ -110,30 +99,29 @@ bool PrescribedMotion::prescribe(State &state, const Material &material, double 
     released_ = 1;
     free_if_released(state, material);
     const double half_mass = 0.5 * site_mass(material, lattice);
-    for_each_known(state,
-                   [&](std::size_t place)
-                   {
-                     if (!band_.owns(place))
-                       return;
-                     const double vx = constraint_.along_x ? state.vx[place] : 0.;
-                     const double vy = constraint_.along_y ? state.vy[place] : 0.;
-                     work[lattice.row_of(place)] += half_mass * (vx * vx + vy * vy);
-                   });
+    for (const std::size_t place : constraint_.sites)
+    {
+      if (!band_.owns(place) || state.removed[place] != 0)
+        continue;
+      const double vx = constraint_.along_x ? state.vx[place] : 0., vy = constraint_.along_y ? state.vy[place] : 0.;
+      work[lattice.row_of(place)] += half_mass * (vx * vx + vy * vy);
+    }
     return true;
   }
   const AffineVelocity velocity = constraint_.motion ? constraint_.motion(from, to) : AffineVelocity{};
   if (velocity == velocity_)
     return false;
   velocity_ = velocity;
-  for_each_known(state,
-                 [&](std::size_t place)
-                 {
-                   const Eigen::Vector2d v = velocity.at(lattice.reference(place));
-                   if (constraint_.along_x)
-                     state.vx[place] = v.x();
-                   if (constraint_.along_y)
-                     state.vy[place] = v.y();
-                 });
+  for (const std::size_t place : constraint_.sites)
+  {
+    if (!band_.is_relevant(place) || state.removed[place] != 0)
+      continue;
+    const Eigen::Vector2d v = velocity.at(lattice.reference(place));
+    if (constraint_.along_x)
+      state.vx[place] = v.x();
+    if (constraint_.along_y)
+      state.vy[place] = v.y();
+  }
   return true;
 }
 

@@ -92,9 +92,6 @@ public:
   void free_if_released(State &state, const Material &material) const;
 
 private:
-  template <class Visitor>
-  void for_each_known(const State &state, const Visitor &visit) const;
-
   RowPartition band_;
   Constraint constraint_;
   AffineVelocity velocity_;

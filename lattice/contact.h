@@ -1,8 +1,10 @@
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
+#include <limits>
 #include <vector>
+
+#include <boost/container/flat_map.hpp>
+#include <boost/container/flat_set.hpp>
 
 #include "lattice/fracture.h"
 #include "lattice/link_cells.h"
@@ -54,55 +56,35 @@ public:
 
   const std::vector<SiteForce> &evaluate(State &state, Field &vx, Field &vy) override;
 
-  /// Energy stored in the springs of the pairs whose first site is in the band, per sheet thickness [J/m].
-  double elastic_energy(const State &state) const;
-
   const ContactLaw &law() const { return law_; } ///< as given
-  std::size_t n_candidates() const { return places_.size(); }
-  /// Pairs that overlapped at the last evaluation, those whose first site is in the band.
-  std::size_t n_touching() const { return n_touching_; }
   /// Returns how often candidates were listed, each for itself.
   std::size_t n_listings() const { return n_listings_; }
 
 private:
-  void add_candidate(std::size_t place);
-  void update_lists(const State &state);
-  void list(const State &state, std::size_t index);
-  bool may_touch(const State &state, std::size_t first, std::size_t second) const;
-  // Calls visit(first, second) for each pair of which one of order_[begin] ... order_[end - 1] is the first: the place
-  // of a pair that is smaller.
-  template <class Visitor>
-  void for_each_pair(std::size_t begin, std::size_t end, const Visitor &visit) const
+  struct Candidate
   {
-    for (std::size_t i = begin; i < end; ++i)
-    {
-      const std::size_t first = places_[order_[i]];
-      const std::vector<std::size_t> &near = neighbours_[order_[i]];
-      for (auto second = std::upper_bound(near.begin(), near.end(), first); second != near.end(); ++second)
-        visit(first, *second);
-    }
-  }
-  bool is_exchanged(std::size_t first, std::size_t second) const;
+    bool is_listed = false; // since it last lost a bond
+    // Its position then [m]; infinitely far: not listed yet.
+    Eigen::Vector2d listed_at = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+    // Candidates at larger places in its list, or in whose list it is; some have left since.
+    boost::container::flat_set<std::size_t> above;
+  };
+
+  bool owns(std::size_t place) const { return place >= own_.begin && place < own_.end; }
+  void update_lists(const State &state);
+  void list(const State &state, std::size_t place, const Eigen::Vector2d &here);
+  bool may_touch(const State &state, std::size_t first, std::size_t second) const;
   void find_exchanged_sites();
 
   RowPartition band_;
   const TriangularLattice &lattice_;
   ContactLaw law_;
   double skin_;
-  LinkCells cells_; // of candidates, by their index
-  // By index of the candidate.
-  std::vector<std::size_t> places_;
-  std::vector<Eigen::Vector2d> listed_at_;           // its position then [m]; infinitely far: not listed yet
-  std::vector<std::vector<std::size_t>> neighbours_; // places in its list, increasing
-  std::vector<std::uint8_t> has_exchanged_;          // whether ranks exchange sites because of that list
-
-  std::vector<std::uint32_t, ZeroPages<std::uint32_t>> number_; // by place: index of the candidate + 1; 0: none
-  std::vector<std::size_t> own_;                                // indices of candidates in the band
-  std::vector<std::size_t> order_;                              // indices of all candidates, by increasing places
-  std::vector<std::vector<SiteForce>> forces_of_shares_;        // scratch
-  std::vector<std::size_t> found_;                              // scratch
+  Rows own_;                                                      // places of the band
+  LinkCells cells_;                                               // of candidates, by their places
+  boost::container::flat_map<std::size_t, Candidate> candidates_; // by place
+  std::vector<std::vector<SiteForce>> forces_of_shares_;          // scratch
   SitesOfRanks sent_, received_;
-  std::size_t n_touching_ = 0;
   std::size_t n_listings_ = 0;
 };
 

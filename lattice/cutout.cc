@@ -26,10 +26,9 @@ std::vector<std::size_t> sites_in(const Eigen::AlignedBox2d &box, const Triangul
           "it takes more than 1e7 sites");
 
   std::vector<std::size_t> sites;
-  for (std::size_t row = rows.begin; row < rows.end; ++row)
-    for (std::size_t column = columns.begin; column < std::min(columns.end, lattice.sites_in_row(row)); ++column)
-      if (box.contains(lattice.reference(lattice.index(row, column))))
-        sites.push_back(lattice.index(row, column));
+  for (const std::size_t place : lattice.sites(rows, columns))
+    if (box.contains(lattice.reference(place)))
+      sites.push_back(place);
   const double room = relative_room * lattice.spacing();
   std::sort(sites.begin(), sites.end(),
             [&](std::size_t a, std::size_t b)
@@ -38,28 +37,6 @@ std::vector<std::size_t> sites_in(const Eigen::AlignedBox2d &box, const Triangul
               return std::abs(A.x() - B.x()) > room ? A.x() < B.x() : A.y() < B.y();
             });
   return sites;
-}
-
-// Y of all lines along x on which sites stand, increasing.
-std::vector<double> lines_of_sites(const TriangularLattice &lattice)
-{
-  std::vector<double> lines;
-  const bool along = lattice.orientation() == Orientation::rows_along_crack;
-  for (std::size_t row = 0; row < (along ? lattice.rows() : 2); ++row)
-    for (std::size_t column = 0; column < (along ? 1 : lattice.sites_in_row(row)); ++column)
-      lines.push_back(lattice.reference(lattice.index(row, column)).y());
-  std::sort(lines.begin(), lines.end());
-  return lines;
-}
-
-// Number of the nearest of increasing coordinates; of two that are equally near, the larger one.
-std::size_t nearest(const std::vector<double> &coordinates, double wanted, double room)
-{
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < coordinates.size(); ++i)
-    if (std::abs(coordinates[i] - wanted) <= std::abs(coordinates[best] - wanted) + room)
-      best = i;
-  return best;
 }
 
 std::vector<std::size_t> sites_of(const SeedSlit &slit, const TriangularLattice &lattice)
@@ -72,18 +49,27 @@ std::vector<std::size_t> sites_of(const SeedSlit &slit, const TriangularLattice 
 
 std::vector<std::size_t> sites_of(const SeedLine &line, const TriangularLattice &lattice)
 {
-  const double room = relative_room * lattice.spacing();
-  const std::vector<double> lines = lines_of_sites(lattice);
-  const double y = lines[nearest(lines, line.offset, room)];
-  const Eigen::Vector2d lower(-lattice.spacing(), y - room), upper(lattice.length() + lattice.spacing(), y + room);
-  const std::vector<std::size_t> candidates = sites_in({lower, upper}, lattice);
-  std::vector<double> positions;
-  for (const std::size_t place : candidates)
-    positions.push_back(lattice.reference(place).x());
-  const std::size_t first = nearest(positions, line.position, room);
-  require(first + line.n <= candidates.size(), "it goes beyond the right end of the sheet");
-  const auto begin = candidates.begin() + static_cast<std::ptrdiff_t>(first);
-  return {begin, begin + static_cast<std::ptrdiff_t>(line.n)};
+  const double h = lattice.spacing(), room = relative_room * h, top = 0.5 * lattice.height();
+  // Lines are at most a spacing apart, and their sites less than two.
+  const Eigen::Vector2d start(std::clamp(line.position, 0., lattice.length()), std::clamp(line.offset, -top, top));
+  const Eigen::Vector2d around(2. * h, 0.5 * h + room), end(2. * h * static_cast<double>(line.n), 0.);
+  std::vector<std::size_t> sites = sites_in({start - around, start + end + around}, lattice);
+  const auto nearest = [&](int axis, double wanted)
+  {
+    return std::min_element(sites.begin(), sites.end(),
+                            [&](std::size_t a, std::size_t b)
+                            {
+                              const double A = lattice.reference(a)[axis], B = lattice.reference(b)[axis];
+                              const double farther = std::abs(A - wanted) - std::abs(B - wanted);
+                              return std::abs(farther) > room ? farther < 0. : A > B;
+                            });
+  };
+  const double Y = lattice.reference(*nearest(1, line.offset)).y();
+  const auto is_off = [&](std::size_t place) { return std::abs(lattice.reference(place).y() - Y) > room; };
+  sites.erase(std::remove_if(sites.begin(), sites.end(), is_off), sites.end());
+  const auto first = nearest(0, line.position);
+  require(sites.end() - first >= static_cast<std::ptrdiff_t>(line.n), "it goes beyond the right end of the sheet");
+  return {first, first + static_cast<std::ptrdiff_t>(line.n)};
 }
 
 } // namespace
@@ -98,9 +84,6 @@ void cut_out(State &state, const TriangularLattice &lattice, const Cutout &cutou
     return hole != nullptr ? (X - Eigen::Vector2d(0.5 * lattice.length(), 0.)).norm() < hole->radius - room
                            : std::abs(X.y()) <= room && X.x() <= notch + room;
   };
-  // Through the slit between sites.
-  const auto through_notch = [&](const Eigen::Vector2d &X, const Eigen::Vector2d &R)
-  { return hole == nullptr && X.y() * (X.y() + R.y()) < 0. && X.x() - X.y() / R.y() * R.x() <= notch + room; };
   for (std::size_t place = 0; place < lattice.n_places(); ++place)
     if (lattice.is_occupied(place) && in_piece(lattice.reference(lattice.canonical_place(place))))
     {
@@ -111,27 +94,26 @@ void cut_out(State &state, const TriangularLattice &lattice, const Cutout &cutou
   for_each_bond(state, lattice,
                 [&](const Bond &bond)
                 {
-                  if (state.removed[bond.near] != 0 || state.removed[bond.far] != 0 ||
-                      through_notch(lattice.reference(bond.near), lattice.bond_vector(bond)))
+                  if (state.removed[bond.near] != 0 || state.removed[bond.far] != 0)
                     state.bonds.remove(bond.near, bond.kind);
                 });
+  if (hole == nullptr) // through the slit between sites
+    for (const auto &[place, kind] : bonds_across(lattice, -lattice.spacing(), notch + room, 0.))
+      state.bonds.remove(place, kind);
 }
 
 std::vector<std::pair<std::size_t, std::size_t>> bonds_across(const TriangularLattice &lattice, double from, double to,
                                                               double Y)
 {
   std::vector<std::pair<std::size_t, std::size_t>> bonds;
-  for (std::size_t row = 0; row < lattice.rows(); ++row)
-    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
-      for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+  for (std::size_t place = 0; place < lattice.n_places(); ++place)
+    for (std::size_t kind = 0; kind < lattice.n_kinds() && lattice.is_site(place); ++kind)
+      if (const Bond bond = lattice.bond(place, kind); lattice.has_bond(place, kind) && lattice.is_site(bond.far))
       {
-        const Bond bond = lattice.bond(lattice.index(row, column), kind);
-        if (!lattice.has_bond(bond.near, kind))
-          continue;
-        const Eigen::Vector2d X = lattice.reference(bond.near), R = lattice.bond_vector(bond);
+        const Eigen::Vector2d X = lattice.reference(place), R = lattice.bond_vector(bond);
         const double share = (Y - X.y()) / R.y(), at = X.x() + share * R.x();
-        if (share > 0. && share <= 1. && at >= from && at <= to && lattice.is_site(bond.far))
-          bonds.emplace_back(bond.near, kind);
+        if (share > 0. && share <= 1. && at >= from && at <= to)
+          bonds.emplace_back(place, kind);
       }
   return bonds;
 }

@@ -71,24 +71,18 @@ Distribution::Distribution(Kind kind, double width) : kind_(kind), width_(width)
   }
   const bool is_allowed = kind == Kind::weibull ? width <= widest(kind) : width < widest(kind);
   require(width > 0. && is_allowed, "the width of a distribution of bonds is out of its range");
-  switch (kind)
+  if (kind == Kind::weibull)
   {
-  case Kind::uniform:
-    scale_ = sqrt3 * width;
-    smallest_ = 1. - scale_;
-    largest_ = 1. + scale_;
-    break;
-  case Kind::normal:
-    scale_ = width / kept_width(cut_off);
-    smallest_ = 1. - cut_off * scale_;
-    largest_ = 1. + cut_off * scale_;
-    break;
-  default:
     exponent_ = 1. / weibull_shape(width);
     scale_ = 1. / std::tgamma(1. + exponent_);
     smallest_ = 0.;
     largest_ = scale_ * std::pow(-std::log(smallest_uniform), exponent_);
+    return;
   }
+  scale_ = kind == Kind::uniform ? sqrt3 * width : width / kept_width(cut_off);
+  const double range = kind == Kind::uniform ? scale_ : cut_off * scale_;
+  smallest_ = 1. - range;
+  largest_ = 1. + range;
 }
 
 double Distribution::factor(std::uint64_t key) const

@@ -88,22 +88,20 @@ EndLoads::EndLoads(const RowPartition &band, const Material &material, const Sta
   : impedance_(Eigen::Matrix2d::Zero())
 {
   const TriangularLattice &lattice = band.lattice();
-  for (std::size_t row = band.rows().begin; row < band.rows().end; ++row)
-    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
-    {
-      const std::size_t place = lattice.index(row, column);
-      const bool on_left = lattice.reference(place).x() < 0.5 * lattice.length();
-      const End end = on_left ? left : right;
-      if (state.held[place] != 0 || end == End::held)
-        continue;
-      unsigned int bonds = 0;
-      for_each_bond_of_site(state, lattice, place, [&](const Bond &) { ++bonds; });
-      if (bonds == material.coordination(lattice))
-        continue;
-      dead_.push_back({place, missing_force(lattice, material, place, F)});
-      if (end == End::absorbing && outermost(lattice, place, on_left))
-        absorbing_.push_back(place);
-    }
+  for (const std::size_t place : lattice.sites(band.rows()))
+  {
+    const bool on_left = lattice.reference(place).x() < 0.5 * lattice.length();
+    const End end = on_left ? left : right;
+    if (state.held[place] != 0 || end == End::held)
+      continue;
+    unsigned int bonds = 0;
+    for_each_bond_of_site(state, lattice, place, [&](const Bond &) { ++bonds; });
+    if (bonds == material.coordination(lattice))
+      continue;
+    dead_.push_back({place, missing_force(lattice, material, place, F)});
+    if (end == End::absorbing && outermost(lattice, place, on_left))
+      absorbing_.push_back(place);
+  }
   if (left != End::absorbing && right != End::absorbing)
     return;
   require(lattice.is_triangular(), "only ends of the triangular lattice absorb waves");

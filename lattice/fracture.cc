@@ -15,23 +15,16 @@ namespace latcon::lattice
 Fracture::Fracture(const RowPartition &band, const Material &material, std::shared_ptr<const BreakingRule> rule,
                    Toughening toughening, const Eigen::Matrix2d &deformation)
   : band_(band), lattice_(band.lattice()), material_(material), rule_(std::move(rule)), toughening_(toughening),
-    toughening_factor_(std::visit([](const auto &how) { return how.factor; }, toughening)),
-    breaking_stretch_(rule_->smallest_limit(1.)), toughened_stretch_(rule_->smallest_limit(toughening_factor_))
+    breaking_stretch_(rule_->smallest_limit(1.)), toughened_stretch_(rule_->smallest_limit(toughening.factor))
 {
   require(lattice_.images().empty(), "a periodic sheet does not break: a crack has no tip there");
-  if (const auto *given = std::get_if<GivenToughening>(&toughening_))
-    require(given->factor >= 1., "toughening of given bonds needs a factor >= 1");
-  if (const auto *behind = std::get_if<BehindTipToughening>(&toughening_))
-    require(behind->distance >= 0. && behind->factor >= 1.,
-            "toughening behind the tip needs distance >= 0, factor >= 1");
-  if (const auto *retraction = std::get_if<RetractionToughening>(&toughening_))
-  {
-    require(retraction->fraction > 0. && retraction->fraction < 1. && retraction->factor >= 1.,
-            "toughening on retraction needs a fraction between 0 and 1 and a factor >= 1");
+  require(toughening.factor >= 1. && toughening.distance >= 0. && toughening.retraction >= 0. &&
+            toughening.retraction < 1.,
+          "toughening needs a factor >= 1, a distance >= 0, and a fraction of retraction from 0 to below 1");
+  if (toughening.retraction > 0.)
     for (std::size_t kind = 0; kind < lattice_.n_kinds(); ++kind)
-      retraction_stretch_.push_back(retraction->fraction * (deformation * lattice_.bond_vector(kind)).norm() /
+      retraction_stretch_.push_back(toughening.retraction * (deformation * lattice_.bond_vector(kind)).norm() /
                                     lattice_.rest_length(kind));
-  }
 }
 
 void Fracture::configure(State &state, Forces &forces) const
@@ -51,7 +44,7 @@ void Fracture::set_lookahead(double duration)
 double Fracture::limit(const State &state, const Bond &bond, double rate) const
 {
   const auto [near, kind, far] = bond;
-  return rule_->limit({lattice_.shell(kind), state.bonds.toughened(near, kind) ? toughening_factor_ : 1.,
+  return rule_->limit({lattice_.shell(kind), state.bonds.toughened(near, kind) ? toughening_.factor : 1.,
                        state.strength.of(near, kind), state.stiffness.of(near, kind), rate});
 }
 
@@ -75,30 +68,26 @@ Fracture::Event Fracture::event(const State &state, const Bond &bond, const Fiel
                formulas::squared_length(shortest, l), formulas::squared_length(longest, l));
 }
 
-// Message between ranks about a broken bond.
-struct Fracture::Loss
+BrokenBond Fracture::broken(const State &state, const Bond &bond) const
 {
-  Bond bond;
-  double stretch, energy;
-};
-
-Fracture::Loss Fracture::loss(const State &state, const Bond &bond) const
-{
-  return {bond, stretch(state, lattice_, bond),
+  const Eigen::Vector2d midpoint = lattice_.reference(bond.near) + 0.5 * lattice_.bond_vector(bond);
+  return {bond,
+          state.time,
+          midpoint.x(),
+          midpoint.y(),
+          stretch(state, lattice_, bond),
           elastic_energy(state, lattice_, material_, bond) + memory_energy(state, lattice_, material_, bond)};
 }
 
 // Takes bonds out of the sheet. @return those of all ranks in the order of storage, if `own` ones are in it
-std::vector<BrokenBond> Fracture::lose_bonds(State &state, const std::vector<Loss> &own, int *number) const
+std::vector<BrokenBond> Fracture::lose_bonds(State &state, const std::vector<BrokenBond> &own, int *number) const
 {
-  std::vector<BrokenBond> lost;
-  for (const auto &[bond, stretch, energy] : band_.all_gather(own, number))
+  std::vector<BrokenBond> lost = band_.all_gather(own, number);
+  for (const BrokenBond &bond : lost)
   {
     state.bonds.remove(bond.near, bond.kind);
     ++state.lost_bonds[bond.near];
     ++state.lost_bonds[bond.far];
-    lost.push_back(
-      {bond, state.time, lattice_.reference(bond.near) + 0.5 * lattice_.bond_vector(bond), stretch, energy});
   }
   return lost;
 }
@@ -108,10 +97,10 @@ double Fracture::remove_bonds(State &state, std::vector<std::pair<std::size_t, s
   // Two removed sites may have a bond in common.
   std::sort(bonds.begin(), bonds.end());
   bonds.erase(std::unique(bonds.begin(), bonds.end()), bonds.end());
-  std::vector<Loss> own;
+  std::vector<BrokenBond> own;
   for (const auto &[place, kind] : bonds)
     if (band_.owns(place) && state.bonds.present(place, kind))
-      own.push_back(loss(state, lattice_.bond(place, kind)));
+      own.push_back(broken(state, lattice_.bond(place, kind)));
   double removed_energy = 0.;
   for (const BrokenBond &bond : lose_bonds(state, own, nullptr))
     removed_energy += bond.energy;
@@ -143,7 +132,7 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
   if (state.breaking_stretch != breaking_stretch_ || state.toughened_stretch != toughened_stretch_ ||
       state.strength.empty() != material_.disorder.strength.is_none())
     throw std::logic_error("the breaking stretches of a state are set by configure() before bonds break");
-  std::vector<std::vector<Loss>> of_rows(lattice_.rows());
+  std::vector<std::vector<BrokenBond>> of_rows(lattice_.rows());
   const auto find = [&](std::size_t row)
   {
     if (!(lookahead_ > 0. ? forces.row_has_events_ahead(state, row, lookahead_) : forces.row_sums(row).has_events))
@@ -153,7 +142,7 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
                   {
                     const Event now = event(state, bond, evaluated_vx, evaluated_vy);
                     if (now == Event::broken)
-                      of_rows[row].push_back(loss(state, bond));
+                      of_rows[row].push_back(broken(state, bond));
                     else if (now == Event::retracted)
                       state.bonds.toughen(bond.near, bond.kind);
                   });
@@ -163,30 +152,31 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
   else // rows are flagged already: not worth waking threads
     for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
       find(row);
-  std::vector<Loss> own;
-  for (const std::vector<Loss> &of_row : of_rows)
+  std::vector<BrokenBond> own;
+  for (const std::vector<BrokenBond> &of_row : of_rows)
     own.insert(own.end(), of_row.begin(), of_row.end());
   broken_ = lose_bonds(state, own, number);
   for (const BrokenBond &bond : broken_)
     forces.remove_bond(state, evaluated_vx, evaluated_vy, bond);
 
-  const std::optional<std::size_t> previous_tip = tip_.place;
-  tip_.begin_step();
+  const std::optional<std::size_t> previous_tip = tip_;
+  if (tip_)
+    tip_Y_before_ = lattice_.reference(*tip_).y();
   for (const BrokenBond &bond : broken_)
   {
     consider_tip(state, bond.near);
     consider_tip(state, bond.far);
   }
-  if (tip_.place != previous_tip)
+  if (tip_ != previous_tip)
     toughen_behind_tip(state);
   return broken_;
 }
 
 void Fracture::locate_tip(State &state)
 {
-  for (std::size_t row = 0; row < lattice_.rows(); ++row)
-    for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
-      consider_tip(state, lattice_.index(row, column));
+  for (std::size_t place = 0; place < lattice_.n_places(); ++place)
+    if (lattice_.is_site(place))
+      consider_tip(state, place);
   toughened_to_ = -std::numeric_limits<double>::infinity();
   toughen_behind_tip(state);
 }
@@ -196,15 +186,16 @@ void Fracture::consider_tip(const State &state, std::size_t place)
   if (state.lost_bonds[place] < (material_.coordination(lattice_, place) + 3) / 4 || state.held[place] != 0 ||
       state.removed[place] != 0)
     return;
-  tip_.consider(place, lattice_.reference(place));
+  const auto to_tip = [&](const Eigen::Vector2d &X) { return std::pair(-X.x(), std::abs(X.y() - tip_Y_before_)); };
+  if (!tip_ || to_tip(lattice_.reference(place)) < to_tip(lattice_.reference(*tip_)))
+    tip_ = place;
 }
 
 void Fracture::toughen_behind_tip(State &state)
 {
-  const auto *behind = std::get_if<BehindTipToughening>(&toughening_);
-  if (behind == nullptr || !tip_.place)
+  if (std::isinf(toughening_.distance) || !tip_)
     return;
-  const double boundary = tip_.X.x() - behind->distance;
+  const double boundary = lattice_.reference(*tip_).x() - toughening_.distance;
   // The tip never retreats: bonds behind the last boundary are toughened already.
   double reach = 0.; // of midpoints from near ends on the grid, along X
   for (std::size_t kind = 0; kind < lattice_.n_kinds(); ++kind)
@@ -212,15 +203,12 @@ void Fracture::toughen_behind_tip(State &state)
   reach += lattice_.scatter() * lattice_.spacing();
   constexpr double endless = std::numeric_limits<double>::infinity();
   const auto [rows, columns] = lattice_.window({toughened_to_ - reach, -endless}, {boundary + reach, endless});
-  for (std::size_t row = std::max(rows.begin, band_.rows().begin); row < std::min(rows.end, band_.rows().end); ++row)
-    for (std::size_t column = columns.begin; column < std::min(columns.end, lattice_.sites_in_row(row)); ++column)
-    {
-      const std::size_t place = lattice_.index(row, column);
-      for (std::size_t kind = 0; kind < state.bonds.n_kinds(); ++kind)
-        if (state.bonds.present(place, kind) &&
-            lattice_.reference(place).x() + 0.5 * lattice_.bond_vector(lattice_.bond(place, kind)).x() < boundary)
-          state.bonds.toughen(place, kind);
-    }
+  const Rows own{std::max(rows.begin, band_.rows().begin), std::min(rows.end, band_.rows().end)};
+  for (const std::size_t place : lattice_.sites(own, columns))
+    for (std::size_t kind = 0; kind < state.bonds.n_kinds(); ++kind)
+      if (state.bonds.present(place, kind) &&
+          lattice_.reference(place).x() + 0.5 * lattice_.bond_vector(lattice_.bond(place, kind)).x() < boundary)
+        state.bonds.toughen(place, kind);
   toughened_to_ = boundary;
 }
 

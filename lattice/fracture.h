@@ -1,11 +1,9 @@
 #pragma once
 
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "lattice/bonds/require.h"
@@ -15,38 +13,25 @@
 namespace latcon::lattice
 {
 
-/// Bonds that the caller toughened in advance (BondStates::toughen) have lam_f multiplied by `factor`; no others
-/// toughen.
-struct GivenToughening
+/// How bonds toughen behind the crack, by default not at all: their limits are multiplied by `factor`, for good. Bonds
+/// that the caller toughened in advance (BondStates::toughen) have it too.
+struct Toughening
 {
   double factor = 1.; ///< [-], >= 1; infinity: these bonds never break
+  /// Bonds toughen that contract below this fraction of their stretch in the loaded, unbroken sheet [-], in [0, 1), 0:
+  /// none (Marder 2005: the material toughens where it retracts).
+  double retraction = 0.;
+  /// delta [m], >= 0: bonds toughen whose reference midpoint lies at X < X_tip - delta; infinity: none
+  double distance = std::numeric_limits<double>::infinity();
 };
-
-/// Bonds whose reference midpoint lies at X < X_tip - distance have lam_f multiplied by `factor`, for good.
-struct BehindTipToughening
-{
-  double distance; ///< delta [m], >= 0
-  double factor;   ///< [-], >= 1
-};
-
-/// Bonds that contract below `fraction` of their stretch in the loaded, unbroken sheet have lam_f multiplied by
-/// `factor`, for good (Marder 2005: the material toughens where it retracts).
-struct RetractionToughening
-{
-  double fraction; ///< [-], in (0, 1)
-  double factor;   ///< [-], >= 1
-};
-
-/// Rules by which bonds toughen behind the crack; by default none does.
-using Toughening = std::variant<GivenToughening, BehindTipToughening, RetractionToughening>;
 
 /// A bond that broke.
 struct BrokenBond : Bond
 {
-  double time;              ///< [s]
-  Eigen::Vector2d midpoint; ///< reference [m]
-  double stretch;           ///< at breaking [-]
-  double energy;            ///< elastic energy it held, per sheet thickness [J/m]
+  double time;    ///< [s]
+  double X, Y;    ///< reference midpoint [m]
+  double stretch; ///< at breaking [-]
+  double energy;  ///< elastic energy it held, per sheet thickness [J/m]
 
   template <class Archive>
   void archive(Archive &archive)
@@ -55,7 +40,8 @@ struct BrokenBond : Bond
     archive("near", near);
     archive("far", far);
     archive("kind", kind);
-    archive("midpoint", midpoint);
+    archive("X", X);
+    archive("Y", Y);
     archive("stretch", stretch);
     archive("energy", energy);
   }
@@ -66,28 +52,6 @@ struct StretchedBond : Bond
 {
   double stretch; ///< [-]
   double limit;   ///< stretch beyond which it breaks [-]
-};
-
-/// The tip of a crack: the right-most of the sites that are considered, so that it never retreats. Among sites at the
-/// same X it is the one nearest the tip before the step, then the one considered first.
-struct CrackTip
-{
-  std::optional<std::size_t> place; ///< none before a site was considered
-  Eigen::Vector2d X{0., 0.};        ///< its reference position [m]
-  double Y_before = 0.;             ///< reference Y of the tip before this step [m]
-
-  void begin_step()
-  {
-    if (place)
-      Y_before = X.y();
-  }
-  void consider(std::size_t site, const Eigen::Vector2d &at)
-  {
-    if (place && (at.x() < X.x() || (at.x() == X.x() && !(std::abs(at.y() - Y_before) < std::abs(X.y() - Y_before)))))
-      return;
-    place = site;
-    X = at;
-  }
 };
 
 /// Permanent breaking by a rule, toughening, and the crack tip (theory.md, section "Fracture").
@@ -123,7 +87,7 @@ public:
   /// A stretch that no bond exceeds for longer than a step [-].
   double largest_limit() const
   {
-    return rule_->largest_limit(toughening_factor_) * material_.disorder.strength.largest();
+    return rule_->largest_limit(toughening_.factor) * material_.disorder.strength.largest();
   }
 
   /// Makes a bond break, or toughen, in the evaluation after which it will reach its limit within `duration` [s], >= 0,
@@ -154,7 +118,7 @@ public:
   void locate_tip(State &state);
 
   /// Place of the tip; none before anything was cut or broken.
-  std::optional<std::size_t> tip() const { return tip_.place; }
+  std::optional<std::size_t> tip() const { return tip_; }
 
   /// The bond present whose stretch over its limit at rest is largest, the one stored first of several: why a crack
   /// stopped. None in a sheet without bonds. @param state of the whole sheet
@@ -165,17 +129,16 @@ public:
   template <class Archive>
   void archive(Archive &archive)
   {
-    archive("tip", tip_.place);
-    archive("tip_x", tip_.X.x());
-    archive("tip_y", tip_.Y_before);
+    archive("tip", tip_);
+    const double at = tip_ ? lattice_.reference(*tip_).x() : 0.;
+    double x = at;
+    archive("tip_x", x);
+    archive("tip_y", tip_Y_before_);
     if constexpr (Archive::loads)
     {
       toughened_to_ = -std::numeric_limits<double>::infinity();
-      const std::size_t place = tip_.place.value_or(lattice_.index(0, 0));
-      const bool is_site = place < lattice_.n_places() && lattice_.is_site(place);
-      require(is_site && (!tip_.place || tip_.X.x() == lattice_.reference(place).x()),
+      require(x == at && (!tip_ || (*tip_ < lattice_.n_places() && lattice_.is_site(*tip_))),
               "`tip` is no site of the sheet, or `tip_x` not where it is");
-      tip_.X.y() = lattice_.reference(place).y();
     }
   }
 
@@ -188,9 +151,8 @@ private:
   };
   Event event(const State &state, const Bond &bond, const Field &vx, const Field &vy) const;
   double limit(const State &state, const Bond &bond, double rate) const;
-  struct Loss;
-  Loss loss(const State &state, const Bond &bond) const;
-  std::vector<BrokenBond> lose_bonds(State &state, const std::vector<Loss> &own, int *number) const;
+  BrokenBond broken(const State &state, const Bond &bond) const;
+  std::vector<BrokenBond> lose_bonds(State &state, const std::vector<BrokenBond> &own, int *number) const;
   void consider_tip(const State &state, std::size_t place);
   void toughen_behind_tip(State &state);
 
@@ -199,11 +161,11 @@ private:
   Material material_;
   std::shared_ptr<const BreakingRule> rule_;
   Toughening toughening_;
-  double toughening_factor_;
   double breaking_stretch_, toughened_stretch_; // smallest limits
   std::vector<double> retraction_stretch_;      // by kind; none: not watched
   double lookahead_ = 0.;                       // [s]
-  CrackTip tip_;
+  std::optional<std::size_t> tip_;              // its place; none before a site was considered
+  double tip_Y_before_ = 0.;                    // reference Y of the tip before this step [m]
   double toughened_to_ = -std::numeric_limits<double>::infinity(); // X [m] behind which all bonds are toughened
   std::vector<BrokenBond> broken_;
 };

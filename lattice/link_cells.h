@@ -6,8 +6,9 @@
 #include <limits>
 #include <stdexcept>
 #include <unordered_map>
-#include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace latcon::lattice
 {
@@ -18,6 +19,12 @@ namespace latcon::lattice
 class LinkCells
 {
 public:
+  struct Point
+  {
+    std::size_t id;
+    Eigen::Vector2d position; ///< [m]
+  };
+
   /// @param reach distance up to which neighbours are wanted [m], > 0 @throws std::invalid_argument
   explicit LinkCells(double reach) : inverse_size_(1. / (room * reach))
   {
@@ -26,45 +33,36 @@ public:
   }
 
   /// Removes all points.
-  void clear()
-  {
-    points_.clear();
-    cell_of_.clear();
-  }
+  void clear() { points_.clear(); }
 
-  /// Puts the point `id` at (x, y) [m], wherever it was before. A point whose position is not finite is near nothing.
-  /// @param id small number, to which memory grows
-  void put(std::size_t id, double x, double y)
+  /// Moves the point `id` [m]. A point whose position is not finite is near nothing, as one that was never put
+  /// anywhere.
+  void move(std::size_t id, const Eigen::Vector2d &from, const Eigen::Vector2d &to)
   {
-    if (id >= cell_of_.size())
-      cell_of_.resize(id + 1, nowhere);
-    const Cell from = std::exchange(cell_of_[id], cell(x, y)), to = cell_of_[id];
-    if (from == to) // as for most that have moved
-      return;
-    if (from != nowhere)
+    const Cell left = cell(from), reached = cell(to);
+    if (left != nowhere)
     {
-      const auto others = points_.find(from);
-      others->second.erase(std::find(others->second.begin(), others->second.end(), id));
-      if (others->second.empty())
-        points_.erase(others);
+      std::vector<Point> &others = points_[left];
+      others.erase(std::find_if(others.begin(), others.end(), [id](const Point &point) { return point.id == id; }));
+      if (others.empty() && left != reached)
+        points_.erase(left);
     }
-    if (to != nowhere)
-      points_[to].push_back(id);
+    if (reached != nowhere)
+      points_[reached].push_back({id, to});
   }
 
-  /// Calls visit(id) once for every point that is at `reach` or less from (x, y), and for some that are farther: all in
-  /// the cell of (x, y) and the eight around it. A point at (x, y) itself is among them.
+  /// Calls visit(point) once for every point that is at `reach` or less from a position, and for some that are farther:
+  /// all in the cell of the position and the eight around it. A point at the position itself is among them.
   template <class Visitor>
-  void for_each_near(double x, double y, Visitor &&visit) const
+  void for_each_near(const Eigen::Vector2d &position, Visitor &&visit) const
   {
-    const Cell here = cell(x, y);
+    const Cell here = cell(position);
     if (here == nowhere)
       return;
     for (const Cell column : {here - next_column, here, here + next_column})
       for (const Cell near : {column - 1, column, column + 1})
         if (const auto points = points_.find(near); points != points_.end())
-          for (const std::size_t id : points->second)
-            visit(id);
+          std::for_each(points->second.begin(), points->second.end(), visit);
   }
 
 private:
@@ -77,17 +75,16 @@ private:
   /// Beyond this many cells from the origin rounding would eat the room, and nothing of a sheet is there.
   static constexpr double farthest_cell = 1e9;
 
-  Cell cell(double x, double y) const
+  Cell cell(const Eigen::Vector2d &position) const
   {
-    const double column = std::floor(x * inverse_size_), row = std::floor(y * inverse_size_);
+    const double column = std::floor(position.x() * inverse_size_), row = std::floor(position.y() * inverse_size_);
     if (!(std::abs(column) < farthest_cell && std::abs(row) < farthest_cell))
       return nowhere;
     return static_cast<Cell>(column) * next_column + static_cast<Cell>(row);
   }
 
   double inverse_size_;
-  std::unordered_map<Cell, std::vector<std::size_t>> points_; // of each cell that has one
-  std::vector<Cell> cell_of_;                                 // by id
+  std::unordered_map<Cell, std::vector<Point>> points_; // of each cell that has one
 };
 
 } // namespace latcon::lattice

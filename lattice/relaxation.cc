@@ -52,8 +52,8 @@ Sums over_free_sites(const State &state, const TriangularLattice &lattice, const
 
 } // namespace
 
-Relaxation relax(State &state, const TriangularLattice &lattice, const Material &material, double tolerance,
-                 std::size_t max_iterations)
+double relax(State &state, const TriangularLattice &lattice, const Material &material, double tolerance,
+             std::size_t max_iterations)
 {
   // Constants of the cited paper.
   constexpr double initial_mixing = 0.1, mixing_decay = 0.99, speed_up = 1.1, slow_down = 0.5;
@@ -88,7 +88,7 @@ Relaxation relax(State &state, const TriangularLattice &lattice, const Material 
     {
       std::fill(state.vx.begin(), state.vx.end(), 0.);
       std::fill(state.vy.begin(), state.vy.end(), 0.);
-      return {iteration, residual};
+      return residual;
     }
     if (!std::isfinite(residual))
       break;

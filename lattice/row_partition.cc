@@ -5,32 +5,31 @@
 
 namespace latcon::lattice
 {
-namespace
-{
-
-// Tag of messages between two ranks, which arrive in the order in which they are sent.
-constexpr int tag = 0;
-
-} // namespace
-
-RowPartition::RowPartition(const TriangularLattice &lattice)
-  : lattice_(&lattice), communicator_(MPI_COMM_NULL), rank_(0), first_rows_{0, lattice.rows()},
-    is_relevant_(lattice.n_places() / lattice.stride(), 1)
-{
-}
 
 RowPartition::RowPartition(const TriangularLattice &lattice, MPI_Comm communicator)
-  : lattice_(&lattice), communicator_(communicator), rank_(0), is_relevant_(lattice.n_places() / lattice.stride(), 0)
+  : lattice_(&lattice), communicator_(communicator), is_relevant_(lattice.rows(), 0)
 {
   int rank = 0, n_ranks = 1;
-  MPI_Comm_rank(communicator, &rank);
-  MPI_Comm_size(communicator, &n_ranks);
+  if (communicator != MPI_COMM_NULL)
+  {
+    MPI_Comm_rank(communicator, &rank);
+    MPI_Comm_size(communicator, &n_ranks);
+  }
   rank_ = static_cast<std::size_t>(rank);
   const auto n = static_cast<std::size_t>(n_ranks);
   for (std::size_t i = 0; i <= n; ++i)
     first_rows_.push_back(lattice.rows() * i / n);
   for (const std::size_t row : known_rows())
-    is_relevant_[padded_row(lattice.index(row, 0))] = 1;
+    is_relevant_[row] = 1;
+}
+
+std::vector<std::size_t> RowPartition::known_sites() const
+{
+  std::vector<std::size_t> sites;
+  for (const std::size_t row : known_rows())
+    for (std::size_t column = 0; column < lattice_->sites_in_row(row); ++column)
+      sites.push_back(lattice_->index(row, column));
+  return sites;
 }
 
 std::vector<std::size_t> RowPartition::rows_around(std::size_t rank, std::size_t above) const
@@ -70,17 +69,12 @@ SitesOfRanks RowPartition::halo_sites(bool own) const
   return sites;
 }
 
-bool RowPartition::is_relevant_to(std::size_t rank, std::size_t place) const
-{
-  const std::size_t begin = first_rows_[rank], end = first_rows_[rank + 1], row = lattice_->row_of(place);
-  return begin < end && row + lattice_->reach() >= begin && row < end + lattice_->reach();
-}
-
 void RowPartition::exchange(const SitesOfRanks &sent, const SitesOfRanks &received,
                             const std::vector<Field *> &fields) const
 {
   if (!is_shared())
     return;
+  constexpr int tag = 0; // messages between two ranks arrive in the order in which they are sent
   std::vector<MPI_Request> requests;
   std::vector<std::vector<double>> in(received.size()), out(sent.size());
   for (std::size_t rank = 0; rank < received.size(); ++rank)

@@ -35,18 +35,18 @@ using SitesOfRanks = std::vector<std::vector<std::size_t>>;
 class RowPartition
 {
 public:
-  /// All rows. The lattice must outlive this object.
-  RowPartition(const TriangularLattice &lattice); // NOLINT(google-explicit-constructor)
-
-  /// The share of the calling process in `communicator`. Bands differ by one row at most.
-  RowPartition(const TriangularLattice &lattice, MPI_Comm communicator);
+  /// @param lattice must outlive this object
+  /// @param communicator of which the calling process has a share; bands differ by one row at most. Null: all rows
+  RowPartition(const TriangularLattice &lattice, // NOLINT(google-explicit-constructor)
+               MPI_Comm communicator = MPI_COMM_NULL);
 
   const TriangularLattice &lattice() const { return *lattice_; }
   Rows rows() const { return {first_rows_[rank_], first_rows_[rank_ + 1]}; } ///< that this rank moves
   bool owns(std::size_t place) const; ///< whether a place, margin included, is in one of its rows
-  bool is_relevant(std::size_t place) const { return is_relevant_[padded_row(place)] != 0; } ///< or in its halo
-  /// Returns whether a site of a sheet that is not periodic is in a row of a rank or in its halo.
-  bool is_relevant_to(std::size_t rank, std::size_t place) const;
+  /// Returns whether a place in a row of the sheet is in its rows or in its halo.
+  bool is_relevant(std::size_t place) const { return is_relevant_[lattice_->row_of(place)] != 0; }
+  /// Places of the sites in own rows and halo, row by row.
+  std::vector<std::size_t> known_sites() const;
   /// Own rows and halo, by increasing number.
   std::vector<std::size_t> known_rows() const { return rows_around(rank_, lattice_->reach()); }
   /// Own rows and those below from which bonds reach into them, by increasing number.
@@ -95,7 +95,7 @@ private:
   MPI_Comm communicator_;
   std::size_t rank_;
   std::vector<std::size_t> first_rows_;   // of each rank, and the number of rows
-  std::vector<std::uint8_t> is_relevant_; // by row with margin
+  std::vector<std::uint8_t> is_relevant_; // by row
 };
 
 template <class T>

@@ -1,14 +1,12 @@
 #include "lattice/scatter.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include <Eigen/SparseCore>
 
-#include "lattice/disorder.h"
 #include "lattice/triangular_lattice.h"
 
 namespace latcon::lattice
@@ -87,62 +85,34 @@ void maximise_entropy(const Exponents &J, Eigen::VectorXd &weights)
 
 } // namespace
 
-Eigen::Vector2d Scatter::displacement(std::ptrdiff_t row, std::ptrdiff_t column) const
-{
-  const std::uint64_t point = static_cast<std::uint64_t>(row) << 32u | static_cast<std::uint32_t>(column),
-                      key = splitmix64(splitmix64(splitmix64(seed) + 3) + point);
-  return amplitude * Eigen::Vector2d(symmetric_uniform(splitmix64(key)), symmetric_uniform(splitmix64(key + 1)));
-}
-
-std::vector<HalfBond> scattered_stencil(const Grid &grid, const std::vector<Ring> &rings, const Scatter &scatter)
-{
-  const double h = grid.spacing, width = (1. + std::sqrt(8.) * scatter.amplitude) * h;
-  std::vector<HalfBond> stencil;
-  for (const Ring &ring : rings)
-  {
-    const int rows = static_cast<int>(std::ceil(1.2 * (ring.radius + width) / h)), columns = 2 * rows;
-    for (int row = 0; row <= rows; ++row)
-      for (int column = columns; column >= (row == 0 ? 1 : -columns); --column)
-        if (const Eigen::Vector2d R = grid.vector(column, row); std::abs(R.norm() - ring.radius) < width)
-          stencil.push_back({column, row, R, R.norm(), 1., ring.shell, ring.radius});
-  }
-  return stencil;
-}
-
 ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
   : weights(lattice.n_kinds(), std::vector<double>(lattice.n_places())), length_ratios(weights),
     bounding_weights(lattice.n_kinds()), shortest(std::numeric_limits<double>::infinity())
 {
   const double h = lattice.spacing();
-  std::vector<std::ptrdiff_t> number(lattice.n_places(), -1);
+  std::vector<std::ptrdiff_t> number(lattice.n_places(), -1); // of points; negative: beyond an edge
   std::vector<Eigen::Vector2d> points(lattice.n_places());
-  std::ptrdiff_t n = 0;
+  const auto n = static_cast<std::ptrdiff_t>(lattice.n_sites());
   for (std::size_t place = 0; place < lattice.n_places(); ++place)
   {
     points[place] = lattice.reference(place);
-    if (lattice.is_site(place))
-      number[place] = n++;
+    if (lattice.is_occupied(place))
+      number[place] = static_cast<std::ptrdiff_t>(lattice.site_number(lattice.canonical_place(place)));
   }
-  for (const TriangularLattice::Image &image : lattice.images())
-    number[image.place] = number[image.site];
 
   for (std::size_t first = 0, end = 0; first < lattice.n_kinds(); first = end)
   {
     const double radius = lattice.ring_radius(first);
     while (end < lattice.n_kinds() && lattice.ring_radius(end) == radius && lattice.shell(end) == lattice.shell(first))
       ++end;
-    struct Link
-    {
-      std::size_t place, kind;
-      std::array<std::ptrdiff_t, 2> ends; // numbers of the points; negative: beyond an edge
-    };
-    std::vector<Link> links;
+    std::vector<Bond> links;
     std::vector<double> tents;
     std::vector<Eigen::Triplet<double, std::ptrdiff_t>> exponents;
     for (std::size_t place = 0; place < lattice.n_places(); ++place)
       for (std::size_t kind = first; kind < end; ++kind)
       {
-        const std::size_t far = lattice.bond(place, kind).far;
+        const Bond link = lattice.bond(place, kind);
+        const std::size_t far = link.far;
         if (far >= lattice.n_places() || (number[place] < 0 && number[far] < 0) ||
             (!lattice.images().empty() && !lattice.is_site(place)))
           continue;
@@ -156,10 +126,11 @@ ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
           exponents.emplace_back(row, column, factor * std::cos(order * angle));
           exponents.emplace_back(row, column + 1, factor * std::sin(order * angle));
         };
-        links.push_back({place, kind, {number[place], number[far]}});
+        links.push_back(link);
         tents.push_back(weight);
-        for (const double sense : {1., -1.}) // odd harmonics are opposite at the far end
-          if (const std::ptrdiff_t point = links.back().ends[sense > 0. ? 0 : 1]; point >= 0)
+        // Odd harmonics are opposite at the far end.
+        for (const auto &[point, sense] : {std::pair(number[place], 1.), std::pair(number[far], -1.)})
+          if (point >= 0)
           {
             exponents.emplace_back(row, n_of_point * point, 1.);
             for (const int order : {1, 3})
@@ -178,10 +149,10 @@ ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
     std::vector<double> crowding(static_cast<std::size_t>(n), 0.);
     for (std::size_t i = 0; i < links.size(); ++i)
     {
-      const auto &[place, kind, ends] = links[i];
+      const auto &[place, kind, far] = links[i];
       const double weight = weights[kind][place] = of_links[static_cast<Eigen::Index>(i)];
       const double length = lattice.rest_length(kind) / length_ratios[kind][place];
-      for (const std::ptrdiff_t point : ends)
+      for (const std::ptrdiff_t point : {number[place], number[far]})
         if (point >= 0)
         {
           crowding[static_cast<std::size_t>(point)] += 0.5 * weight / (length * length);

@@ -1,29 +1,11 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <vector>
-
-#include "lattice/stencil.h"
 
 namespace latcon::lattice
 {
 
 class TriangularLattice;
-
-/// Random displacements of the points of a grid, independent of each other and of the number of points.
-struct Scatter
-{
-  double amplitude = 0.;  ///< largest displacement along x and along y, over the spacing [-], 0 to 0.5; 0: none
-  std::uint64_t seed = 0; ///< of the displacements, which are uniform in the square
-
-  /// Displacement of a point over the spacing [-].
-  Eigen::Vector2d displacement(std::ptrdiff_t row, std::ptrdiff_t column) const;
-};
-
-/// Half-bonds of all the pairs of points that a ring can join if the points are scattered. Their weights are those of a
-/// sheet's construction; see ScatteredBonds.
-std::vector<HalfBond> scattered_stencil(const Grid &grid, const std::vector<Ring> &rings, const Scatter &scatter);
 
 /// Bonds of rings between scattered points (theory-comparison.md, eqs. (H.29) and (H.30)).
 ///

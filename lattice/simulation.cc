@@ -196,17 +196,15 @@ void Simulation::cut_bonds(const std::vector<std::pair<std::size_t, std::size_t>
 void Simulation::set_velocities(const Field &vx, const Field &vy)
 {
   const double before = kinetic_energy(state_, band_);
-  for (const std::size_t row : band_.known_rows())
-    for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
-    {
-      const std::size_t place = lattice_.index(row, column);
-      if (!(state_.inverse_mass[place] > 0.))
-        continue;
-      if ((state_.rollers[place] & 1) == 0)
-        state_.vx[place] = vx[place];
-      if ((state_.rollers[place] & 2) == 0)
-        state_.vy[place] = vy[place];
-    }
+  for (const std::size_t place : band_.known_sites())
+  {
+    if (!(state_.inverse_mass[place] > 0.))
+      continue;
+    if ((state_.rollers[place] & 1) == 0)
+      state_.vx[place] = vx[place];
+    if ((state_.rollers[place] & 2) == 0)
+      state_.vy[place] = vy[place];
+  }
   initial_energy_ += kinetic_energy(state_, band_) - before;
   reinitialize_forces();
 }
@@ -329,14 +327,13 @@ void Simulation::check_loaded(const BondStates &before, double energy) const
           "`parts` of a step are no power of two up to " + std::to_string(most_parts));
   // It was computed from the same input: only another compiler may have rounded otherwise.
   require(std::abs(initial_energy_ - energy) <= 1e-9 * std::abs(energy), "`initial_energy` is not that of the case");
-  for (std::size_t place = 0; place < lattice_.n_places(); ++place)
-  {
+  for (const std::size_t place : band_.known_sites())
     for (std::size_t kind = 0; kind < before.n_kinds(); ++kind)
       require(before.present(place, kind) ||
                 (!state_.bonds.present(place, kind) && !state_.bonds.toughened(place, kind)),
               "`bonds` has some that the sheet never had");
-    require(state_.lost_bonds[place] <= material_.coordination(lattice_), "`lost_bonds` are more than a site has");
-  }
+  for (const std::uint8_t lost : state_.lost_bonds)
+    require(lost <= material_.coordination(lattice_), "`lost_bonds` are more than a site has");
 }
 
 EnergyBalance Simulation::energies() const

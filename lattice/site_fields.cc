@@ -64,9 +64,8 @@ std::vector<SiteValues> site_fields(const State &state, const TriangularLattice 
 {
   std::vector<SiteValues> fields(lattice.n_places());
   const SiteEvaluator evaluator(lattice, material);
-  for (std::size_t row = 0; row < lattice.rows(); ++row)
-    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
-      fields[lattice.index(row, column)] = evaluator.at(state, lattice.index(row, column));
+  for (const std::size_t place : lattice.sites())
+    fields[place] = evaluator.at(state, place);
   return fields;
 }
 

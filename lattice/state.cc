@@ -1,42 +1,12 @@
 #include "lattice/state.h"
 
 #include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
 
 namespace latcon::lattice
 {
-namespace
-{
-
-// Returns whether a bond of a site, in either sense, would end beyond one of the edges held by `edges`.
-bool reaches_beyond(const TriangularLattice &lattice, const Material &material, std::size_t place, const Edges &edges)
-{
-  const Eigen::Vector2d X = lattice.grid_point(place);
-  const double margin = 0.1 * lattice.spacing(); // sites are either on the sheet or half a spacing off
-  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
-    if (material.shell(lattice, kind) != nullptr)
-      for (const double sense : {1., -1.})
-      {
-        if (!lattice.has_bond(sense > 0. ? place : lattice.bond_into(place, kind).near, kind))
-          continue;
-        const Eigen::Vector2d end = X + sense * lattice.bond_vector(kind);
-        if ((edges.left && !lattice.periodic().x && end.x() < -margin) ||
-            (edges.right && !lattice.periodic().x && end.x() > lattice.length() + margin) ||
-            (edges.bottom && !lattice.periodic().y && end.y() < -0.5 * lattice.height() - margin) ||
-            (edges.top && !lattice.periodic().y && end.y() > 0.5 * lattice.height() + margin))
-          return true;
-      }
-  return false;
-}
-
-// Returns whether all bonds of a site end within the sheet, whatever its edges.
-bool is_interior(const TriangularLattice &lattice, std::size_t row, std::size_t column)
-{
-  const std::size_t rows = lattice.reach(), columns = lattice.column_reach();
-  return row >= rows && row + rows < lattice.rows() && column >= columns &&
-         column + columns < lattice.sites_in_row(row);
-}
-
-} // namespace
 
 BondFactors bond_factors(const RowPartition &band, const Material &material, BondProperty property)
 {
@@ -51,8 +21,9 @@ BondFactors bond_factors(const RowPartition &band, const Material &material, Bon
   // Further shells of the lattice do not change the factors of others.
   const std::uint64_t most_kinds = lattice.is_triangular() ? 16 : TriangularLattice::most_kinds;
   // Sites are numbered with two places between rows, whatever the storage.
-  const auto number = [&](std::size_t row, std::size_t column) { return row * (lattice.columns() + 2) + column; };
-  const std::vector<std::size_t> rows = band.known_rows();
+  const auto number = [&](std::size_t place)
+  { return lattice.row_of(place) * (lattice.columns() + 2) + lattice.column_of(place); };
+  const std::vector<std::size_t> sites = band.known_sites();
   factors.kinds.resize(lattice.n_kinds());
   for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
   {
@@ -60,14 +31,12 @@ BondFactors bond_factors(const RowPartition &band, const Material &material, Bon
       continue;
     Field &of_kind = factors.kinds[kind];
     of_kind = Field(lattice.n_places());
-    for (const std::size_t row : rows)
-      for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
-      {
-        const std::size_t place = lattice.index(row, column);
-        of_kind[place] = distribution.factor(stream + most_kinds * number(row, column) + kind);
-        if (scattered != nullptr)
-          of_kind[place] *= scattered->weights[kind][place] / scattered->bounding_weights[kind];
-      }
+    for (const std::size_t place : sites)
+    {
+      of_kind[place] = distribution.factor(stream + most_kinds * number(place) + kind);
+      if (scattered != nullptr)
+        of_kind[place] *= scattered->weights[kind][place] / scattered->bounding_weights[kind];
+    }
   }
   return factors;
 }
@@ -88,12 +57,28 @@ void update_images(State &state, const RowPartition &band)
 
 std::vector<std::size_t> sites_at(const TriangularLattice &lattice, const Material &material, const Edges &edges)
 {
+  // Sites are either on the sheet or half a spacing off.
+  const double margin = 0.1 * lattice.spacing(), endless = std::numeric_limits<double>::infinity();
+  const auto [periodic_x, periodic_y] = lattice.periodic();
+  const double right = lattice.length(), top = 0.5 * lattice.height();
+  const Eigen::AlignedBox2d sheet(Eigen::Vector2d(edges.left && !periodic_x ? -margin : -endless,
+                                                  edges.bottom && !periodic_y ? -top - margin : -endless),
+                                  Eigen::Vector2d(edges.right && !periodic_x ? right + margin : endless,
+                                                  edges.top && !periodic_y ? top + margin : endless));
+  const auto reaches_beyond = [&](std::size_t place)
+  {
+    const Eigen::Vector2d X = lattice.grid_point(place);
+    for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+      if (const Eigen::Vector2d R = lattice.bond_vector(kind); material.shell(lattice, kind) != nullptr)
+        if ((!sheet.contains(X + R) && lattice.has_bond(place, kind)) ||
+            (!sheet.contains(X - R) && lattice.has_bond(lattice.bond_into(place, kind).near, kind)))
+          return true;
+    return false;
+  };
   std::vector<std::size_t> sites;
-  for (std::size_t row = 0; row < lattice.rows(); ++row)
-    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
-      if (const std::size_t place = lattice.index(row, column);
-          !is_interior(lattice, row, column) && reaches_beyond(lattice, material, place, edges))
-        sites.push_back(place);
+  for (std::size_t place = 0; place < lattice.n_places(); ++place) // without a list of all, which ranks may not hold
+    if (lattice.is_site(place) && reaches_beyond(place))
+      sites.push_back(place);
   return sites;
 }
 
@@ -109,18 +94,14 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
   state.bonds.clear(n, material.n_kinds(lattice));
 
   state.periods = F;
-  const std::size_t stride = lattice.stride(), below = lattice.index(0, 0) / stride;
-  for (std::size_t row = 0; row < n / stride; ++row)
+  for (std::size_t place = 0; place < n; ++place)
   {
-    const bool in_margin = row < below || row >= below + lattice.rows();
-    if (!in_margin && !band.is_relevant(row * stride))
+    const bool in_margin = lattice.row_of(place) >= lattice.rows();
+    if (!in_margin && !band.is_relevant(place))
       continue;
-    for (std::size_t place = row * stride; place < (row + 1) * stride; ++place)
-    {
-      const Eigen::Vector2d position = F * lattice.reference(place);
-      state.x[place] = position.x();
-      state.y[place] = position.y();
-    }
+    const Eigen::Vector2d position = F * lattice.reference(place);
+    state.x[place] = position.x();
+    state.y[place] = position.y();
   }
 
   state.stiffness = bond_factors(band, material, BondProperty::stiffness);
@@ -128,16 +109,14 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
   for (const std::size_t place : sites_at(lattice, material, edges))
     state.held[place] = 1;
   const double inverse_mass = 1. / site_mass(material, lattice);
-  for (const std::size_t row : band.known_rows())
-    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
-    {
-      const std::size_t place = lattice.index(row, column);
-      for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
-        if (material.shell(lattice, kind) != nullptr && lattice.has_bond(place, kind) &&
-            lattice.is_occupied(lattice.bond(place, kind).far))
-          state.bonds.add(place, kind);
-      state.inverse_mass[place] = state.held[place] != 0 ? 0. : inverse_mass;
-    }
+  for (const std::size_t place : band.known_sites())
+  {
+    for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+      if (material.shell(lattice, kind) != nullptr && lattice.has_bond(place, kind) &&
+          lattice.is_occupied(lattice.bond(place, kind).far))
+        state.bonds.add(place, kind);
+    state.inverse_mass[place] = state.held[place] != 0 ? 0. : inverse_mass;
+  }
   update_images(state, band);
   return state;
 }
@@ -147,19 +126,14 @@ void add_noise(State &state, const RowPartition &band, double amplitude, std::ui
   const TriangularLattice &lattice = band.lattice();
   const std::uint64_t stream = splitmix64(seed);
   // Sites are numbered with two places between rows and before them, whatever the storage.
-  const auto number = [&](std::size_t row, std::size_t column)
-  { return (row + 2) * (lattice.columns() + 4) + column + 2; };
-  for (const std::size_t row : band.known_rows())
-    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
-    {
-      const std::size_t place = lattice.index(row, column);
-      if (state.held[place] != 0)
-        continue;
-      if ((state.rollers[place] & 1) == 0)
-        state.x[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number(row, column)));
-      if ((state.rollers[place] & 2) == 0)
-        state.y[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number(row, column) + 1));
-    }
+  for (const std::size_t place : band.known_sites())
+  {
+    const std::size_t number = (lattice.row_of(place) + 2) * (lattice.columns() + 4) + lattice.column_of(place) + 2;
+    if (state.held[place] == 0 && (state.rollers[place] & 1) == 0)
+      state.x[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number));
+    if (state.held[place] == 0 && (state.rollers[place] & 2) == 0)
+      state.y[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number + 1));
+  }
   update_images(state, band);
 }
 

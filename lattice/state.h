@@ -199,18 +199,13 @@ void for_each_bond(const State &state, const TriangularLattice &lattice, Rows ro
 {
   const std::size_t n_kinds = state.bonds.n_kinds();
   for (std::size_t row = rows.begin; row < rows.end; ++row)
-  {
-    std::array<std::size_t, TriangularLattice::most_kinds> shift; // the first n_kinds
-    for (std::size_t kind = 0; kind < n_kinds; ++kind)
-      shift[kind] = lattice.shift(kind, row);
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
       for (std::size_t kind = 0; kind < n_kinds; ++kind)
         if (state.bonds.present(place, kind))
-          visit(Bond{place, kind, place + shift[kind]});
+          visit(Bond{place, kind, place + lattice.shift(kind, row)});
     }
-  }
 }
 
 /// Visits the bonds of all rows.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lattice/bonds/require.h"
+#include "lattice/disorder.h"
 #include "support/dense.h"
 
 namespace latcon::lattice
@@ -25,13 +26,14 @@ Harmonics harmonics(const Eigen::Vector2d &R)
   return Harmonics{{1., std::cos(2. * angle), std::sin(2. * angle), std::cos(4. * angle), std::sin(4. * angle)}};
 }
 
-// Half-bonds of a ring with weights that are not yet corrected.
-std::vector<HalfBond> half_bonds(const Grid &grid, const Ring &ring)
+// Half-bonds of a ring whose lengths are nearer than `width` spacings to its radius, with weights that are not yet
+// corrected.
+std::vector<HalfBond> half_bonds(const Grid &grid, const Ring &ring, double width)
 {
   std::vector<HalfBond> found;
   const double h = grid.spacing;
   // Rows of a triangular grid are sqrt3 / 2 apart, and columns lean by half a row.
-  const int rows = static_cast<int>(std::ceil(1.2 * (ring.radius / h + 1.))), columns = 2 * rows;
+  const int rows = static_cast<int>(std::ceil(1.2 * (ring.radius / h + width))), columns = 2 * rows;
   for (int row = 0; row <= rows; ++row)
     for (int column = columns; column >= (row == 0 ? 1 : -columns); --column)
     {
@@ -39,7 +41,7 @@ std::vector<HalfBond> half_bonds(const Grid &grid, const Ring &ring)
       // Bonds that are those of a lattice have its lengths to the last bit.
       const bool is_exact = std::abs(R.norm() - ring.radius) < round_off * h;
       const double length = is_exact ? ring.radius : R.norm();
-      const double weight = 1. - std::abs(length - ring.radius) / h;
+      const double weight = width - std::abs(length - ring.radius) / h;
       const double off = std::remainder(std::atan2(R.y(), R.x()) - ring.direction, M_PI / 3.);
       if (weight > round_off && std::abs(off) <= ring.half_width + round_off)
         found.push_back({column, row, R, length, weight, ring.shell, ring.radius});
@@ -57,11 +59,10 @@ void correct(std::vector<HalfBond> &bonds)
     sum += bond.weight;
   for (std::size_t i = 0; i < bonds.size(); ++i)
   {
-    root[i] = std::sqrt(bonds[i].weight / sum);
+    bonds[i].weight /= sum;
+    root[i] = std::sqrt(bonds[i].weight);
     scaled.col(i) = root[i] * harmonics(bonds[i].vector);
   }
-  for (HalfBond &bond : bonds)
-    bond.weight /= sum;
   const Eigen::VectorXd missing = Eigen::VectorXd::Unit(5, 0) - scaled * root;
   if (missing.norm() < 1e-14) // three directions have these moments
     return;
@@ -88,13 +89,15 @@ bool reach_all_points(const std::vector<HalfBond> &bonds)
 
 Eigen::Vector2d Grid::from_row_frame(double along, double across) const
 {
-  double u = along * spacing, v = across * (kind == Kind::triangular ? half_sqrt3 : 1.) * spacing;
-  if (orientation == Orientation::rows_across_crack)
-    std::swap(u, v);
-  if (rotation == 0.)
-    return {u, v};
-  const double c = std::cos(rotation), s = std::sin(rotation);
-  return {c * u - s * v, s * u + c * v};
+  const double u = along * spacing, v = across * pitch() * spacing;
+  return orientation == Orientation::rows_along_crack ? Eigen::Vector2d(u, v) : Eigen::Vector2d(v, u);
+}
+
+Eigen::Vector2d Scatter::displacement(std::ptrdiff_t row, std::ptrdiff_t column) const
+{
+  const std::uint64_t point = static_cast<std::uint64_t>(row) << 32u | static_cast<std::uint32_t>(column),
+                      key = splitmix64(splitmix64(splitmix64(seed) + 3) + point);
+  return amplitude * Eigen::Vector2d(symmetric_uniform(splitmix64(key)), symmetric_uniform(splitmix64(key + 1)));
 }
 
 std::vector<HalfBond> triangular_stencil(const Grid &grid)
@@ -117,7 +120,7 @@ std::vector<Ring> lattice_rings(double d, Orientation orientation, double half_w
   return {{d, nearest, 0, half_width}, {std::sqrt(3.) * d, turned - nearest, 1, half_width}};
 }
 
-std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings)
+std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings, const Scatter &scatter)
 {
   require(grid.spacing > 0. && std::isfinite(grid.spacing), "the spacing of a grid must be positive");
   std::vector<HalfBond> stencil;
@@ -127,9 +130,12 @@ std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &ri
             "a ring needs a positive radius and a shell");
     require(ring.half_width >= 0. && ring.half_width <= M_PI / 6. + round_off,
             "the half-width of the arcs of a ring must be between 0 and 30 degrees");
-    std::vector<HalfBond> bonds = half_bonds(grid, ring);
+    const Ring all_directions{ring.radius, ring.direction, ring.shell};
+    std::vector<HalfBond> bonds =
+      half_bonds(grid, scatter.amplitude > 0. ? all_directions : ring, 1. + std::sqrt(8.) * scatter.amplitude);
     require(!bonds.empty(), "a ring has no bonds in its arcs: a finer grid or wider arcs are needed");
-    correct(bonds);
+    if (scatter.amplitude == 0.)
+      correct(bonds);
     stencil.insert(stencil.end(), bonds.begin(), bonds.end());
   }
   require(reach_all_points(stencil), "the bonds join not all points of the grid: wider arcs are needed");

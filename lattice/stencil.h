@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -31,14 +32,13 @@ struct Grid
 {
   enum class Kind
   {
-    triangular, ///< a1 = h (1, 0), a2 = h (1, sqrt3) / 2 with rows along the crack, before the rotation
+    triangular, ///< a1 = h (1, 0), a2 = h (1, sqrt3) / 2 with rows along the crack
     square      ///< a1 = h (1, 0), a2 = h (0, 1) likewise
   };
 
   Kind kind;
-  double spacing;       ///< h [m], > 0
-  double rotation = 0.; ///< of the whole grid, counter-clockwise [rad]
-  /// Direction of its rows before the rotation; x and y are exchanged where they are across the crack.
+  double spacing; ///< h [m], > 0
+  /// Direction of its rows; x and y are exchanged where they are across the crack.
   Orientation orientation = Orientation::rows_along_crack;
 
   /// Vector of so many spacings along the rows and rows across them [m].
@@ -49,8 +49,8 @@ struct Grid
   {
     return from_row_frame(columns + (kind == Kind::triangular ? 0.5 * rows : 0.), rows);
   }
-  /// Reference area of a point [m^2].
-  double cell_area() const { return (kind == Kind::triangular ? half_sqrt3 : 1.) * spacing * spacing; }
+  double pitch() const { return kind == Kind::triangular ? half_sqrt3 : 1.; } ///< distance of rows, in spacings
+  double cell_area() const { return pitch() * spacing * spacing; }            ///< reference area of a point [m^2]
 };
 
 /// A bond of a stencil, seen from one of its ends.
@@ -79,7 +79,18 @@ std::vector<HalfBond> triangular_stencil(const Grid &grid);
 /// The rings that shells of the triangular lattice with spacing d [m] sample: of nearest and next-nearest neighbours.
 std::vector<Ring> lattice_rings(double d, Orientation orientation, double half_width);
 
-/// Half-bonds of rings on a grid.
+/// Random displacements of the points of a grid, independent of each other and of the number of points.
+struct Scatter
+{
+  double amplitude = 0.;  ///< largest displacement along x and along y, over the spacing [-], 0 to 0.5; 0: none
+  std::uint64_t seed = 0; ///< of the displacements, which are uniform in the square
+
+  /// Displacement of a point over the spacing [-].
+  Eigen::Vector2d displacement(std::ptrdiff_t row, std::ptrdiff_t column) const;
+};
+
+/// Half-bonds of rings on a grid. Those of scattered points are of all the pairs that a ring can join, in all
+/// directions; a sheet's construction gives them their weights, see ScatteredBonds.
 ///
 /// A bond belongs to a ring if its length is nearer than h to the radius l and its direction in one of the arcs. Its
 /// weight falls linearly to 0 with that distance. A relative correction, the smallest in the mean square, then gives
@@ -94,6 +105,6 @@ std::vector<Ring> lattice_rings(double d, Orientation orientation, double half_w
 ///
 /// On a triangular grid of the lattice's spacing, six directions give the first half-bonds of triangular_stencil(), bit
 /// for bit.
-std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings);
+std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings, const Scatter &scatter = {});
 
 } // namespace latcon::lattice

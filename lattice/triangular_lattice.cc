@@ -11,16 +11,11 @@ namespace latcon::lattice
 namespace
 {
 
-std::size_t intervals(double extent, double pitch)
+std::size_t intervals(double extent, double pitch, bool is_even = false)
 {
+  const std::size_t multiple = is_even ? 2 : 1;
   require(extent < 1e9 * pitch, "a lattice has fewer than 1e9 rows and columns");
-  return static_cast<std::size_t>(std::lround(extent / pitch));
-}
-
-// An odd number of sites across the crack puts one on the line y = 0.
-std::size_t even_intervals(double extent, double pitch)
-{
-  return 2 * intervals(extent, 2. * pitch);
+  return multiple * static_cast<std::size_t>(std::lround(extent / (static_cast<double>(multiple) * pitch)));
 }
 
 // Returns whether half-bonds are those of the triangular lattice, of all shells or of the first two.
@@ -41,20 +36,20 @@ bool has_triangular_kinds(const Grid &grid, const std::vector<HalfBond> &stencil
 
 TriangularLattice::TriangularLattice(double spacing, double length, double height, Orientation orientation,
                                      Periodic periodic)
-  : TriangularLattice({Grid::Kind::triangular, spacing, 0., orientation},
-                      triangular_stencil({Grid::Kind::triangular, spacing, 0., orientation}), spacing, length, height,
+  : TriangularLattice({Grid::Kind::triangular, spacing, orientation},
+                      triangular_stencil({Grid::Kind::triangular, spacing, orientation}), spacing, length, height,
                       periodic)
 {
 }
 
 TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBond> &stencil, double d, double length,
                                      double height, Periodic periodic, const Scatter &scatter)
-  : grid_(grid), stencil_(stencil), d_(d), is_triangular_(has_triangular_kinds(grid, stencil)), scatter_(scatter)
+  : grid_(grid), stencil_(stencil), d_(d), is_triangular_(has_triangular_kinds(grid, stencil)), periodic_(periodic),
+    scatter_(scatter)
 {
   const double spacing = grid.spacing;
   require(spacing > 0. && length > 0. && height > 0. && d > 0., "a lattice needs positive spacing, length and height");
-  require(grid.rotation == 0. && !stencil.empty() && stencil.size() <= most_kinds,
-          "a sheet has 1 to 127 half-bonds on a grid that is not rotated");
+  require(!stencil.empty() && stencil.size() <= most_kinds, "a sheet has 1 to 127 half-bonds");
   int columns_reach = 0;
   for (const HalfBond &bond : stencil_)
   {
@@ -63,22 +58,12 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
       columns_reach = std::max(columns_reach, std::abs(bond.columns + (rows_shift() ? (bond.rows + odd) / 2 : 0)));
   }
   column_reach_ = static_cast<std::size_t>(columns_reach);
-  const bool rows_along_x = grid.orientation == Orientation::rows_along_crack;
-  periodic_along_ = rows_along_x ? periodic.x : periodic.y;
-  periodic_across_ = rows_along_x ? periodic.y : periodic.x;
-
-  const double along = rows_along_x ? length : height;
-  const double across = rows_along_x ? height : length;
-  if (periodic_along_)
-    columns_ = intervals(along, spacing);
-  else
-    columns_ = (rows_along_x ? intervals(along, spacing) : even_intervals(along, spacing)) + 1;
-  if (periodic_across_)
-    rows_ = even_intervals(across, pitch() * spacing);
-  else
-    rows_ = (rows_along_x ? even_intervals(across, pitch() * spacing) : intervals(across, pitch() * spacing)) + 1;
+  // An odd number of sites across the crack puts one on the line y = 0; rows repeat in pairs.
+  const double along = rows_along_x() ? length : height, across = rows_along_x() ? height : length;
+  columns_ = repeats_along() ? intervals(along, spacing) : intervals(along, spacing, !rows_along_x()) + 1;
+  rows_ = intervals(across, grid.pitch() * spacing, rows_along_x() || repeats_across()) + (repeats_across() ? 0 : 1);
   // The margin of a periodic sheet is filled from the sheet once around, so it must not be wider.
-  require(columns_ >= (periodic_along_ ? column_reach_ : 3) && rows_ >= (periodic_across_ ? reach_ : 2),
+  require(columns_ >= (repeats_along() ? column_reach_ : 3) && rows_ >= (repeats_across() ? reach_ : 2),
           "the sheet is too small for its lattice spacing: fewer than two rows or three columns");
   const auto aligned = [](std::size_t n) { return (n + row_alignment - 1) / row_alignment * row_alignment; };
   first_column_ = aligned(column_reach_);
@@ -90,61 +75,51 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
     for (std::size_t kind = 0; kind < n_kinds(); ++kind)
       stencil_[kind].weight = scattered_->bounding_weights[kind];
   }
-  for (const HalfBond &bond : stencil_)
-    section_lengths_.push_back(d * (bond.rest_length / bond.radius) / (3. * bond.weight));
-}
-
-bool TriangularLattice::is_site(std::size_t place) const
-{
-  const std::size_t padded_row = place / stride();
-  const std::size_t padded_column = place % stride();
-  if (padded_row < reach_ || padded_row >= rows_ + reach_ || padded_column < first_column_)
-    return false;
-  return padded_column - first_column_ < sites_in_row(padded_row - reach_);
 }
 
 void TriangularLattice::find_images()
 {
-  if (!periodic_along_ && !periodic_across_)
+  if (!periodic_.x && !periodic_.y)
     return;
-  const auto turns = [](std::ptrdiff_t number, std::size_t n) {
-    return number < 0 ? -1 : number < static_cast<std::ptrdiff_t>(n) ? 0 : 1;
-  };
-  const auto beyond = static_cast<std::ptrdiff_t>(column_reach_);
+  const auto beyond = static_cast<std::ptrdiff_t>(column_reach_), end = static_cast<std::ptrdiff_t>(columns_) + beyond;
   for (std::size_t place = 0; place < n_places(); ++place)
   {
+    const std::size_t site = canonical_place(place);
     const auto [row, column] = numbers(place);
-    const int across = turns(row, rows_), along = turns(column, columns_);
-    if ((across == 0 && along == 0) || (across != 0 && !periodic_across_) || (along != 0 && !periodic_along_) ||
-        column < -beyond || column >= static_cast<std::ptrdiff_t>(columns_) + beyond)
-      continue;
+    const auto [site_row, site_column] = numbers(site);
     // Not the missing end of an odd row.
-    const std::size_t site = place - static_cast<std::size_t>(across) * rows_ * stride() -
-                             static_cast<std::size_t>(along) * columns_; // modulo 2^64
-    if (is_site(site))
+    if (site != place && is_site(site) && column >= -beyond && column < end)
       images_.push_back(
         {place, site,
-         grid_.from_row_frame(along * static_cast<double>(columns_), across * static_cast<double>(rows_))});
+         grid_.from_row_frame(static_cast<double>(column - site_column), static_cast<double>(row - site_row))});
   }
-}
-
-const TriangularLattice::Image *TriangularLattice::site_of_image(std::size_t place) const
-{
-  const auto found = std::lower_bound(images_.begin(), images_.end(), place,
-                                      [](const Image &image, std::size_t wanted) { return image.place < wanted; });
-  return found != images_.end() && found->place == place ? &*found : nullptr;
 }
 
 std::size_t TriangularLattice::canonical_place(std::size_t place) const
 {
-  const Image *image = site_of_image(place);
-  return image != nullptr ? image->site : place;
+  const auto wrapped = [](std::ptrdiff_t number, std::size_t n)
+  { return (number + 8 * static_cast<std::ptrdiff_t>(n)) % static_cast<std::ptrdiff_t>(n); };
+  if (!periodic_.x && !periodic_.y)
+    return place;
+  const auto [row, column] = numbers(place);
+  const std::ptrdiff_t up = repeats_across() ? wrapped(row, rows_) - row : 0;
+  const std::ptrdiff_t along = repeats_along() ? wrapped(column, columns_) - column : 0;
+  return place + static_cast<std::size_t>(up) * stride() + static_cast<std::size_t>(along); // modulo 2^64
+}
+
+std::vector<std::size_t> TriangularLattice::sites(Rows rows, Rows columns) const
+{
+  std::vector<std::size_t> places;
+  for (std::size_t row = rows.begin; row < rows.end; ++row)
+    for (std::size_t column = columns.begin; column < std::min(columns.end, sites_in_row(row)); ++column)
+      places.push_back(index(row, column));
+  return places;
 }
 
 std::optional<std::size_t> TriangularLattice::row(std::ptrdiff_t number) const
 {
   const auto n = static_cast<std::ptrdiff_t>(rows_);
-  if (periodic_across_)
+  if (repeats_across())
     number = (number + n) % n;
   return number >= 0 && number < n ? std::optional(static_cast<std::size_t>(number)) : std::nullopt;
 }
@@ -158,7 +133,7 @@ double TriangularLattice::shortest_bond() const
 
 std::pair<Rows, Rows> TriangularLattice::window(const Eigen::Vector2d &lower, const Eigen::Vector2d &upper) const
 {
-  const auto [along, across] = orientation() == Orientation::rows_along_crack ? std::pair(0, 1) : std::pair(1, 0);
+  const auto [along, across] = rows_along_x() ? std::pair(0, 1) : std::pair(1, 0);
   const Eigen::Vector2d first = grid_point(index(0, 0));
   // One more at either end, since odd rows are shifted.
   const auto between = [&](int axis, double pitch, std::size_t n)
@@ -176,13 +151,7 @@ Eigen::Vector2d TriangularLattice::reference(std::size_t place) const
   const Eigen::Vector2d X = grid_point(place);
   if (scatter_.amplitude == 0.)
     return X;
-  auto [row, column] = numbers(place);
-  const auto wrapped = [](std::ptrdiff_t number, std::size_t n)
-  { return (number + 8 * static_cast<std::ptrdiff_t>(n)) % static_cast<std::ptrdiff_t>(n); };
-  if (periodic_across_)
-    row = wrapped(row, rows_);
-  if (periodic_along_)
-    column = wrapped(column, columns_);
+  const auto [row, column] = numbers(canonical_place(place));
   return X + grid_.spacing * scatter_.displacement(row, column);
 }
 
@@ -192,7 +161,7 @@ Eigen::Vector2d TriangularLattice::grid_point(std::size_t place) const
   const double along = static_cast<double>(column) + (rows_shift() && row % 2 != 0 ? 0.5 : 0.);
   const double across = static_cast<double>(row);
   // Centring before scaling keeps mirror sites at exactly opposite y.
-  if (orientation() == Orientation::rows_along_crack)
+  if (rows_along_x())
     return grid_.from_row_frame(along, across - 0.5 * static_cast<double>(rows_ - 1));
   return grid_.from_row_frame(along - 0.5 * static_cast<double>(columns_ - 1), across);
 }

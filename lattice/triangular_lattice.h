@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -50,7 +51,7 @@ struct Bond
 /// A rectangular sheet in its reference configuration: sites of a grid, joined by the half-bonds of a stencil.
 ///
 /// The stencil is that of the triangular lattice (theory.md, section "The lattice"), or of rings of bonds on a
-/// triangular or square grid that is not rotated. Sites of a triangular grid stand in rows, spacing h along a row, row
+/// triangular or square grid. Sites of a triangular grid stand in rows, spacing h along a row, row
 /// pitch (sqrt3 / 2) h, every second row shifted by h / 2 and one site shorter. The sheet is its own mirror image about
 /// the line y = 0, to the last bit of its coordinates. About the centre line along y it is, to round-off, if the number
 /// of rows is odd, as it always is with rows along x; not if it is even, since the first row then has a site more than
@@ -78,10 +79,10 @@ public:
   TriangularLattice(double spacing, double length, double height, Orientation orientation, Periodic periodic = {});
 
   /// A sheet of a nonlocal continuum.
-  /// @param grid without rotation @param stencil of it, by increasing shell; see ring_stencil()
+  /// @param stencil of the grid, by increasing shell; see ring_stencil()
   /// @param d spacing of the lattice whose shells the rings are [m], > 0
-  /// @param scatter of the points, for which the stencil is scattered_stencil()
-  /// @throws std::invalid_argument also for a grid that is rotated, or more half-bonds than `most_kinds`
+  /// @param scatter of the points, which the stencil is for too
+  /// @throws std::invalid_argument also for more half-bonds than `most_kinds`
   TriangularLattice(const Grid &grid, const std::vector<HalfBond> &stencil, double d, double length, double height,
                     Periodic periodic = {}, const Scatter &scatter = {});
   static constexpr std::size_t most_kinds = 127; ///< half-bonds: those that a site has lost are counted in a byte
@@ -90,11 +91,7 @@ public:
   double lattice_spacing() const { return d_; }    ///< d [m], of the lattice whose shells the rings are, or its own
   Orientation orientation() const { return grid_.orientation; }
   const Grid &grid() const { return grid_; }
-  Periodic periodic() const
-  {
-    return orientation() == Orientation::rows_along_crack ? Periodic{periodic_along_, periodic_across_}
-                                                          : Periodic{periodic_across_, periodic_along_};
-  }
+  Periodic periodic() const { return periodic_; }
   double length() const { return extent().x(); } ///< distance of the outermost sites along x, or the period [m]
   double height() const { return extent().y(); } ///< the same along y [m]
   /// Reference area V of one site [m^2], (sqrt3 / 2) d^2 of the triangular lattice.
@@ -124,7 +121,15 @@ public:
   std::size_t row_of(std::size_t place) const { return place / stride() - reach_; }
   std::size_t column_of(std::size_t place) const { return place % stride() - first_column_; }
   /// Returns whether a place, margin included, has a site that is not an image.
-  bool is_site(std::size_t place) const;
+  bool is_site(std::size_t place) const
+  {
+    const std::size_t row = row_of(place); // in the margin below and to the left numbers are beyond all others
+    return row < rows_ && column_of(place) < sites_in_row(row);
+  }
+  /// Places of the sites in some rows and columns, row by row.
+  std::vector<std::size_t> sites(Rows rows, Rows columns = {0, std::numeric_limits<std::size_t>::max()}) const;
+  /// Places of all sites, row by row.
+  std::vector<std::size_t> sites() const { return sites({0, rows_}); }
 
   /// A place in the margin that is the image of a site one period away.
   struct Image
@@ -136,7 +141,7 @@ public:
   /// All images, in the order of their places; none unless the sheet is periodic.
   const std::vector<Image> &images() const { return images_; }
   /// Returns whether a place has a site or an image of one.
-  bool is_occupied(std::size_t place) const { return is_site(place) || site_of_image(place) != nullptr; }
+  bool is_occupied(std::size_t place) const { return is_site(canonical_place(place)); }
   /// The site that stands at a place or has its image there: what fields over sites are summed at.
   std::size_t canonical_place(std::size_t place) const;
 
@@ -197,18 +202,24 @@ public:
   /// D [m]: a bond of cross-section s V / D per sheet thickness, s being the area factor of its shell, has its share of
   /// the energy of the shell. The spacing d on the triangular lattice; d |R| / (3 q l) for a weight q in a ring of
   /// radius l. Where points are scattered it is that of a bound, and bonds have factors; see State::stiffness.
-  double section_length(std::size_t kind) const { return section_lengths_[kind]; }
+  double section_length(std::size_t kind) const
+  {
+    const HalfBond &bond = stencil_[kind];
+    return d_ * (bond.rest_length / bond.radius) / (3. * bond.weight);
+  }
   std::size_t reach() const { return reach_; }               ///< of bonds, in rows
   std::size_t column_reach() const { return column_reach_; } ///< of bonds, in places along a row
 
 private:
   bool rows_shift() const { return grid_.kind == Grid::Kind::triangular; }
-  bool rows_alternate() const { return rows_shift() && !periodic_along_; } // in length
-  double pitch() const { return rows_shift() ? half_sqrt3 : 1.; }          // of rows, in spacings
+  bool rows_along_x() const { return orientation() == Orientation::rows_along_crack; }
+  bool repeats_along() const { return rows_along_x() ? periodic_.x : periodic_.y; }  // the rows
+  bool repeats_across() const { return rows_along_x() ? periodic_.y : periodic_.x; } // the rows
+  bool rows_alternate() const { return rows_shift() && !repeats_along(); }           // in length
   Eigen::Vector2d extent() const
   {
-    return grid_.from_row_frame(static_cast<double>(periodic_along_ ? columns_ : columns_ - 1),
-                                static_cast<double>(periodic_across_ ? rows_ : rows_ - 1));
+    return grid_.from_row_frame(static_cast<double>(repeats_along() ? columns_ : columns_ - 1),
+                                static_cast<double>(repeats_across() ? rows_ : rows_ - 1));
   }
   /// Numbers of the row and of the column of a place, in the margin those beyond the sheet.
   std::array<std::ptrdiff_t, 2> numbers(std::size_t place) const
@@ -216,18 +227,15 @@ private:
     return {static_cast<std::ptrdiff_t>(place / stride()) - static_cast<std::ptrdiff_t>(reach_),
             static_cast<std::ptrdiff_t>(place % stride()) - static_cast<std::ptrdiff_t>(first_column_)};
   }
-  const Image *site_of_image(std::size_t place) const;
   void find_images();
 
   Grid grid_;
   std::vector<HalfBond> stencil_;
   double d_;
-  std::vector<double> section_lengths_;
   bool is_triangular_;
   std::size_t reach_ = 0, column_reach_ = 0;
   std::size_t first_column_; // place of column 0 in its row
-  bool periodic_along_;      // the rows
-  bool periodic_across_;     // the rows
+  Periodic periodic_;
   std::size_t rows_;
   std::size_t columns_;
   std::size_t stride_;

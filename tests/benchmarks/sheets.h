@@ -91,7 +91,7 @@ private:
   {
     if (work == Work::linear)
       return std::nullopt;
-    return latcon::lattice::Fracture(sheet, bonds, breaking_stretch, latcon::lattice::RetractionToughening{0.5, 3.},
+    return latcon::lattice::Fracture(sheet, bonds, breaking_stretch, latcon::lattice::Toughening{3., 0.5},
                                      deformation(work));
   }
 

@@ -62,9 +62,9 @@ TEST(Fracture, AsksTheRuleAboutEachBond)
     [&](const TimeStepping &how, std::shared_ptr<const BreakingRule> rule, const Eigen::Matrix2d &rate)
   {
     Simulation simulation(sheet, rubber, homogeneous_state(sheet, rubber, F, Edges::held), how,
-                          Fracture(sheet, rubber, std::move(rule), GivenToughening{}, F));
+                          Fracture(sheet, rubber, std::move(rule), Toughening{}, F));
     Field vx(sheet.n_places()), vy(sheet.n_places());
-    for (const std::size_t place : sheets::sites(sheet))
+    for (const std::size_t place : sheet.sites())
     {
       vx[place] = (rate * sheet.reference(place)).x();
       vy[place] = (rate * sheet.reference(place)).y();

@@ -196,7 +196,7 @@ TEST(RungeKuttaChebyshev, MultipliesWavesByItsPolynomial)
       simulation.step();
     // Quadratic terms are 1e-7 of the wave, rounding of positions of 10 d is 1e-15 over 1e-7, each times some tens.
     const double tolerance = 1e-5 * amplitude * waves.modes.col(mode).tail<2>().norm();
-    for (const std::size_t place : sheets::sites(sheet))
+    for (const std::size_t place : sheet.sites())
     {
       EXPECT_NEAR(simulation.state().vx[place], wave(place, 2, factor), tolerance) << mode;
       EXPECT_NEAR(simulation.state().vy[place], wave(place, 3, factor), tolerance) << mode;

@@ -64,6 +64,11 @@ struct HeadOn
   {
     return {simulation->state().vx[place], simulation->state().vy[place]};
   }
+  double distance() const
+  {
+    const State &state = simulation->state();
+    return std::hypot(state.x[right] - state.x[left], state.y[right] - state.y[left]);
+  }
   double separation_speed() const { return (velocity(right) - velocity(left)).dot(direction); }
 
   TriangularLattice sheet;
@@ -128,14 +133,16 @@ TEST_P(Restitution, ConvergesToTheClosedFormAtSecondOrder)
 TEST_P(Restitution, KeepsMomentumAndLedger)
 {
   const double beta = GetParam() * omega_0;
-  HeadOn pair(law_of(omega_0, beta), duration(omega_0, beta) / 400., 0.05 * sheets::spacing);
+  const ContactLaw law = law_of(omega_0, beta);
+  HeadOn pair(law, duration(omega_0, beta) / 400., 0.05 * sheets::spacing);
   const Eigen::Vector2d before = pair.velocity(pair.left) + pair.velocity(pair.right);
   double smallest = 0.;
   for (int step = 0; step < 2000; ++step)
   {
     pair.simulation->step();
     const EnergyBalance e = pair.simulation->energies();
-    const double dissipated = e.contact - pair.simulation->contact()->elastic_energy(pair.simulation->state());
+    const double overlap = std::max(0., law.distance - pair.distance());
+    const double dissipated = e.contact - 0.5 * law.stiffness * overlap * overlap;
     smallest = std::min(smallest, dissipated);
     // h^2 (a . f) / 4 at most while they touch: (omega_0 h)^2 + (2 beta h)^2 of the energy of the impact.
     ASSERT_LT(std::abs(e.imbalance()), 1e-3 * e.initial) << step;
@@ -159,8 +166,7 @@ TEST(Contact, OfBondedOrWholeSitesThereIsNone)
   {
     Contact contact(sheet, contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 1.));
     contact.find_candidates(state);
-    contact.evaluate(state, state.vx, state.vy);
-    return contact.n_touching();
+    return contact.evaluate(state, state.vx, state.vy).size() / 2;
   };
   EXPECT_EQ(n_touching(), 0u); // whole
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
@@ -189,7 +195,7 @@ TEST(Contact, ListNeverMissesAPair)
 {
   const TriangularLattice sheet = sheets::square(20);
   const Material material = sheets::rubber();
-  const std::vector<std::size_t> places = sheets::sites(sheet);
+  const std::vector<std::size_t> places = sheet.sites();
   State state = loose_sites(sheet, material, places);
   std::mt19937 generator(7);
   std::uniform_real_distribution<double> uniform(-1., 1.);
@@ -216,7 +222,7 @@ TEST(Contact, ListNeverMissesAPair)
     if (near != far)
     {
       state.lost_bonds[near] = state.lost_bonds[far] = 1;
-      contact.add_broken_bonds({{{near, 0, far}, 0., Eigen::Vector2d::Zero(), 1., 0.}});
+      contact.add_broken_bonds({{{near, 0, far}, 0., 0., 0., 1., 0.}});
     }
     const std::vector<SiteForce> &forces = contact.evaluate(state, state.vx, state.vy);
     std::vector<SiteForce> wanted;
@@ -265,7 +271,7 @@ TEST(Contact, LedgerClosesWhereAPairOverlapsFromTheStart)
     state.bonds.add(left, 0);
     state.x[right] = state.x[left] + 0.8 * sheets::spacing;
     Simulation simulation(sheet, material, std::move(state), time_step,
-                          Fracture(sheet, material, 0.5, GivenToughening{}, Eigen::Matrix2d::Identity()));
+                          Fracture(sheet, material, 0.5, Toughening{}, Eigen::Matrix2d::Identity()));
     simulation.enable_contact(contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 0.));
     const auto steps = static_cast<int>(std::lround(4e-5 / time_step));
     simulation.step();
@@ -290,7 +296,7 @@ TEST(Contact, ListsDoNotDependOnThreads)
 {
   const TriangularLattice sheet = sheets::square(80);
   const Material material = sheets::rubber();
-  const std::vector<std::size_t> places = sheets::sites(sheet);
+  const std::vector<std::size_t> places = sheet.sites();
   State state = loose_sites(sheet, material, places);
   add_noise(state, sheet, 0.3 * sheets::spacing, 1);
   const auto forces = [&](int threads)
@@ -298,16 +304,14 @@ TEST(Contact, ListsDoNotDependOnThreads)
     omp_set_num_threads(threads);
     Contact contact(sheet, contact_like_nearest_bond(sheet, material, 1.1 * sheets::spacing, 1., 1.));
     contact.find_candidates(state);
-    const std::vector<SiteForce> all = contact.evaluate(state, state.vx, state.vy);
-    return std::pair(all, contact.n_touching());
+    return contact.evaluate(state, state.vx, state.vy);
   };
   const int before = omp_get_max_threads();
-  const auto [one, one_touching] = forces(1);
-  EXPECT_GT(one_touching, 4096u); // so many that threads share them
+  const std::vector<SiteForce> one = forces(1);
+  EXPECT_GT(one.size(), 8192u); // so many that threads share them
   for (const int threads : {2, 3})
   {
-    const auto [several, touching] = forces(threads);
-    EXPECT_EQ(touching, one_touching);
+    const std::vector<SiteForce> several = forces(threads);
     ASSERT_EQ(several.size(), one.size());
     for (std::size_t i = 0; i < one.size(); ++i)
     {

@@ -35,7 +35,7 @@ TEST(Cutout, HoleTakesTheSitesInsideAndTheirBonds)
     const State state = with(sheet, RoundHole{R}, Eigen::Matrix2d::Identity());
     const Eigen::Vector2d centre(0.5 * sheet.length(), 0.);
     double removed = 0.;
-    for (const std::size_t place : sheets::sites(sheet))
+    for (const std::size_t place : sheet.sites())
     {
       const double distance = (sheet.reference(place) - centre).norm();
       EXPECT_EQ(state.removed[place] != 0, distance < R * (1. - 1e-9));
@@ -85,7 +85,7 @@ TEST(Cutout, NotchLeavesNoBondAcrossItAndKeepsMirrorSymmetry)
                     }
                   });
     relax(state, sheet, sheets::rubber(), 1e-9 * 5e5 * sheets::spacing);
-    for (const std::size_t place : sheets::sites(sheet))
+    for (const std::size_t place : sheet.sites())
     {
       const std::size_t mirror = sheets::mirrored(sheet, place);
       EXPECT_EQ(state.x[place], state.x[mirror]);

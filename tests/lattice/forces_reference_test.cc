@@ -294,7 +294,7 @@ TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
       forces.remove_bond(state, state.vx, state.vy, bond);
     }
     without.evaluate(state, state.vx, state.vy);
-    for (const std::size_t place : sheets::sites(sheet))
+    for (const std::size_t place : sheet.sites())
     {
       const Eigen::Vector2d force = forces.on_site(state, state.vx, state.vy, place);
       ASSERT_EQ(force.x(), without.fx()[place]);

@@ -118,7 +118,7 @@ TEST(RungeKuttaChebyshev, AppliesForcesOnSitesInEachStage)
   simulation.load_ends(F, EndLoads::End::free, EndLoads::End::free);
   for (int step = 0; step < 100; ++step)
     simulation.step();
-  for (const std::size_t place : sheets::sites(sheet))
+  for (const std::size_t place : sheet.sites())
   {
     EXPECT_LT((simulation.position(place) - F * sheet.reference(place)).norm(), 1e-12 * sheets::spacing);
   }

@@ -14,13 +14,10 @@ sheet(latcon::lattice::Grid::Kind kind, double m, double length, double height, 
 {
   using namespace latcon::lattice;
   const double d = sheets::spacing;
-  const Grid grid{kind, d / m, 0., orientation};
+  const Grid grid{kind, d / m, orientation};
   const std::vector<Ring> rings = lattice_rings(d, orientation, half_width * M_PI / 180.);
   const Scatter points{scatter, 5};
-  return {grid,       scatter > 0. ? scattered_stencil(grid, rings, points) : ring_stencil(grid, rings),
-          d,          length * d,
-          height * d, {},
-          points};
+  return {grid, ring_stencil(grid, rings, points), d, length * d, height * d, {}, points};
 }
 
 } // namespace nonlocal_sheets

@@ -36,7 +36,7 @@ struct Choice
   using End = latcon::lattice::EndLoads::End;
   latcon::lattice::Material material = sheets::rubber();
   latcon::lattice::TimeStepping stepping = 0.;
-  latcon::lattice::Toughening toughening = latcon::lattice::BehindTipToughening{4. * sheets::spacing, 3.};
+  latcon::lattice::Toughening toughening = {3., 0., 4. * sheets::spacing};
   double noise = 0.05;           ///< in spacings
   double contact = 0.;           ///< distance in spacings; 0: none
   double contact_strength = 0.1; ///< stiffness and viscosity in those of a bond
@@ -104,7 +104,7 @@ inline void expect_same_bits(const latcon::lattice::Simulation &one, const latco
     EXPECT_EQ(of_one[m].dissipated, of_other[m].dissipated);
   }
   const SiteEvaluator evaluator(sheet, one.material());
-  for (const std::size_t place : sheets::sites(sheet))
+  for (const std::size_t place : sheet.sites())
   {
     for (Field State::*field : {&State::x, &State::y, &State::vx, &State::vy, &State::ax, &State::ay})
       ASSERT_EQ(std::memcmp(&(a.*field)[place], &(b.*field)[place], sizeof(double)), 0) << place;

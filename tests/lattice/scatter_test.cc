@@ -55,7 +55,7 @@ TEST(Scatter, GivesEachPointTheAreaLawAndNearlyNoForce)
     const ScatteredBonds &bonds = *lattice.scattered();
     latcon::support::LargestError sums;
     double odd = 0., before = 0., shortest = HUGE_VAL;
-    for (const std::size_t place : sheets::sites(lattice))
+    for (const std::size_t place : lattice.sites())
     {
       std::array<double, 2> sum{};
       std::array<Eigen::Vector2d, 2> pull{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()}, raw = pull;
@@ -96,7 +96,7 @@ TEST(Scatter, HasTimeStepsForTheMostCrowdedPoint)
   const Material material = without_dashpots(sheets::rubber());
   const State state = homogeneous_state(lattice, material, Eigen::Matrix2d::Identity(), Edges::held);
   double highest = 0.;
-  for (const std::size_t place : sheets::sites(lattice))
+  for (const std::size_t place : lattice.sites())
   {
     double rate = 0.;
     for_each_bond_of_site(state, lattice, place,
@@ -125,7 +125,7 @@ TEST(Scatter, CountsTheBondsOfEachPointForTheTip)
   for_each_bond_of_site(state, lattice, place, [&](const Bond &) { ++bonds; });
   EXPECT_EQ(material.coordination(lattice, place), bonds);
   EXPECT_NEAR(material.mean_coordination(lattice), bonds, 0.25 * bonds);
-  Fracture fracture(lattice, material, 3., GivenToughening(), Eigen::Matrix2d::Identity());
+  Fracture fracture(lattice, material, 3., Toughening(), Eigen::Matrix2d::Identity());
   state.lost_bonds[place] = static_cast<std::uint8_t>((bonds + 3) / 4 - 1);
   fracture.locate_tip(state);
   EXPECT_FALSE(fracture.tip());
@@ -141,9 +141,9 @@ std::vector<Ring> all_directions()
   return lattice_rings(d, Orientation::rows_along_crack, M_PI / 6.);
 }
 
-Stencil isotropic(Grid::Kind kind, double m, double rotation = 0.)
+Stencil isotropic(Grid::Kind kind, double m)
 {
-  return ring_stencil({kind, d / m, rotation}, all_directions());
+  return ring_stencil({kind, d / m}, all_directions());
 }
 
 double sum(const Stencil &stencil, std::size_t shell, const std::function<double(const HalfBond &)> &of_bond)
@@ -174,26 +174,15 @@ double error_of_moments(const Stencil &stencil)
   return error;
 }
 
-const struct
-{
-  const char *name;
-  Grid::Kind kind;
-  double rotation;
-} grids[] = {{"triangular", Grid::Kind::triangular, 0.},
-             {"turned triangular", Grid::Kind::triangular, 0.21},
-             {"square", Grid::Kind::square, 0.},
-             {"turned square", Grid::Kind::square, M_PI / 4.},
-             {"slightly turned square", Grid::Kind::square, 0.13}};
-
 TEST(Stencil, HasTheMomentsOfAllDirections)
 {
-  for (const auto &grid : grids)
+  for (const Grid::Kind kind : {Grid::Kind::triangular, Grid::Kind::square})
     for (const double m : {1.5, 2., 3., 4., 6.})
-      EXPECT_LT(error_of_moments(isotropic(grid.kind, m, grid.rotation)), 1e-13) << grid.name << ", m = " << m;
+      EXPECT_LT(error_of_moments(isotropic(kind, m)), 1e-13) << static_cast<int>(kind) << ", m = " << m;
   EXPECT_EQ(isotropic(Grid::Kind::square, 2.).size(), 30u);
   EXPECT_EQ(isotropic(Grid::Kind::square, 3.).size(), 48u);
   for (const double degrees : {10., 20.})
-    EXPECT_LT(error_of_moments(ring_stencil({Grid::Kind::square, d / 4., 0.},
+    EXPECT_LT(error_of_moments(ring_stencil({Grid::Kind::square, d / 4.},
                                             lattice_rings(d, Orientation::rows_along_crack, degrees * M_PI / 180.))),
               1e-13)
       << degrees;
@@ -204,12 +193,12 @@ TEST(Stencil, RefusesWhatIsNoContinuum)
   const auto refuses = [](const Grid &grid, const std::vector<Ring> &rings)
   { EXPECT_THROW(ring_stencil(grid, rings), std::invalid_argument); };
   const auto narrow = lattice_rings(d, Orientation::rows_along_crack, 0.);
-  refuses({Grid::Kind::square, d, 0.}, narrow);           // no bonds in the arcs
-  refuses({Grid::Kind::triangular, 0.5 * d, 0.}, narrow); // four lattices in each other
-  refuses({Grid::Kind::square, 0., 0.}, all_directions());
-  refuses({Grid::Kind::square, d, 0.}, {{-d, 0., 0}});
-  refuses({Grid::Kind::square, d, 0.}, {{d, 0., n_shells}});
-  refuses({Grid::Kind::square, d, 0.}, {{d, 0., 0, 1.}});
+  refuses({Grid::Kind::square, d}, narrow);           // no bonds in the arcs
+  refuses({Grid::Kind::triangular, 0.5 * d}, narrow); // four lattices in each other
+  refuses({Grid::Kind::square, 0.}, all_directions());
+  refuses({Grid::Kind::square, d}, {{-d, 0., 0}});
+  refuses({Grid::Kind::square, d}, {{d, 0., n_shells}});
+  refuses({Grid::Kind::square, d}, {{d, 0., 0, 1.}});
 }
 
 } // namespace lattice_scatter_test

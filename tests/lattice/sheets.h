@@ -211,16 +211,6 @@ square(double n, latcon::lattice::Orientation orientation = latcon::lattice::Ori
   return {spacing, n * spacing, n * spacing, orientation};
 }
 
-/// Places of the sites, in their order.
-inline std::vector<std::size_t> sites(const latcon::lattice::TriangularLattice &sheet)
-{
-  std::vector<std::size_t> places;
-  for (std::size_t place = 0; place < sheet.n_places(); ++place)
-    if (sheet.is_site(place))
-      places.push_back(place);
-  return places;
-}
-
 /// The site at the same X and at -Y.
 inline std::size_t mirrored(const latcon::lattice::TriangularLattice &sheet, std::size_t place)
 {

@@ -27,8 +27,7 @@ TEST(Simulation, RefusesASecondContactAndLoadsOnABrokenSheet)
   const State state = homogeneous_state(sheet, material, loading, {false, false, true, true});
   const auto start = [&](double breaking_stretch)
   {
-    return Simulation(sheet, material, state, 1e-9,
-                      Fracture(sheet, material, breaking_stretch, GivenToughening{}, loading));
+    return Simulation(sheet, material, state, 1e-9, Fracture(sheet, material, breaking_stretch, Toughening{}, loading));
   };
   Simulation whole = start(3.), cut = start(3.), broken = start(1.3);
   whole.load_ends(loading, end, end);
@@ -49,7 +48,7 @@ TEST(EnergyBalance, ClosesWhenMovingSitesAreCut)
   const Material material = sheets::rubber();
   const Eigen::Matrix2d F = sheets::stretched(1.4, 1.6);
   Simulation simulation(sheet, material, homogeneous_state(sheet, material, F, Edges::held), 2e-8,
-                        Fracture(sheet, material, unbreakable, GivenToughening{}, F));
+                        Fracture(sheet, material, unbreakable, Toughening{}, F));
   simulation.set_velocities(Field(sheet.n_places(), 3.), Field(sheet.n_places(), -2.));
   for (int step = 0; step < 20; ++step)
     simulation.step();
@@ -81,7 +80,7 @@ struct Recoil
     state.time = start;
     simulation = std::make_unique<Simulation>(sheet, material, std::move(state),
                                               0.9 * time_step_limits(sheet, material, 0.3, contact).combined,
-                                              Fracture(sheet, material, 3.05, BehindTipToughening{4.5e-3, 3.}, F));
+                                              Fracture(sheet, material, 3.05, Toughening{3., 0., 4.5e-3}, F));
     simulation->enable_contact(contact);
     simulation->cut(sheets::middle_row(sheet, 3, 2));
   }

@@ -30,7 +30,7 @@ TEST(SiteFields, AreSumsOverTheBondsOfASite)
       const State stretched = homogeneous_state(sheet, material, F, Edges::held);
       state.x = stretched.x;
       state.y = stretched.y;
-      for (const std::size_t place : sheets::sites(sheet))
+      for (const std::size_t place : sheet.sites())
       {
         state.vx[place] = (rate * sheet.reference(place)).x();
         state.vy[place] = (rate * sheet.reference(place)).y();
@@ -63,7 +63,7 @@ TEST(SiteFields, AreSumsOverTheBondsOfASite)
       EXPECT_LT((fields[middle].cauchy_stress - stress * F.transpose() / F.determinant()).norm(),
                 1e-13 * stress.norm());
       EXPECT_EQ(fields[middle].damage, 0.);
-      for (const std::size_t place : sheets::sites(sheet))
+      for (const std::size_t place : sheet.sites())
       {
         EXPECT_LT((fields[place].deformation_gradient - F).norm(), 1e-13);
       }
@@ -115,7 +115,7 @@ TEST(ThirdShell, HomogeneousSheetHasTheEnergyAndStressOfItsNineDirections)
     const SiteEvaluator evaluator(sheet, material);
     Forces forces(sheet, material);
     forces.evaluate(state, state.vx, state.vy);
-    for (const std::size_t place : sheets::sites(sheet))
+    for (const std::size_t place : sheet.sites())
     {
       const SiteValues values = evaluator.at(state, place);
       EXPECT_EQ(values.bonds, 18u);

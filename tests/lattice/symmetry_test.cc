@@ -58,8 +58,7 @@ struct Crack
     choice.stepping = stages == 0 ? TimeStepping(0.9 * time_step_limits(sheet, choice.material, 0.3).combined)
                                   : TimeStepping(chebyshev_step(sheet, choice.material, 1.), stages);
     choice.contact = 3.;
-    if (auto *behind = std::get_if<BehindTipToughening>(&choice.toughening))
-      behind->distance *= units.length;
+    choice.toughening.distance *= units.length;
     simulation = running_crack::start(sheet, choice);
   }
 

@@ -29,7 +29,7 @@ TEST_P(BothOrientations, SitesHaveSixNeighboursAtEachOfTheRightDistances)
   const lattice::Material material = sheets::rubber_of_three_shells();
   const lattice::State state =
     lattice::homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), lattice::Edges::free);
-  const std::vector<std::size_t> sites = sheets::sites(sheet);
+  const std::vector<std::size_t> sites = sheet.sites();
   ASSERT_EQ(sites.size(), sheet.n_sites());
 
   std::size_t interior = 0;
@@ -66,7 +66,7 @@ TEST_P(BothOrientations, ExtentIsThatOfTheOutermostSites)
   EXPECT_NEAR(sheet.length(), 0.02, 0.5 * sheets::spacing);
   EXPECT_NEAR(sheet.height(), 0.01, sheets::spacing);
   Eigen::Vector2d low(1., 1.), high(-1., -1.);
-  for (const std::size_t place : sheets::sites(sheet))
+  for (const std::size_t place : sheet.sites())
   {
     low = low.cwiseMin(sheet.reference(place));
     high = high.cwiseMax(sheet.reference(place));
@@ -89,7 +89,7 @@ TEST_P(BothOrientations, HeldSitesAreThoseAtTheEdges)
     const double side = 12. * sheets::spacing;
     const TriangularLattice sheet(sheets::spacing, side, side, GetParam(), periodic);
     const lattice::State state = lattice::homogeneous_state(sheet, sheets::rubber(), Eigen::Matrix2d::Identity(), held);
-    for (const std::size_t place : sheets::sites(sheet))
+    for (const std::size_t place : sheet.sites())
     {
       const Eigen::Vector2d X = sheet.reference(place);
       const double from_right = sheet.length() - X.x();

@@ -26,9 +26,9 @@ std::vector<Piece> pieces(const lattice::State &state, const lattice::Triangular
                 { connections.union_set(bond.near, lattice.canonical_place(bond.far)); });
   std::vector<Piece> all;
   std::map<std::size_t, std::size_t> numbers;
-  for (std::size_t place = 0; place < lattice.n_places(); ++place)
+  for (const std::size_t place : lattice.sites())
   {
-    if (!lattice.is_site(place) || state.removed[place] != 0)
+    if (state.removed[place] != 0)
       continue;
     const std::size_t number = numbers.try_emplace(connections.find_set(place), all.size()).first->second;
     if (number == all.size())

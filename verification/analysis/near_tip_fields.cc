@@ -249,10 +249,8 @@ NearTipSample NearTipSampler::look(const lattice::State &state, const Axis &axis
     sample.sums.add_site(twice(offset.x(), grid_.pitch_X), twice(offset.y(), grid_.pitch_Y), values);
     sample.sites.emplace_back(position - axis.current);
   };
-  const lattice::Rows rows = rows_around(tip), columns = around(tip, false);
-  for (std::size_t row = rows.begin; row < rows.end; ++row)
-    for (std::size_t column = columns.begin; column < std::min(columns.end, lattice_.sites_in_row(row)); ++column)
-      look_at(lattice_.index(row, column));
+  for (const std::size_t place : lattice_.sites(rows_around(tip), around(tip, false)))
+    look_at(place);
   return sample;
 }
 

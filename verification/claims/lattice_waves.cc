@@ -9,7 +9,7 @@
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
-#include "verification/claims/sites_and_bonds.h"
+#include "verification/claims/bonds.h"
 #include "verification/claims/spectrum.h"
 
 namespace latcon::claims
@@ -29,7 +29,7 @@ constexpr double phase_per_step = 0.12;
 lattice::Field cosine_of(const WaveCell &cell)
 {
   lattice::Field shape(cell.sheet.n_places(), 0.);
-  for (const std::size_t place : sites(cell.sheet))
+  for (const std::size_t place : cell.sheet.sites())
     shape[place] = std::cos(cell.phase(place));
   return shape;
 }
@@ -86,7 +86,7 @@ lattice::State excited(const WaveCell &cell, const lattice::Material &material, 
   const lattice::TriangularLattice &sheet = cell.sheet;
   const double amplitude = strain / cell.K.norm();
   lattice::State state = at_rest;
-  for (const std::size_t place : sites(sheet))
+  for (const std::size_t place : sheet.sites())
   {
     const double shape = amplitude * std::cos(cell.phase(place));
     const Eigen::Vector2cd u = shape * wave.polarisation, v = wave.rate * u;
@@ -133,7 +133,7 @@ Eigen::Vector2d reciprocal(const WaveDirection &direction, lattice::Orientation 
 
 void add_wave(lattice::State &state, const WaveCell &cell, double amplitude, const Eigen::Vector2d &p, double frequency)
 {
-  for (const std::size_t place : sites(cell.sheet))
+  for (const std::size_t place : cell.sheet.sites())
   {
     const double phase = cell.phase(place);
     const Eigen::Vector2d u = amplitude * std::cos(phase) * p, v = amplitude * frequency * std::sin(phase) * p;

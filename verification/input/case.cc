@@ -231,11 +231,11 @@ lattice::Toughening Case::toughening_rule() const
   switch (toughening)
   {
   case Toughening::behind_tip:
-    return lattice::BehindTipToughening{toughening_distance, toughening_factor};
+    return {toughening_factor, 0., toughening_distance};
   case Toughening::retraction:
-    return lattice::RetractionToughening{toughening_fraction, toughening_factor};
+    return {toughening_factor, toughening_fraction};
   default:
-    return lattice::GivenToughening{};
+    return {};
   }
 }
 

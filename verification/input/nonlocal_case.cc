@@ -83,7 +83,7 @@ lattice::TriangularLattice NonlocalCase::sheet(const Case &input) const
 
 lattice::TriangularLattice NonlocalCase::new_sheet(const Case &input) const
 {
-  const lattice::Grid points{grid, input.spacing / refinement, 0., input.orientation};
+  const lattice::Grid points{grid, input.spacing / refinement, input.orientation};
   std::vector<lattice::Ring> rings =
     lattice::lattice_rings(input.spacing, input.orientation, std::min(half_width, M_PI / 6.));
   rings.push_back({2. * input.spacing, rings[0].direction, 2, rings[0].half_width});
@@ -91,12 +91,7 @@ lattice::TriangularLattice NonlocalCase::new_sheet(const Case &input) const
                              [&](const lattice::Ring &ring) { return !input.has_shell(ring.shell); }),
               rings.end());
   const lattice::Scatter scattered{scatter, input.noise_seed};
-  return {points,
-          scatter > 0. ? lattice::scattered_stencil(points, rings, scattered) : lattice::ring_stencil(points, rings),
-          input.spacing,
-          input.length,
-          input.height,
-          {},
+  return {points,   lattice::ring_stencil(points, rings, scattered), input.spacing, input.length, input.height, {},
           scattered};
 }
 

@@ -181,7 +181,7 @@ analysis::CrackMeasurement CrackRecord::measure(double seed_tip_X) const
 {
   std::vector<analysis::BreakRecord> breaks;
   for (const lattice::BrokenBond &bond : broken_)
-    breaks.push_back({bond.time, bond.midpoint.x(), bond.midpoint.y()});
+    breaks.push_back({bond.time, bond.X, bond.Y});
   analysis::CrackMeasurementOptions options;
   options.strip_length = simulation_.lattice().length();
   options.lattice_spacing = simulation_.lattice().lattice_spacing();
@@ -202,8 +202,7 @@ TextFiles CrackRecord::tables(const std::filesystem::path &directory) const
   const lattice::TriangularLattice &sheet = simulation_.lattice();
   Table broken({"t", "site", "other_site", "X", "Y", "stretch"});
   for (const lattice::BrokenBond &bond : broken_)
-    broken.add({bond.time, sheet.site_number(bond.near), sheet.site_number(bond.far), bond.midpoint.x(),
-                bond.midpoint.y(), bond.stretch});
+    broken.add({bond.time, sheet.site_number(bond.near), sheet.site_number(bond.far), bond.X, bond.Y, bond.stretch});
   return {{directory / "crack.csv", tip_.csv()},
           {directory / "broken_bonds.csv", broken.csv()},
           {directory / "energy.csv",

@@ -57,7 +57,7 @@ public:
     Broken broken;
     for (std::size_t i = 0; i < n; ++i)
       for (const lattice::BrokenBond &bond : simulation_->step())
-        broken.emplace_back(bond.time, bond.near, bond.far, bond.midpoint.x(), bond.midpoint.y(), bond.stretch);
+        broken.emplace_back(bond.time, bond.near, bond.far, bond.X, bond.Y, bond.stretch);
     return broken;
   }
 

@@ -69,7 +69,7 @@ TEST_F(Cut, HalvesOfTheSheetAreNoFragments)
     for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
       half.push_back(sheet.index(row, column));
   cut_around(half);
-  Fracture fracture(sheet, material, 2., GivenToughening{}, Eigen::Matrix2d::Identity());
+  Fracture fracture(sheet, material, 2., Toughening{}, Eigen::Matrix2d::Identity());
   fracture.remove_sites(state, {sheet.index(10, 6)});
   EXPECT_TRUE(find_fragments(state, sheet).sizes.empty());
 }

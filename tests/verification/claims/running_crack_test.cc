@@ -10,7 +10,7 @@
 #include "support/fits.h"
 #include "tests/verification/claims/faults.h"
 #include "verification/bridge/homogeneous_response.h"
-#include "verification/claims/sites_and_bonds.h"
+#include "verification/claims/bonds.h"
 
 namespace running_crack_test
 {

@@ -11,8 +11,8 @@
 #include "lattice/energy.h"
 #include "lattice/relaxation.h"
 #include "support/largest_error.h"
+#include "verification/claims/bonds.h"
 #include "verification/claims/claim_list.h"
-#include "verification/claims/sites_and_bonds.h"
 
 namespace latcon::claims
 {

@@ -222,7 +222,7 @@ EdgeLayer relaxed_edge(double spacing, const lattice::Material &material, double
   lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
   // Forces are sums of up to eighteen of the order of section times modulus; 1e-13 of them is a deviation of as much.
   const double scale = lattice::cross_section(material.nearest, sheet) * lattice::stiffness(material.nearest.law, 1.);
-  const lattice::Relaxation relaxation = lattice::relax(state, sheet, material, 1e-13 * scale);
+  const double residual = lattice::relax(state, sheet, material, 1e-13 * scale);
 
   // The mean over a row: sites of one row stay level.
   const auto level = [&](std::size_t row)
@@ -236,7 +236,7 @@ EdgeLayer relaxed_edge(double spacing, const lattice::Material &material, double
   // Over a few rows in the middle, where an edge layer is long gone.
   constexpr std::size_t bulk_rows = 4;
   const double bulk = (level(middle + bulk_rows) - level(middle)) / static_cast<double>(bulk_rows);
-  EdgeLayer layer{bulk / pitch, {}, relaxation.residual};
+  EdgeLayer layer{bulk / pitch, {}, residual};
   for (std::size_t j = 0; j < rows; ++j)
     layer.deviations.push_back((level(top - j) - level(top - j - 1)) / bulk - 1.);
   return layer;

@@ -279,7 +279,7 @@ private:
     // Above the line of the cut a quarter of all directions lead across it behind a point; a point is the tip if it has
     // lost as much.
     tip_.add(std::abs(at_stretch.tip + options_.planted_tip) / at_stretch.period);
-    const lattice::Grid grid{lattice::Grid::Kind::triangular, d, 0., subject_.orientation};
+    const lattice::Grid grid{lattice::Grid::Kind::triangular, d, subject_.orientation};
     const bridge::NonlocalContinuum on_lattice(lattice::triangular_stencil(grid), subject_.material, d);
     const bridge::RingValue rings = bridge::ring_cut_energy(subject_.material, d, stencil.grid, stretch);
     rows.add("energy of a straight cut along x through bonds at the breaking stretch; lattice, nonlocal continuum, "
@@ -327,10 +327,9 @@ std::vector<lattice::HalfBond> planted_bonds(const bridge::Subject &subject, con
   std::vector<lattice::Ring> rings =
     bridge::rings_of(subject.material, subject.spacing, subject.orientation, half_width);
   options.planted_rings(rings);
-  if (scatter > 0.)
-    return lattice::scattered_stencil(grid, rings, {scatter, 1});
-  std::vector<lattice::HalfBond> bonds = lattice::ring_stencil(grid, rings);
-  options.planted_bonds(bonds);
+  std::vector<lattice::HalfBond> bonds = lattice::ring_stencil(grid, rings, {scatter, 1});
+  if (scatter == 0.)
+    options.planted_bonds(bonds);
   return bonds;
 }
 
@@ -340,7 +339,7 @@ std::vector<NonlocalStencil> fixed_stencils(double d, lattice::Orientation orien
   for (const auto &[kind, name] :
        {std::pair(lattice::Grid::Kind::square, "square"), std::pair(lattice::Grid::Kind::triangular, "triangular")})
     for (const auto &[m, text] : {std::pair(1.5, "1.5"), std::pair(2., "2"), std::pair(3., "3")})
-      list.push_back({std::string(name) + " grid, m = " + text, {kind, d / m, 0., orientation}});
+      list.push_back({std::string(name) + " grid, m = " + text, {kind, d / m, orientation}});
   list.push_back({"scattered points of a square grid, m = 1.5", list[0].grid, M_PI / 6., 0.5});
   list.push_back({"scattered points of a triangular grid, m = 2", list[4].grid, M_PI / 6., 0.5});
   return list;
@@ -373,7 +372,7 @@ ClaimOutcome check_nonlocal(const ClaimInput &input)
   };
   if (std::none_of(options.stencils.begin(), options.stencils.end(), is_own))
     options.stencils.push_back({"stencil of the case",
-                                {own.grid, subject.spacing / own.refinement, 0., subject.orientation},
+                                {own.grid, subject.spacing / own.refinement, subject.orientation},
                                 support::smallest_of({own.half_width, M_PI / 6.}),
                                 own.scatter});
   options.samples = input.quick ? 10 : 100;

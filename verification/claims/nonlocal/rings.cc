@@ -9,8 +9,8 @@
 #include "lattice/site_fields.h"
 #include "support/largest_error.h"
 #include "verification/bridge/nonlocal_continuum.h"
+#include "verification/claims/bonds.h"
 #include "verification/claims/order_fit.h"
-#include "verification/claims/sites_and_bonds.h"
 
 namespace latcon::claims
 {
@@ -63,7 +63,7 @@ void ring_convergence(const bridge::Subject &subject, const NonlocalOptions &opt
       for (int i = 0; i < grids_per_middle; ++i)
       {
         const double m = middle * (0.87 + 0.28 * i / (grids_per_middle - 1));
-        const RingErrors errors = errors_of({kind, subject.spacing / m, 0., subject.orientation});
+        const RingErrors errors = errors_of({kind, subject.spacing / m, subject.orientation});
         for (std::size_t q = 0; q < n_ring_quantities; ++q)
           squares[q] += errors[q] * errors[q] / (2. * grids_per_middle);
       }
@@ -116,7 +116,7 @@ bridge::LatticeResponse StencilSheet::response(const Eigen::Matrix2d &F) const
     return bridge::homogeneous_response(sheet_, material_, F);
   const std::vector<lattice::SiteValues> fields = lattice::site_fields(state(F), sheet_, material_);
   bridge::LatticeResponse mean{0., Eigen::Matrix2d::Zero()};
-  for (const std::size_t place : sites(sheet_))
+  for (const std::size_t place : sheet_.sites())
   {
     mean.energy_density += fields[place].strain_energy_density / static_cast<double>(sheet_.n_sites());
     mean.first_piola_stress += fields[place].first_piola_stress / static_cast<double>(sheet_.n_sites());
@@ -138,7 +138,7 @@ double StencilSheet::imbalance(const Eigen::Matrix2d &F) const
   lattice::Forces forces(sheet_, material_);
   forces.evaluate(at_rest, at_rest.vx, at_rest.vy);
   double square = 0., tension = 0.;
-  for (const std::size_t place : sites(sheet_))
+  for (const std::size_t place : sheet_.sites())
     square += std::pow(forces.fx()[place], 2) + std::pow(forces.fy()[place], 2);
   for (const lattice::Bond &bond : bonds(at_rest, sheet_))
   {
@@ -154,7 +154,7 @@ double StencilSheet::imbalance(const Eigen::Matrix2d &F) const
 Eigen::Matrix2d StencilSheet::wave_stiffness(const Eigen::Matrix2d &F, const Eigen::Vector2d &K) const
 {
   const lattice::State at_rest = state(F);
-  const std::vector<std::size_t> all = sites(sheet_);
+  const std::vector<std::size_t> all = sheet_.sites();
   const std::size_t crest = sheet_.index(2 * (sheet_.rows() / 4), sheet_.columns() / 2);
   const double amplitude = 1e-5 / K.norm();
   lattice::Forces forces(sheet_, material_);
@@ -196,7 +196,7 @@ StencilSheet::Cut StencilSheet::cut(double stretch) const
   const Eigen::Matrix2d F = stretch * Eigen::Matrix2d::Identity();
   lattice::Simulation cut(sheet_, material_, lattice::homogeneous_state(sheet_, material_, F, lattice::Edges::held),
                           lattice::TimeStepping(1.),
-                          lattice::Fracture(sheet_, material_, 1.5 * stretch, lattice::GivenToughening(), F));
+                          lattice::Fracture(sheet_, material_, 1.5 * stretch, lattice::Toughening(), F));
   // Whole periods of the grid along x. The ends of the cut are off all points, and its line is between two of points.
   const lattice::Grid &grid = sheet_.grid();
   const double h = grid.spacing;

@@ -10,7 +10,7 @@
 #include "lattice/forces.h"
 #include "support/largest_error.h"
 #include "verification/bridge/homogeneous_response.h"
-#include "verification/claims/sites_and_bonds.h"
+#include "verification/claims/bonds.h"
 
 namespace latcon::claims
 {
@@ -26,7 +26,7 @@ Eigen::Vector2d reactions(const lattice::TriangularLattice &sheet, const lattice
   lattice::Forces forces(sheet, material);
   forces.evaluate(state, state.vx, state.vy);
   Eigen::Vector2d reaction = Eigen::Vector2d::Zero();
-  for (const std::size_t place : sites(sheet))
+  for (const std::size_t place : sheet.sites())
     if (state.held[place] != 0)
     {
       const Eigen::Vector2d X = sheet.reference(place);
@@ -132,7 +132,7 @@ CutSheet sheet_with_notch(const bridge::Subject &subject, double a, const Eigen:
   const lattice::TriangularLattice lattice(subject.spacing, 4. * a, 4. * a, subject.orientation);
   support::Extremes inside;
   inside.add(0.);
-  for (const std::size_t place : sites(lattice))
+  for (const std::size_t place : lattice.sites())
   {
     const Eigen::Vector2d X = lattice.reference(place);
     if (std::abs(X.y()) < 0.1 * subject.spacing && X.x() < a + 0.1 * subject.spacing)
@@ -147,7 +147,7 @@ CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet
   const lattice::State whole = lattice::homogeneous_state(lattice, subject.material, sheet.F, sheet.held);
   CutLattice cut{sheet, lattice, whole, {}, {}, {}, 0., {}, 0., {}, 0., 0.};
   lattice::cut_out(cut.state, lattice, sheet.cutout);
-  cut.relaxation =
+  cut.residual =
     lattice::relax(cut.state, lattice, subject.material, 1e-8 * subject.theory.shear_modulus * subject.spacing);
   cut.fields = lattice::site_fields(cut.state, lattice, subject.material);
 
@@ -178,7 +178,7 @@ CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet
   cut.left_of_energy = energy_missing / energy - overhang;
   cut.left_of_force = force_missing / force - overhang;
 
-  for (const std::size_t place : sites(lattice))
+  for (const std::size_t place : lattice.sites())
     if (cut.state.inverse_mass[place] > 0.)
     {
       unsigned int bonds = 0;
@@ -244,7 +244,7 @@ std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutSt
     const auto add =
       [&](const std::string &law, const continuum::Constitution &constitution, const bridge::EquivalentSheet &at)
     {
-      CutResult result{size, law, {}, {}, lattice.relaxation.residual / (subject.theory.shear_modulus * d), {}, {}};
+      CutResult result{size, law, {}, {}, lattice.residual / (subject.theory.shear_modulus * d), {}, {}};
       std::optional<CutSolution> found = compare(lattice, at, constitution, study.mesh, result.failure);
       if (found)
         result.errors = found->errors;

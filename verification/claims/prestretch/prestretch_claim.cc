@@ -10,7 +10,6 @@
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/claims/claim_list.h"
-#include "verification/claims/sites_and_bonds.h"
 #include "verification/claims/states.h"
 
 namespace latcon::claims
@@ -40,7 +39,7 @@ LatticeSide relaxed_lattice(const bridge::Subject &subject, const lattice::Trian
 
   side.fields = lattice::site_fields(side.state, sheet, subject.material);
   side.energy_density = 0.;
-  for (const std::size_t place : sites(sheet))
+  for (const std::size_t place : sheet.sites())
     if (side.state.held[place] == 0)
     {
       side.interior.push_back(place);

@@ -61,7 +61,7 @@ struct CutLattice
   lattice::TriangularLattice lattice;
   lattice::State state;
   std::vector<lattice::SiteValues> fields;
-  lattice::Relaxation relaxation;
+  double residual; ///< largest force on a free site, per sheet thickness [N/m]
 
   /// A site whose fields are compared.
   struct Site

@@ -16,9 +16,9 @@
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/homogenisation.h"
+#include "verification/claims/bonds.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/continuum_waves.h"
-#include "verification/claims/sites_and_bonds.h"
 
 namespace latcon::claims
 {

@@ -7,7 +7,7 @@
 #include "lattice/site_fields.h"
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
-#include "verification/claims/sites_and_bonds.h"
+#include "verification/claims/bonds.h"
 #include "verification/output/field_writer.h"
 
 namespace latcon::claims
@@ -96,7 +96,7 @@ std::vector<TipSite> tip_sites(const CrackDrive &drive, const lattice::Triangula
                                double reach)
 {
   std::vector<TipSite> near;
-  for (const std::size_t place : sites(sheet))
+  for (const std::size_t place : sheet.sites())
   {
     const Eigen::Vector2d X = sheet.reference(place);
     const double xi = X.x() - X_tip, eta = X.y() - drive.axis();
@@ -177,9 +177,8 @@ TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &mat
   lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::held);
   const std::vector<Crossing> schedule = crossings(drive, sheet, state);
   const lattice::TimeStepping stepping = time_stepping(drive, sheet, material);
-  lattice::Simulation simulation(
-    sheet, material, std::move(state), stepping,
-    lattice::Fracture(sheet, material, lattice::unbreakable, lattice::GivenToughening(), F));
+  lattice::Simulation simulation(sheet, material, std::move(state), stepping,
+                                 lattice::Fracture(sheet, material, lattice::unbreakable, lattice::Toughening(), F));
   const lattice::SiteEvaluator evaluator(sheet, material);
 
   TipRun run{TipField(drive), {}};

@@ -9,7 +9,7 @@
 #include "lattice/time_step.h"
 #include "support/fits.h"
 #include "support/largest_error.h"
-#include "verification/claims/sites_and_bonds.h"
+#include "verification/claims/bonds.h"
 
 namespace latcon::claims
 {
@@ -50,7 +50,7 @@ public:
       throw std::invalid_argument("the time step of a crack run is beyond the stable one");
     lattice::Simulation simulation(sheet_, material_, seeded_strip(F), h,
                                    lattice::Fracture(sheet_, material_, 1. + options_.breaking_strain,
-                                                     lattice::GivenToughening{lattice::unbreakable}, F));
+                                                     lattice::Toughening{lattice::unbreakable}, F));
 
     CrackRun run{};
     support::Extremes elsewhere;

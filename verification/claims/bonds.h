@@ -1,4 +1,4 @@
-/// Sites and bonds of the small sheets of claims as lists.
+/// Bonds of the small sheets of claims as lists.
 #pragma once
 
 #include <vector>
@@ -7,16 +7,6 @@
 
 namespace latcon::claims
 {
-
-/// Returns the places of all sites, row by row.
-inline std::vector<std::size_t> sites(const lattice::TriangularLattice &sheet)
-{
-  std::vector<std::size_t> places;
-  for (std::size_t place = 0; place < sheet.n_places(); ++place)
-    if (sheet.is_site(place))
-      places.push_back(place);
-  return places;
-}
 
 /// Returns the bonds that are present, row by row.
 inline std::vector<lattice::Bond> bonds(const lattice::State &state, const lattice::TriangularLattice &sheet)
