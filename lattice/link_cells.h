@@ -19,9 +19,10 @@ namespace latcon::lattice
 class LinkCells
 {
 public:
+  /// A point as it was put last.
   struct Point
   {
-    std::size_t id;
+    std::size_t id;           ///< given by the caller
     Eigen::Vector2d position; ///< [m]
   };
 
