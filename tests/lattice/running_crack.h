@@ -70,7 +70,7 @@ inline std::unique_ptr<latcon::lattice::Simulation> start(const latcon::lattice:
 
 inline bool same_bits(const latcon::lattice::Field &a, const latcon::lattice::Field &b)
 {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
 }
 
 /// Expects the same state of all sites and bonds, the same ledger, and the same stresses as frames have them.
