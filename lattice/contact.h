@@ -80,7 +80,7 @@ private:
   const TriangularLattice &lattice_;
   ContactLaw law_;
   double skin_;
-  Rows own_;                                                      // places of the band
+  Rows own_;                                                      // places of the band, asked for each pair
   LinkCells cells_;                                               // of candidates, by their places
   boost::container::flat_map<std::size_t, Candidate> candidates_; // by place
   std::vector<std::vector<SiteForce>> forces_of_shares_;          // scratch

@@ -36,8 +36,8 @@ public:
   /// Removes all points.
   void clear() { points_.clear(); }
 
-  /// Moves the point `id` [m]. A point whose position is not finite is near nothing, as one that was never put
-  /// anywhere.
+  /// Moves the point `id` between two positions [m]. A point whose position is not finite is near nothing, as one that
+  /// was never put anywhere.
   void move(std::size_t id, const Eigen::Vector2d &from, const Eigen::Vector2d &to)
   {
     const Cell left = cell(from), reached = cell(to);

@@ -42,7 +42,7 @@ struct RememberedRow
 /// The bonds of one kind, a half-bond of a stencil, that start in a row, with places counted from its first site.
 struct BondsOfKind
 {
-  const BondLaw *law;
+  const BondLaw *law; ///< null: there are no such bonds
   BondConstants constants;
   std::ptrdiff_t shift;                ///< from a site to the far end of its bond
   const BondStates::Word *states;      ///< of sites: the words that hold this kind and all others of a call

@@ -11,10 +11,10 @@
 ///   sigma = psi'(lam) + eta lam' + q   (theory.md, eq. (L.27)).
 ///
 /// A memory declares its number of variables, the mechanisms by which it stores and dissipates energy, and a bound on
-/// its stiffness. `set_duration` prepares it for updates over one duration, 0 by default; `advance` (formulas.inc) is
-/// the formula of an update. Variables are 0 at rest and are stored by BondHistory. `advance` gives the power that each
-/// mechanism dissipates at the end of an update, or, if `dissipates_energy`, the energy that it dissipates in the
-/// update.
+/// its stiffness. `set_duration` prepares it for updates over one duration [s], >= 0, at first 0; `advance`
+/// (formulas.inc) is the formula of an update. Variables are 0 at rest and are stored by BondHistory. `advance` gives
+/// the power that each mechanism dissipates at the end of an update, or, if `dissipates_energy`, the energy that it
+/// dissipates in the update.
 namespace latcon::lattice
 {
 

@@ -128,7 +128,7 @@ struct CrackRunOptions
 {
   CrackStrip strip;
   double driving; ///< Delta / Delta_G of the held rows
-  double time_step = 0.025;
+  double time_step = 0.025;      ///< [sqrt(m/k)]
   double breaking_strain = 1e-4; ///< lam_f - 1 [-]
   double length = 260.;       ///< of the strip; its left end is free, the right one held
   double window_begin = 110.; ///< what the tip does from here on is measured ...
@@ -164,7 +164,7 @@ struct SteadyCrackSeries
   std::vector<double> drivings; ///< Delta / Delta_G, between the weakest under which a crack runs steadily and the
                                 ///< strongest under which only bonds between the middle rows break, which is the last
   double beyond;                ///< driving under which bonds off the crack break too; 0: not tried
-  double time_step = 0.025;     ///< of the runs; a longer one has larger tolerances
+  double time_step = 0.025;     ///< of the runs [sqrt(m/k)]; a longer one has larger tolerances
   /// Error that a test introduces into the simulator; none otherwise.
   std::function<void(CrackRunOptions &)> planted = [](CrackRunOptions &) {};
 };
