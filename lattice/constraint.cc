@@ -15,6 +15,19 @@ std::uint8_t components(const Constraint &constraint)
   return static_cast<std::uint8_t>((constraint.along_x ? 1 : 0) | (constraint.along_y ? 2 : 0));
 }
 
+// The components of a vector that are prescribed.
+Eigen::Vector2d prescribed(const Constraint &constraint, const Eigen::Vector2d &vector)
+{
+  return {constraint.along_x ? vector.x() : 0., constraint.along_y ? vector.y() : 0.};
+}
+
+void set_velocity(State &state, const Constraint &constraint, std::size_t place, const Eigen::Vector2d &velocity)
+{
+  for (const std::size_t axis : axes)
+    if ((components(constraint) >> axis & 1) != 0)
+      state.velocity[axis][place] = velocity[static_cast<Eigen::Index>(axis)];
+}
+
 } // namespace
 
 std::vector<std::size_t> held_sites(const State &state, const TriangularLattice &lattice)
@@ -67,10 +80,7 @@ void constrain(State &state, const RowPartition &band, const Constraint &constra
       continue;
     if (is_whole)
       state.inverse_mass[place] = 0.;
-    if (constraint.along_x)
-      state.vx[place] = 0.;
-    if (constraint.along_y)
-      state.vy[place] = 0.;
+    set_velocity(state, constraint, place, Eigen::Vector2d::Zero());
   }
 }
 
@@ -103,8 +113,7 @@ bool PrescribedMotion::prescribe(State &state, const Material &material, double 
     {
       if (!band_.owns(place) || state.removed[place] != 0)
         continue;
-      const double vx = constraint_.along_x ? state.vx[place] : 0., vy = constraint_.along_y ? state.vy[place] : 0.;
-      work[lattice.row_of(place)] += half_mass * (vx * vx + vy * vy);
+      work[lattice.row_of(place)] += half_mass * prescribed(constraint_, state.velocity.at(place)).squaredNorm();
     }
     return true;
   }
@@ -113,42 +122,27 @@ bool PrescribedMotion::prescribe(State &state, const Material &material, double 
     return false;
   velocity_ = velocity;
   for (const std::size_t place : constraint_.sites)
-  {
-    if (!band_.is_relevant(place) || state.removed[place] != 0)
-      continue;
-    const Eigen::Vector2d v = velocity.at(lattice.reference(place));
-    if (constraint_.along_x)
-      state.vx[place] = v.x();
-    if (constraint_.along_y)
-      state.vy[place] = v.y();
-  }
+    if (band_.is_relevant(place) && state.removed[place] == 0)
+      set_velocity(state, constraint_, place, velocity.at(lattice.reference(place)));
   return true;
 }
 
-void PrescribedMotion::add_power(const State &state, const Forces &forces, const Field &vx, const Field &vy,
+void PrescribedMotion::add_power(const State &state, const VectorField &on_sites,
                                  const std::vector<const SiteForces *> &site_forces, std::vector<double> &of_rows) const
 {
   if (released_ != 0 || velocity_.is_zero())
     return;
   const TriangularLattice &lattice = band_.lattice();
   const std::vector<std::size_t> &sites = constraint_.sites;
-  const auto power_of = [&](std::size_t place, const Eigen::Vector2d &force)
-  {
-    return (constraint_.along_x ? force.x() * state.vx[place] : 0.) +
-           (constraint_.along_y ? force.y() * state.vy[place] : 0.);
-  };
-  std::vector<double> powers(sites.size());
-  const auto n = static_cast<std::ptrdiff_t>(sites.size());
-#pragma omp parallel for schedule(static) if (sites.size() >= min_sites_for_threads)
-  for (std::ptrdiff_t i = 0; i < n; ++i)
-    if (const std::size_t place = sites[static_cast<std::size_t>(i)]; band_.owns(place) && state.removed[place] == 0)
-      powers[static_cast<std::size_t>(i)] = power_of(place, forces.on_site(state, vx, vy, place));
-  for (std::size_t i = 0; i < sites.size(); ++i)
-    of_rows[lattice.row_of(sites[i])] -= powers[i];
+  const auto add = [&](std::size_t place, const Eigen::Vector2d &force)
+  { of_rows[lattice.row_of(place)] -= prescribed(constraint_, force).dot(state.velocity.at(place)); };
+  for (const std::size_t place : sites)
+    if (band_.owns(place) && state.removed[place] == 0)
+      add(place, on_sites.at(place));
   for (const SiteForces *others : site_forces)
     for (const SiteForce &on : others->last())
       if (std::binary_search(sites.begin(), sites.end(), on.place))
-        of_rows[lattice.row_of(on.place)] -= power_of(on.place, on.force);
+        add(on.place, on.force);
 }
 
 void PrescribedMotion::free_if_released(State &state, const Material &material) const

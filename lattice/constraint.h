@@ -69,9 +69,9 @@ public:
   bool prescribe(State &state, const Material &material, double from, double to, std::vector<double> &work);
 
   /// Adds the power of the constraint on the sheet, -f . v over the components prescribed, f being all forces on a site
-  /// [W/m]. @param site_forces beside those of the bonds @param of_rows one per row
-  void add_power(const State &state, const Forces &forces, const Field &vx, const Field &vy,
-                 const std::vector<const SiteForces *> &site_forces, std::vector<double> &of_rows) const;
+  /// [W/m]. @param on_sites those of the bonds [N/m] @param site_forces others @param of_rows one per row
+  void add_power(const State &state, const VectorField &on_sites, const std::vector<const SiteForces *> &site_forces,
+                 std::vector<double> &of_rows) const;
 
   /// Saves or loads what changes, besides the state; see Simulation.
   template <class Archive>

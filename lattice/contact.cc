@@ -18,11 +18,6 @@ constexpr double skin_over_distance = 1.;
 // Candidates below which one thread is faster.
 constexpr std::size_t min_candidates_for_threads = 512;
 
-Eigen::Vector2d difference(const Field &x, const Field &y, std::size_t first, std::size_t second)
-{
-  return {x[second] - x[first], y[second] - y[first]};
-}
-
 } // namespace
 
 ContactLaw contact_like_nearest_bond(const TriangularLattice &lattice, const Material &material, double distance,
@@ -75,7 +70,7 @@ void Contact::update_lists(const State &state)
   std::vector<Listing> own;
   for (const auto &[place, candidate] : candidates_)
   {
-    const Eigen::Vector2d here(state.x[place], state.y[place]);
+    const Eigen::Vector2d here = state.position.at(place);
     if (owns(place) && (!candidate.is_listed || (here - candidate.listed_at).squaredNorm() > 0.25 * skin_ * skin_))
       own.push_back({place, here.x(), here.y()});
   }
@@ -139,20 +134,20 @@ void Contact::find_exchanged_sites()
     }
 }
 
-const std::vector<SiteForce> &Contact::evaluate(State &state, Field &vx, Field &vy)
+const std::vector<SiteForce> &Contact::evaluate(State &state, VectorField &velocity)
 {
   update_lists(state);
-  band_.exchange(sent_, received_, {&state.x, &state.y, &vx, &vy});
+  band_.exchange(sent_, received_, {&state.position.x, &state.position.y, &velocity.x, &velocity.y});
   const auto add_pair = [&](std::size_t first, std::size_t second, std::vector<SiteForce> &forces)
   {
-    const Eigen::Vector2d between = difference(state.x, state.y, first, second);
+    const Eigen::Vector2d between = state.position.difference(first, second);
     const double square = between.squaredNorm();
     // Sites in one place have no line between them to act along.
     if (!(square < law_.distance * law_.distance) || square == 0.)
       return;
     const double r = std::sqrt(square);
     const Eigen::Vector2d direction = between / r;
-    const double approach = -direction.dot(difference(vx, vy, first, second));
+    const double approach = -direction.dot(velocity.difference(first, second));
     const double repulsion = law_.stiffness * (law_.distance - r) + law_.viscosity * approach;
     if (!(repulsion > 0.))
       return;

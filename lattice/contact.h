@@ -54,7 +54,7 @@ public:
   /// Makes the ends of bonds that broke candidates, which may touch others from now on, and each other.
   void add_broken_bonds(const std::vector<BrokenBond> &broken);
 
-  const std::vector<SiteForce> &evaluate(State &state, Field &vx, Field &vy) override;
+  const std::vector<SiteForce> &evaluate(State &state, VectorField &velocity) override;
 
   const ContactLaw &law() const { return law_; } ///< as given
   /// Returns how often candidates were listed, each for itself.

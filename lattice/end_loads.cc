@@ -114,11 +114,11 @@ EndLoads::EndLoads(const RowPartition &band, const Material &material, const Sta
                (modes.vectors * modes.values.cwiseSqrt().asDiagonal() * modes.vectors.transpose());
 }
 
-const std::vector<SiteForce> &EndLoads::evaluate(State &, Field &vx, Field &vy)
+const std::vector<SiteForce> &EndLoads::evaluate(State &, VectorField &velocity)
 {
   forces_ = dead_;
   for (const std::size_t place : absorbing_)
-    forces_.push_back({place, -impedance_ * Eigen::Vector2d(vx[place], vy[place])});
+    forces_.push_back({place, -impedance_ * velocity.at(place)});
   return forces_;
 }
 

@@ -39,7 +39,7 @@ public:
   EndLoads(const RowPartition &band, const Material &material, const State &state, const Eigen::Matrix2d &F, End left,
            End right);
 
-  const std::vector<SiteForce> &evaluate(State &state, Field &vx, Field &vy) override;
+  const std::vector<SiteForce> &evaluate(State &state, VectorField &velocity) override;
 
 private:
   std::vector<SiteForce> dead_;

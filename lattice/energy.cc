@@ -107,9 +107,11 @@ double kinetic_energy(const State &state, const RowPartition &band)
       const std::size_t place = lattice.index(row, column);
       if (!(state.inverse_mass[place] > 0.))
         continue;
-      const double vx = (state.rollers[place] & 1) == 0 ? state.vx[place] : 0.;
-      const double vy = (state.rollers[place] & 2) == 0 ? state.vy[place] : 0.;
-      sum += 0.5 / state.inverse_mass[place] * (vx * vx + vy * vy);
+      double square = 0.;
+      for (const std::size_t axis : axes)
+        if (state.is_free(place, axis))
+          square += state.velocity[axis][place] * state.velocity[axis][place];
+      sum += 0.5 / state.inverse_mass[place] * square;
     }
     return sum;
   };

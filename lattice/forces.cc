@@ -11,7 +11,8 @@ namespace latcon::lattice
 Forces::Forces(const RowPartition &band, const Material &material)
   : band_(band), lattice_(band.lattice()), material_(material), n_kinds_(material.n_kinds(lattice_)),
     reach_(static_cast<std::ptrdiff_t>(lattice_.reach())),
-    columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_sums_(lattice_.rows())
+    columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), on_sites_(lattice_.n_places()),
+    is_kept_(lattice_.rows(), false), row_sums_(lattice_.rows())
 {
   kernels::instruction_sets();
   for (std::size_t kind = 0; kind < n_kinds_; ++kind)
@@ -36,7 +37,7 @@ void Forces::set_elapsed(double duration)
       set_duration(shell->memory, duration);
 }
 
-void Forces::evaluate(const State &state, const Field &vx, const Field &vy, const RowCallbacks &work)
+void Forces::evaluate(const State &state, const VectorField &velocity, const RowCallbacks &work)
 {
   const Rows own = band_.rows();
   const bool threads = (own.end - own.begin) * lattice_.stride() >= min_places_for_threads;
@@ -57,16 +58,16 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy, cons
           work.pre_force(static_cast<std::size_t>(row));
 #pragma omp barrier
     Scratch &scratch = scratch_[static_cast<std::size_t>(i)];
-    evaluate_rows({state, vx, vy, history}, begin, end, scratch, work);
+    evaluate_rows({state, velocity, history}, begin, end, scratch, work);
     if (history != nullptr)
     {
       // The rows whose bonds the thread above computed too, and those below the band.
 #pragma omp barrier
       for (std::ptrdiff_t row = std::max(begin, end - reach_); row < end; ++row)
-        bonds_of_row({state, vx, vy, history}, static_cast<std::size_t>(row), row, row, scratch);
+        bonds_of_row({state, velocity, history}, static_cast<std::size_t>(row), row, row, scratch);
       for (std::ptrdiff_t below = first - reach_; i == 0 && below < first; ++below)
         if (const auto row = lattice_.row(below); row && (*row < own.begin || *row >= own.end))
-          bonds_of_row({state, vx, vy, history}, *row, below, below, scratch);
+          bonds_of_row({state, velocity, history}, *row, below, below, scratch);
     }
   }
   if (history != nullptr)
@@ -78,7 +79,7 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
 {
   if (begin == end)
     return;
-  const Motion motion{updating.state, updating.vx, updating.vy};
+  const Motion motion{updating.state, updating.velocity};
   scratch.ahead.clear();
   scratch.sums.clear();
   for (std::ptrdiff_t row = begin - reach_; row < begin; ++row)
@@ -95,11 +96,12 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
       work.pre_force(index + lattice_.reach());
     scratch.ahead.clear();
     if (row + 2 * reach_ + 1 < end)
-      for (const Field *field : work.fields)
-        scratch.ahead.push_back(&(*field)[lattice_.index(index + lattice_.reach() + 1, 0)]);
+      for (const VectorField *field : work.fields)
+        for (const std::size_t axis : axes)
+          scratch.ahead.push_back(&(*field)[axis][lattice_.index(index + lattice_.reach() + 1, 0)]);
     const Motion &of_row = row < end - reach_ ? updating : motion;
     row_sums_[index] = bonds_of_row(of_row, index, row, begin, scratch);
-    const std::array<double *, 2> on_sites = scratch.sums.at(row);
+    const OfRow on_sites = scratch.sums.at(row);
     // What bonds across a periodic edge do to images of sites is done to the sites.
     const auto columns = static_cast<std::ptrdiff_t>(lattice_.columns());
     if (lattice_.is_triangular())
@@ -111,7 +113,10 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
           sum[c] += sum[columns + c];
           sum[columns - 1 - c] += sum[-1 - c];
         }
-    work.post_force(index, on_sites[0], on_sites[1]);
+    for (std::size_t axis = 0; axis < 2 && is_kept_[index]; ++axis)
+      std::copy_n(on_sites[axis], lattice_.columns(), &on_sites_[axis][lattice_.index(index, 0)]);
+    if (work.post_force)
+      work.post_force(index, on_sites);
     if (!lattice_.is_triangular())
       scratch.sums.clear(row);
   }
@@ -140,22 +145,30 @@ kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row,
     bonds.remembered = nullptr;
     bonds.length_ratio = lattice_.scattered() != nullptr ? &lattice_.scattered()->length_ratios[kind][near] : nullptr;
   }
-  return {lattice_.columns(),     &state.x[near],          &state.y[near],   &motion.vx[near], &motion.vy[near],
-          state.breaking_stretch, state.toughened_stretch, shortness_limit_, kinds.data(),     n_kinds_};
+  return {lattice_.columns(),
+          &state.position.x[near],
+          &state.position.y[near],
+          &motion.velocity.x[near],
+          &motion.velocity.y[near],
+          state.breaking_stretch,
+          state.toughened_stretch,
+          shortness_limit_,
+          kinds.data(),
+          n_kinds_};
 }
 
 bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ahead) const
 {
   std::vector<kernels::BondsOfKind> kinds;
-  return kernels::loops().any_event_ahead(row_of_bonds({state, state.vx, state.vy}, row, kinds), ahead);
+  return kernels::loops().any_event_ahead(row_of_bonds({state, state.velocity}, row, kinds), ahead);
 }
 
-bool Forces::row_has_short_bonds_ahead(const State &state, const Field &vx, const Field &vy, std::size_t row,
-                                       double ahead, double stretch) const
+bool Forces::row_has_short_bonds_ahead(const State &state, const VectorField &velocity, std::size_t row, double ahead,
+                                       double stretch) const
 {
   std::vector<kernels::BondsOfKind> kinds;
   return row_sums(row).has_short_bonds &&
-         kernels::loops().any_short_ahead(row_of_bonds({state, vx, vy}, row, kinds), ahead, stretch);
+         kernels::loops().any_short_ahead(row_of_bonds({state, velocity}, row, kinds), ahead, stretch);
 }
 
 void Forces::remember(const Motion &motion, std::size_t row, std::size_t kind, double *mechanism_power,
@@ -251,91 +264,19 @@ void Forces::gather_row(std::ptrdiff_t row, Scratch &scratch) const
   kernels::loops().gather_row(lattice_.columns(), n_kinds_, start[1], end[1], scratch.sums.at(row)[1]);
 }
 
-void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
+void Forces::evaluate(const State &state, const VectorField &velocity)
 {
-  fx_.resize(lattice_.n_places());
-  fy_.resize(lattice_.n_places());
-  const auto keep = [this](std::size_t row, const double *fx, const double *fy)
-  {
-    std::copy_n(fx, lattice_.columns(), &fx_[lattice_.index(row, 0)]);
-    std::copy_n(fy, lattice_.columns(), &fy_[lattice_.index(row, 0)]);
-  };
-  evaluate(state, vx, vy, {{}, {}, std::ref(keep)});
+  is_kept_.assign(is_kept_.size(), true);
+  evaluate(state, velocity, {});
 }
 
-void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, const Bond &bond)
+void Forces::evaluate_row(const State &state, const VectorField &velocity, std::size_t row,
+                          const RowFunction &post_force)
 {
-  if (!band_.owns(bond.near))
-    return;
-  kernels::RowSums &sums = row_sums_[lattice_.row_of(bond.near)];
-  const SingleBond removed = single_bond({state, vx, vy}, bond);
-  sums.viscous_power -= removed.viscous_power;
-  const std::size_t shell = lattice_.shell(bond.kind), first = material_.first_mechanism(shell);
-  for (std::size_t m = 0; m < n_mechanisms(material_.in_shell(shell)->memory); ++m)
-    sums.mechanism_power[first + m] -= removed.dissipation[m];
-}
-
-// By the operations of the loops over rows, so that both have the same bits.
-Forces::SingleBond Forces::single_bond(const Motion &motion, const Bond &bond) const
-{
-  const auto &[state, vx, vy, history] = motion;
-  const auto [near, kind, far] = bond;
-  const auto &[rest_length, section, damping] = constants_[kind];
-  const Shell &shell = *material_.shell(lattice_, kind);
-  const double factor = state.stiffness.of(near, kind), ratio = lattice_.length_ratio(near, kind);
-  const Eigen::Vector2d r = ratio * Eigen::Vector2d(state.x[far] - state.x[near], state.y[far] - state.y[near]);
-  const double length = r.norm(), inverse = 1. / length;
-  const Eigen::Vector2d n = ratio * (r * inverse);
-  const double rate = Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near]).dot(n), viscous = damping * rate;
-  const double stretch = (1. / rest_length) * length, inverse_stretch = rest_length * inverse;
-  const double of_law =
-    std::visit([&](const auto &law) { return formulas::force(law, stretch, inverse_stretch); }, shell.law);
-  SingleBond single{factor * (section * of_law + viscous) * n, factor * (viscous * rate), {}};
-  if (!state.history.remembers(kind))
-    return single;
-  auto variables = state.history.variables_of(near, kind);
-  const double overstress = advance(shell.memory, state.history.kinds[kind].stretch[near], stretch, variables.data(),
-                                    single.dissipation.data());
-  single.force += factor * (section * overstress) * n;
-  for (double &power : single.dissipation)
-  {
-    power = power * (section * rest_length) * factor;
-    if (!dissipates_energy(shell.memory))
-      single.viscous_power += power;
-  }
-  return single;
-}
-
-Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field &vy, std::size_t place) const
-{
-  const auto force = [&](const Bond &bond) -> Eigen::Vector2d
-  {
-    if (!state.bonds.present(bond.near, bond.kind))
-      return {0., 0.};
-    return single_bond({state, vx, vy}, bond).force;
-  };
-  if (lattice_.is_triangular())
-  {
-    std::array<Eigen::Vector2d, n_bond_kinds> start, end; // the first n_kinds_
-    for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-    {
-      start[kind] = force(lattice_.bond(place, kind));
-      end[kind] = force(lattice_.bond_into(place, kind));
-    }
-    return n_kinds_ == n_bond_kinds ? formulas::sum_of_bonds<true>(start.data(), end.data())
-                                    : formulas::sum_of_bonds<false>(start.data(), end.data());
-  }
-  // In the order of an evaluation: rows from the lowest up, half-bond by half-bond.
-  Eigen::Vector2d sum(0., 0.);
-  for (std::ptrdiff_t below = reach_; below >= 0; --below)
-    for (std::size_t kind = 0; kind < n_kinds_; ++kind)
-    {
-      if (below == 0)
-        sum += force(lattice_.bond(place, kind));
-      if (lattice_.rows_across(kind) == below)
-        sum -= force(lattice_.bond_into(place, kind));
-    }
-  return sum;
+  RowCallbacks work;
+  work.post_force = std::ref(post_force);
+  const auto number = static_cast<std::ptrdiff_t>(row);
+  evaluate_rows({state, velocity}, number, number + 1, scratch_.front(), work);
 }
 
 } // namespace latcon::lattice

@@ -38,6 +38,9 @@ public:
   /// are evaluated next [s], >= 0; 0 by default and from each update on.
   void set_elapsed(double duration);
 
+  /// Components of the forces on the sites of a row [N/m].
+  using OfRow = std::array<double *, 2>;
+  using RowFunction = std::function<void(std::size_t row, const OfRow &force)>;
   /// Callbacks of an integrator for each row of the band during an evaluation, while the row is in cache: once per row,
   /// in any order, by several threads.
   struct RowCallbacks
@@ -46,24 +49,25 @@ public:
     /// sheets that are periodic, whose images must be there too. May be empty.
     std::function<void(std::size_t row)> pre_force;
     /// Fields that the callbacks work on; they are fetched from memory while the rows before are computed.
-    std::vector<const Field *> fields = {};
-    /// Takes the forces on the sites of the row [N/m]; may change all but those positions and velocities.
-    std::function<void(std::size_t row, const double *fx, const double *fy)> post_force;
+    std::vector<const VectorField *> fields = {};
+    /// Takes the forces on the sites of the row; may change all but those positions and velocities.
+    RowFunction post_force = {};
     /// History to be updated to the evaluated positions, that of the evaluated state; nullptr: none.
     BondHistory *history = nullptr;
   };
 
-  /// Computes the force on every site of the band at positions state.x, y and the given velocities [m/s], those of
-  /// images included. Forces at held sites are those the bonds exert on them.
-  void evaluate(const State &state, const Field &vx, const Field &vy, const RowCallbacks &work);
-  /// Evaluates the forces into fx() and fy().
-  void evaluate(const State &state, const Field &vx, const Field &vy);
+  /// Computes the force on every site of the band at the positions of the state and the given velocities [m/s], those
+  /// of images included. Forces at held sites are those the bonds exert on them.
+  void evaluate(const State &state, const VectorField &velocity, const RowCallbacks &work);
+  /// Evaluates the forces into on_sites().
+  void evaluate(const State &state, const VectorField &velocity);
+  /// Computes the forces on the sites of one row of the band anew, and the sums over its bonds, at the positions and
+  /// velocities [m/s] of the last evaluation, where bonds have been lost since.
+  void evaluate_row(const State &state, const VectorField &velocity, std::size_t row, const RowFunction &post_force);
 
-  const Field &fx() const { return fx_; } ///< force per sheet thickness [N/m]
-  const Field &fy() const { return fy_; }
-
-  /// Force on one site [N/m] at the given velocities, by the operations of an evaluation of all.
-  Eigen::Vector2d on_site(const State &state, const Field &vx, const Field &vy, std::size_t place) const;
+  /// Keeps the forces on the sites of a row in on_sites(), from the next evaluation on.
+  void keep(std::size_t row) { is_kept_[row] = true; }
+  const VectorField &on_sites() const { return on_sites_; } ///< per sheet thickness, in rows that are kept [N/m]
 
   /// Sums over the bonds that start in a row of the band, as of the last evaluation.
   const kernels::RowSums &row_sums(std::size_t row) const { return row_sums_[row]; }
@@ -75,14 +79,9 @@ public:
   bool row_has_events_ahead(const State &state, std::size_t row, double ahead) const;
 
   /// Returns whether one of the short bonds that start in a row of the band has at most a stretch of `stretch` [-], or
-  /// will have it in `ahead` [s] at its rate now, with the velocities vx, vy [m/s] of the last evaluation.
-  bool row_has_short_bonds_ahead(const State &state, const Field &vx, const Field &vy, std::size_t row, double ahead,
+  /// will have it in `ahead` [s] at its rate now, with the velocities [m/s] of the last evaluation.
+  bool row_has_short_bonds_ahead(const State &state, const VectorField &velocity, std::size_t row, double ahead,
                                  double stretch) const;
-
-  /// Takes a bond that has just broken out of the powers of its row, if it is in the band.
-  /// @param state as at the last evaluation
-  /// @param vx,vy velocities of that evaluation
-  void remove_bond(const State &state, const Field &vx, const Field &vy, const Bond &bond);
 
 private:
   /// Forces in the last n rows, as far as they are known.
@@ -113,16 +112,8 @@ private:
   struct Motion
   {
     const State &state;
-    const Field &vx, &vy;
+    const VectorField &velocity;
     BondHistory *history = nullptr; // updated
-  };
-
-  /// What one bond does.
-  struct SingleBond
-  {
-    Eigen::Vector2d force;                                 // on its near end [N/m]
-    double viscous_power;                                  // [W/m]
-    std::array<double, max_history_variables> dissipation; // of each mechanism, 0 beyond [W/m], or [J/m]
   };
 
   /// Scratch arrays of a thread.
@@ -155,7 +146,6 @@ private:
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
   void remember(const Motion &motion, std::size_t row, std::size_t kind, double *mechanism_power,
                 Scratch &scratch) const;
-  SingleBond single_bond(const Motion &motion, const Bond &bond) const;
 
   RowPartition band_;
   const TriangularLattice &lattice_;
@@ -168,7 +158,8 @@ private:
   bool columns_repeat_; // periodic along the rows
 
   std::vector<Scratch> scratch_; // one a thread
-  Field fx_, fy_;
+  VectorField on_sites_;
+  std::vector<bool> is_kept_; // by row
   std::vector<kernels::RowSums> row_sums_;
   std::vector<bool> mechanism_gives_energy_;
 };

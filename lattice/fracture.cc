@@ -49,11 +49,11 @@ double Fracture::limit(const State &state, const Bond &bond, double rate) const
 }
 
 // With the expressions of the loops over a row: one that they do not flag has no event.
-Fracture::Event Fracture::event(const State &state, const Bond &bond, const Field &vx, const Field &vy) const
+Fracture::Event Fracture::event(const State &state, const Bond &bond, const VectorField &evaluated_velocity) const
 {
   const auto [near, kind, far] = bond;
   const double ratio = lattice_.length_ratio(near, kind);
-  const double longest = limit(state, bond, stretch_rate(state, lattice_, bond, vx, vy));
+  const double longest = limit(state, bond, stretch_rate(state, lattice_, bond, evaluated_velocity));
   const double shortest =
     retraction_stretch_.empty() || state.bonds.toughened(near, kind) ? 0. : retraction_stretch_[kind];
   const auto among = [](double value, double from, double to) {
@@ -62,9 +62,9 @@ Fracture::Event Fracture::event(const State &state, const Bond &bond, const Fiel
   if (!(lookahead_ > 0.))
     return among(stretch(state, lattice_, bond), shortest, longest);
   const double l = lattice_.rest_length(kind);
-  return among(formulas::squared_length_after(
-                 lookahead_, ratio * (state.x[far] - state.x[near]), ratio * (state.y[far] - state.y[near]),
-                 ratio * (state.vx[far] - state.vx[near]), ratio * (state.vy[far] - state.vy[near])),
+  const Eigen::Vector2d r = ratio * state.position.difference(near, far),
+                        v = ratio * state.velocity.difference(near, far);
+  return among(formulas::squared_length_after(lookahead_, r.x(), r.y(), v.x(), v.y()),
                formulas::squared_length(shortest, l), formulas::squared_length(longest, l));
 }
 
@@ -121,13 +121,14 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
     state.removed[place] = 1;
     state.held[place] = state.rollers[place] = 0;
     state.inverse_mass[place] = 0.;
-    state.vx[place] = state.vy[place] = state.ax[place] = state.ay[place] = 0.;
+    for (VectorField *field : {&state.velocity, &state.acceleration})
+      field->set(place, Eigen::Vector2d::Zero());
   }
   return removed_energy;
 }
 
-const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, const Field &evaluated_vx,
-                                               const Field &evaluated_vy, int *number)
+const std::vector<BrokenBond> &Fracture::apply(State &state, const Forces &forces,
+                                               const VectorField &evaluated_velocity, int *number)
 {
   if (state.breaking_stretch != breaking_stretch_ || state.toughened_stretch != toughened_stretch_ ||
       state.strength.empty() != material_.disorder.strength.is_none())
@@ -140,7 +141,7 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
     for_each_bond(state, lattice_, {row, row + 1},
                   [&](const Bond &bond)
                   {
-                    const Event now = event(state, bond, evaluated_vx, evaluated_vy);
+                    const Event now = event(state, bond, evaluated_velocity);
                     if (now == Event::broken)
                       of_rows[row].push_back(broken(state, bond));
                     else if (now == Event::retracted)
@@ -156,8 +157,6 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
   for (const std::vector<BrokenBond> &of_row : of_rows)
     own.insert(own.end(), of_row.begin(), of_row.end());
   broken_ = lose_bonds(state, own, number);
-  for (const BrokenBond &bond : broken_)
-    forces.remove_bond(state, evaluated_vx, evaluated_vy, bond);
 
   const std::optional<std::size_t> previous_tip = tip_;
   if (tip_)

@@ -105,14 +105,14 @@ public:
   /// @param bonds place where each starts and its kind @return elastic energy that they held, per sheet thickness [J/m]
   double remove_bonds(State &state, std::vector<std::pair<std::size_t, std::size_t>> bonds);
 
-  /// Breaks every bond beyond its limit at the last evaluation of `forces`, or soon to be beyond it, and takes it out
-  /// of `forces`, toughens what is to be toughened, and moves the tip. Velocities of the state must be known in the
-  /// halo if this looks ahead. Collective.
+  /// Breaks every bond beyond its limit at the last evaluation of `forces`, or soon to be beyond it, toughens what is
+  /// to be toughened, and moves the tip. Velocities of the state must be known in the halo if this looks ahead.
+  /// Collective.
   /// @param number in: of this rank, out: the largest over all ranks; see RowPartition::all_gather
   /// @return the bonds of the whole sheet that broke now, in the order of storage
   /// @throws std::logic_error for a state that configure() has not set
-  const std::vector<BrokenBond> &apply(State &state, Forces &forces, const Field &evaluated_vx,
-                                       const Field &evaluated_vy, int *number = nullptr);
+  const std::vector<BrokenBond> &apply(State &state, const Forces &forces, const VectorField &evaluated_velocity,
+                                       int *number = nullptr);
 
   /// Finds the tip among all sites and toughens behind it; for a state that was cut or loaded from outside.
   void locate_tip(State &state);
@@ -149,7 +149,7 @@ private:
     broken,   // past the limit
     retracted // to be toughened
   };
-  Event event(const State &state, const Bond &bond, const Field &vx, const Field &vy) const;
+  Event event(const State &state, const Bond &bond, const VectorField &evaluated_velocity) const;
   double limit(const State &state, const Bond &bond, double rate) const;
   BrokenBond broken(const State &state, const Bond &bond) const;
   std::vector<BrokenBond> lose_bonds(State &state, const std::vector<BrokenBond> &own, int *number) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
 
 #include "lattice/bonds/require.h"
 
@@ -18,32 +19,26 @@ Integrator::Integrator(const RowPartition &band, Forces &forces, double time_ste
   interior_.end -= std::min(reach, interior_.end - interior_.begin);
 }
 
-std::vector<Field *> Integrator::evaluated_fields(State &state)
-{
-  const bool predicts = !predicted_vx_.empty();
-  return {&state.x, &state.y, predicts ? &predicted_vx_ : &state.vx, predicts ? &predicted_vy_ : &state.vy};
-}
-
 void Integrator::find_rollers(const State &state)
 {
   rollers_.clear();
   for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
     for (std::size_t place = lattice_.index(row, 0); place < lattice_.index(row, lattice_.sites_in_row(row)); ++place)
-      for (const unsigned int component : {0u, 1u})
-        if ((state.rollers[place] >> component & 1) != 0)
-          rollers_.push_back({place, component, (component == 0 ? state.vx : state.vy)[place]});
+      for (const std::size_t axis : axes)
+        if ((state.rollers[place] >> axis & 1) != 0)
+          rollers_.push_back({place, axis, state.velocity[axis][place]});
 }
 
 void Integrator::initialise(State &state)
 {
   find_rollers(state);
-  if (!predicted_vx_.empty())
+  if (VectorField &velocity = evaluated(state); &velocity != &state.velocity)
     for_each_row(lattice_, band_.rows(),
                  [&](std::size_t row)
                  {
-                   const std::size_t first = lattice_.index(row, 0), n = lattice_.columns();
-                   std::copy_n(&state.vx[first], n, &predicted_vx_[first]);
-                   std::copy_n(&state.vy[first], n, &predicted_vy_[first]);
+                   for (const std::size_t axis : axes)
+                     std::copy_n(&state.velocity[axis][lattice_.index(row, 0)], lattice_.columns(),
+                                 &velocity[axis][lattice_.index(row, 0)]);
                  });
   exchange_ghosts(state);
   accelerate(state);
@@ -68,34 +63,35 @@ Forces::RowCallbacks Integrator::move_rows(State &state, const std::function<voi
 
 void Integrator::exchange_ghosts(State &state)
 {
-  const std::vector<Field *> fields = evaluated_fields(state);
-  band_.exchange(sent_, received_, fields);
+  VectorField &velocity = evaluated(state);
+  band_.exchange(sent_, received_, {&state.position.x, &state.position.y, &velocity.x, &velocity.y});
   update_images(state, band_);
   for (const TriangularLattice::Image &image : lattice_.images())
     if (band_.is_relevant(image.site))
-      for (Field *velocity : {fields[2], fields[3]})
-        (*velocity)[image.place] = (*velocity)[image.site];
+      velocity.set(image.place, velocity.at(image.site));
+}
+
+// Threads may still read the velocities of rows next to theirs, so that only accelerations are written.
+void Integrator::accelerate_row(State &state, std::size_t row, const Forces::OfRow &force) const
+{
+  const std::size_t begin = lattice_.index(row, 0);
+  for (const std::size_t axis : axes)
+    std::transform(force[axis], force[axis] + lattice_.columns(), &state.inverse_mass[begin],
+                   &state.acceleration[axis][begin], std::multiplies());
 }
 
 void Integrator::accelerate(State &state)
 {
-  // Threads may still read the velocities of rows next to theirs, so that only accelerations are written.
-  const auto after = [&](std::size_t row, const double *fx, const double *fy)
-  {
-    const std::size_t begin = lattice_.index(row, 0), n = lattice_.columns();
-    std::transform(fx, fx + n, &state.inverse_mass[begin], &state.ax[begin], std::multiplies());
-    std::transform(fy, fy + n, &state.inverse_mass[begin], &state.ay[begin], std::multiplies());
-  };
-  forces_.evaluate(state, evaluated_vx(state), evaluated_vy(state), {{}, {}, std::ref(after), &state.history});
+  const auto after = [&](std::size_t row, const Forces::OfRow &force) { accelerate_row(state, row, force); };
+  forces_.evaluate(state, evaluated(state), {{}, {}, std::ref(after), &state.history});
   evaluate_site_forces(state);
   accelerate_sites(state);
 }
 
 void Integrator::evaluate_site_forces(State &state)
 {
-  const std::vector<Field *> fields = evaluated_fields(state);
   for (SiteForces *forces : site_forces_)
-    forces->evaluate(state, *fields[2], *fields[3]);
+    forces->evaluate(state, evaluated(state));
 }
 
 void Integrator::accelerate_sites(State &state)
@@ -104,41 +100,34 @@ void Integrator::accelerate_sites(State &state)
   for (const SiteForces *forces : site_forces_)
     for (const auto &[place, force] : forces->last())
     {
-      of_bonds_.push_back({place, state.ax[place], state.ay[place]});
-      state.ax[place] += state.inverse_mass[place] * force.x();
-      state.ay[place] += state.inverse_mass[place] * force.y();
+      of_bonds_.emplace_back(place, state.acceleration.at(place));
+      state.acceleration.add(place, state.inverse_mass[place] * force);
     }
   for (const RollerVelocity &roller : rollers_)
-    (roller.component == 0 ? state.ax : state.ay)[roller.place] = 0.;
+    state.acceleration[roller.axis][roller.place] = 0.;
 }
 
 void Integrator::kick_sites(State &state, double duration) const
 {
   for (const SiteForces *forces : site_forces_)
     for (const auto &[place, force] : forces->last())
-    {
-      state.vx[place] += duration * (state.inverse_mass[place] * force.x());
-      state.vy[place] += duration * (state.inverse_mass[place] * force.y());
-    }
+      state.velocity.add(place, duration * (state.inverse_mass[place] * force));
   for (const RollerVelocity &roller : rollers_)
-    (roller.component == 0 ? state.vx : state.vy)[roller.place] = roller.velocity;
+    state.velocity[roller.axis][roller.place] = roller.velocity;
 }
 
 void Integrator::update_accelerations(State &state, const std::vector<std::size_t> &places)
 {
   // Where several forces act on a site, the first of these is what bonds alone give.
   for (auto site = of_bonds_.rbegin(); site != of_bonds_.rend(); ++site)
-  {
-    state.ax[site->place] = site->ax;
-    state.ay[site->place] = site->ay;
-  }
+    state.acceleration.set(site->first, site->second);
+  std::set<std::size_t> rows;
   for (const std::size_t place : places)
     if (band_.owns(place))
-    {
-      const Eigen::Vector2d force = forces_.on_site(state, evaluated_vx(state), evaluated_vy(state), place);
-      state.ax[place] = force.x() * state.inverse_mass[place];
-      state.ay[place] = force.y() * state.inverse_mass[place];
-    }
+      rows.insert(lattice_.row_of(place));
+  for (const std::size_t row : rows)
+    forces_.evaluate_row(state, evaluated(state), row,
+                         [&](std::size_t, const Forces::OfRow &force) { accelerate_row(state, row, force); });
   accelerate_sites(state);
 }
 

@@ -43,14 +43,16 @@ public:
   virtual void step(State &state) = 0;
 
   /// Velocities the last force evaluation was made with [m/s], `state` being that of the last call.
-  const Field &evaluated_vx(const State &state) const { return predicted_vx_.empty() ? state.vx : predicted_vx_; }
-  const Field &evaluated_vy(const State &state) const { return predicted_vy_.empty() ? state.vy : predicted_vy_; }
+  const VectorField &evaluated_velocity(const State &state) const
+  {
+    return predicted_velocity_.x.empty() ? state.velocity : predicted_velocity_;
+  }
 
   /// Evaluates the added forces anew, at the last positions and velocities. Collective.
   void evaluate_site_forces(State &state);
 
-  /// Updates the accelerations at the end of the last step of own sites among `places`, which lost bonds then, with the
-  /// site forces as last evaluated.
+  /// Updates forces and accelerations at the end of the last step of own rows with one of `places`, which lost bonds
+  /// then, with the site forces as last evaluated.
   void update_accelerations(State &state, const std::vector<std::size_t> &places);
 
 protected:
@@ -70,11 +72,11 @@ protected:
   RowPartition band_;
   const TriangularLattice &lattice_;
   Forces &forces_;
-  Field predicted_vx_, predicted_vy_; // velocities that forces are evaluated at; empty: those of the state
+  VectorField predicted_velocity_; // that forces are evaluated at; empty: that of the state
 
 private:
-  /// x, y, vx, vy that forces are evaluated at.
-  std::vector<Field *> evaluated_fields(State &state);
+  VectorField &evaluated(State &state) { return predicted_velocity_.x.empty() ? state.velocity : predicted_velocity_; }
+  void accelerate_row(State &state, std::size_t row, const Forces::OfRow &force) const;
 
   SitesOfRanks sent_, received_; // of the halo
   Rows interior_;                // beyond the reach of the bonds of other ranks
@@ -82,17 +84,12 @@ private:
   std::vector<SiteForces *> site_forces_;
   struct RollerVelocity
   {
-    std::size_t place;
-    unsigned int component; // 0: x, 1: y
-    double velocity;        // [m/s]
+    std::size_t place, axis;
+    double velocity; // [m/s]
   };
   std::vector<RollerVelocity> rollers_;
-  struct Acceleration
-  {
-    std::size_t place;
-    double ax, ay; // [m/s^2]
-  };
-  std::vector<Acceleration> of_bonds_; // before each of the site forces was added
+  /// Places and accelerations [m/s^2] before each of the site forces was added.
+  std::vector<std::pair<std::size_t, Eigen::Vector2d>> of_bonds_;
 };
 
 /// Velocity Verlet for forces that depend on velocity (theory.md, eq. (L.7)):
@@ -123,10 +120,9 @@ public:
   void step(State &state) override;
 
 private:
-  /// Positions and velocities.
   struct Motion
   {
-    Field x, y, vx, vy;
+    VectorField position, velocity;
   };
 
   ChebyshevStages stages_;

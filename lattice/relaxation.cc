@@ -64,8 +64,7 @@ double relax(State &state, const TriangularLattice &lattice, const Material &mat
   const double largest_step = 0.9 * time_step_limits(lattice, springs, smallest_stretch).elastic;
 
   Forces forces(lattice, springs);
-  std::fill(state.vx.begin(), state.vx.end(), 0.);
-  std::fill(state.vy.begin(), state.vy.end(), 0.);
+  state.velocity = VectorField(lattice.n_places());
   update_images(state, lattice);
   double step = 0.3 * largest_step;
   double mixing = initial_mixing;
@@ -73,21 +72,17 @@ double relax(State &state, const TriangularLattice &lattice, const Material &mat
   double residual = 0.;
   for (std::size_t iteration = 0; iteration <= max_iterations; ++iteration)
   {
-    forces.evaluate(state, state.vx, state.vy);
-    const Field &fx = forces.fx(), &fy = forces.fy();
-    const Sums sums =
-      over_free_sites(state, lattice,
-                      [&](std::size_t i, Sums &row)
-                      {
-                        const double force_square = fx[i] * fx[i] + fy[i] * fy[i];
-                        row.add({fx[i] * state.vx[i] + fy[i] * state.vy[i],
-                                 state.vx[i] * state.vx[i] + state.vy[i] * state.vy[i], force_square, force_square});
-                      });
+    forces.evaluate(state, state.velocity);
+    const Sums sums = over_free_sites(state, lattice,
+                                      [&](std::size_t i, Sums &row)
+                                      {
+                                        const Eigen::Vector2d f = forces.on_sites().at(i), v = state.velocity.at(i);
+                                        row.add({f.dot(v), v.squaredNorm(), f.squaredNorm(), f.squaredNorm()});
+                                      });
     residual = std::sqrt(sums.largest_force_square);
     if (residual <= tolerance)
     {
-      std::fill(state.vx.begin(), state.vx.end(), 0.);
-      std::fill(state.vy.begin(), state.vy.end(), 0.);
+      state.velocity = VectorField(lattice.n_places());
       return residual;
     }
     if (!std::isfinite(residual))
@@ -110,12 +105,11 @@ double relax(State &state, const TriangularLattice &lattice, const Material &mat
     over_free_sites(state, lattice,
                     [&](std::size_t i, Sums &)
                     {
-                      state.vx[i] = uphill ? 0. : (1. - mixing) * state.vx[i] + along_force * fx[i];
-                      state.vy[i] = uphill ? 0. : (1. - mixing) * state.vy[i] + along_force * fy[i];
-                      state.vx[i] += step * fx[i] * state.inverse_mass[i];
-                      state.vy[i] += step * fy[i] * state.inverse_mass[i];
-                      state.x[i] += step * state.vx[i];
-                      state.y[i] += step * state.vy[i];
+                      const Eigen::Vector2d f = forces.on_sites().at(i), v = state.velocity.at(i);
+                      const Eigen::Vector2d turned =
+                        uphill ? Eigen::Vector2d(0., 0.) : (1. - mixing) * v + along_force * f;
+                      state.velocity.set(i, turned + step * f * state.inverse_mass[i]);
+                      state.position.add(i, step * state.velocity.at(i));
                     });
     update_images(state, lattice);
   }

@@ -59,12 +59,12 @@ int Simulation::needed_parts() const
 {
   const double h = time_stepping_.step;
   const std::optional<ContactLaw> contact = contact_ ? std::optional(contact_->law()) : std::nullopt;
-  const Field &vx = integrator_->evaluated_vx(state_), &vy = integrator_->evaluated_vy(state_);
+  const VectorField &velocity = integrator_->evaluated_velocity(state_);
   const auto divide_for = [&](const Bond &bond, int &parts)
   {
     if (!stiffens_when_short(material_.shell(lattice_, bond.kind)->law))
       return;
-    const double now = stretch(state_, lattice_, bond), rate = stretch_rate(state_, lattice_, bond, vx, vy);
+    const double now = stretch(state_, lattice_, bond), rate = stretch_rate(state_, lattice_, bond, velocity);
     int needed = 1;
     for (; needed < most_parts; needed *= 2)
     {
@@ -88,7 +88,7 @@ int Simulation::needed_parts() const
   {
     const std::size_t row = rows[static_cast<std::size_t>(i)];
     // A hair more for round-off.
-    if (forces_.row_has_short_bonds_ahead(state_, vx, vy, row, h, (1. + 1e-9) * short_stretch))
+    if (forces_.row_has_short_bonds_ahead(state_, velocity, row, h, (1. + 1e-9) * short_stretch))
       for_each_bond(state_, lattice_, {row, row + 1}, [&](const Bond &bond) { divide_for(bond, parts); });
   }
   return parts;
@@ -119,7 +119,7 @@ void Simulation::update_powers(double duration)
   const auto add = [&](const SiteForces &forces, Account account, double sign)
   {
     for (const auto &[place, force] : forces.last())
-      powers_[account][lattice_.row_of(place)] += sign * force.dot(Eigen::Vector2d(state_.vx[place], state_.vy[place]));
+      powers_[account][lattice_.row_of(place)] += sign * force.dot(state_.velocity.at(place));
     site_forces.push_back(&forces);
   };
   if (contact_)
@@ -127,8 +127,7 @@ void Simulation::update_powers(double duration)
   for (const std::unique_ptr<SiteForces> &added : added_forces_)
     add(*added, boundary, 1.);
   for (std::size_t c = 0; c < constraints_.size(); ++c)
-    constraints_[c].add_power(state_, forces_, integrator_->evaluated_vx(state_), integrator_->evaluated_vy(state_),
-                              site_forces, powers_[of_constraint(c)]);
+    constraints_[c].add_power(state_, forces_.on_sites(), site_forces, powers_[of_constraint(c)]);
   if (!(duration > 0.))
     return;
   for (std::size_t account = 0; account < powers_.size(); ++account)
@@ -193,18 +192,13 @@ void Simulation::cut_bonds(const std::vector<std::pair<std::size_t, std::size_t>
   reinitialize_forces();
 }
 
-void Simulation::set_velocities(const Field &vx, const Field &vy)
+void Simulation::set_velocities(const VectorField &velocity)
 {
   const double before = kinetic_energy(state_, band_);
   for (const std::size_t place : band_.known_sites())
-  {
-    if (!(state_.inverse_mass[place] > 0.))
-      continue;
-    if ((state_.rollers[place] & 1) == 0)
-      state_.vx[place] = vx[place];
-    if ((state_.rollers[place] & 2) == 0)
-      state_.vy[place] = vy[place];
-  }
+    for (const std::size_t axis : axes)
+      if (state_.inverse_mass[place] > 0. && state_.is_free(place, axis))
+        state_.velocity[axis][place] = velocity[axis][place];
   initial_energy_ += kinetic_energy(state_, band_) - before;
   reinitialize_forces();
 }
@@ -219,6 +213,8 @@ std::size_t Simulation::constrain(const Constraint &constraint)
   lattice::constrain(state_, band_, constraint);
   initial_energy_ += kinetic_energy(state_, band_) - before;
   constraints_.push_back(added);
+  for (const std::size_t place : constraint.sites)
+    forces_.keep(lattice_.row_of(place));
   for (Ledger *ledger : {&powers_, &work_})
     ledger->emplace_back(lattice_.rows(), 0.);
   reinitialize_forces();
@@ -266,7 +262,7 @@ void Simulation::advance(double duration, double end)
   if (time_stepping_.stages > 0)
     fracture_->set_lookahead(0.5 * duration);
   const std::vector<BrokenBond> &broken =
-    fracture_->apply(state_, forces_, integrator_->evaluated_vx(state_), integrator_->evaluated_vy(state_), &parts_);
+    fracture_->apply(state_, forces_, integrator_->evaluated_velocity(state_), &parts_);
   if (broken.empty())
     return;
   broken_bonds_.insert(broken_bonds_.end(), broken.begin(), broken.end());
@@ -302,7 +298,7 @@ void Simulation::restore(const Snapshot &earlier)
 
 Eigen::Vector2d Simulation::position(std::size_t place) const
 {
-  Eigen::Vector2d x(state_.x[place], state_.y[place]);
+  Eigen::Vector2d x = state_.position.at(place);
   if (band_.is_shared())
     MPI_Bcast(x.data(), 2, MPI_DOUBLE, static_cast<int>(band_.owner(lattice_.row_of(place))), band_.communicator());
   return x;

@@ -69,8 +69,8 @@ public:
   void add(std::unique_ptr<SiteForces> forces);
 
   /// Sets the velocities of the free sites, of which initial waves and tests consist; the change of kinetic energy
-  /// counts as initial energy. One (vx, vy) per place [m/s].
-  void set_velocities(const Field &vx, const Field &vy);
+  /// counts as initial energy. @param velocity by place [m/s]
+  void set_velocities(const VectorField &velocity);
 
   /// Advances by one time step, in parts if a bond is so short that the whole step would be unstable (theory.md,
   /// eq. (L.24)). @return bonds of the whole sheet that broke in it

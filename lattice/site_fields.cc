@@ -21,8 +21,8 @@ SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
     {
       const auto [near, kind, far] = bond;
       const Shell &shell = *material_.shell(lattice_, kind);
-      const Eigen::Vector2d r(state.x[far] - state.x[near], state.y[far] - state.y[near]);
-      const Eigen::Vector2d rate(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
+      const Eigen::Vector2d r = state.position.difference(near, far);
+      const Eigen::Vector2d rate = state.velocity.difference(near, far);
       const double length = r.norm(), ratio = lattice_.length_ratio(near, kind);
       const Eigen::Vector2d direction = r / length, R = lattice_.bond_vector(bond);
       const double rest_length = lattice_.rest_length(kind) / ratio, stretch = length / rest_length;
@@ -119,8 +119,7 @@ std::optional<StrainGradient> StrainGradientFit::at(const State &state, std::siz
                           const auto n = forward ? kind : kind + n_kinds;
                           bonds |= 1u << n;
                           const double sign = forward ? 1. : -1.;
-                          positions(static_cast<Eigen::Index>(n), 0) = sign * (state.x[far] - state.x[near]);
-                          positions(static_cast<Eigen::Index>(n), 1) = sign * (state.y[far] - state.y[near]);
+                          positions.row(static_cast<Eigen::Index>(n)) = sign * state.position.difference(near, far);
                         });
   const std::optional<Weights> &of_bonds = weights(bonds);
   if (!of_bonds)

@@ -47,11 +47,8 @@ void update_images(State &state, const RowPartition &band)
   {
     if (!band.is_relevant(image.site))
       continue;
-    const Eigen::Vector2d period = state.periods * image.period;
-    state.x[image.place] = state.x[image.site] + period.x();
-    state.y[image.place] = state.y[image.site] + period.y();
-    state.vx[image.place] = state.vx[image.site];
-    state.vy[image.place] = state.vy[image.site];
+    state.position.set(image.place, state.position.at(image.site) + state.periods * image.period);
+    state.velocity.set(image.place, state.velocity.at(image.site));
   }
 }
 
@@ -87,8 +84,9 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
   const TriangularLattice &lattice = band.lattice();
   const std::size_t n = lattice.n_places();
   State state;
-  for (Field *field : {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &state.inverse_mass})
-    *field = Field(n);
+  for (VectorField *field : {&state.position, &state.velocity, &state.acceleration})
+    *field = VectorField(n);
+  state.inverse_mass = Field(n);
   for (SiteFlags *marks : {&state.held, &state.rollers, &state.removed, &state.lost_bonds})
     *marks = SiteFlags(n);
   state.bonds.clear(n, material.n_kinds(lattice));
@@ -99,9 +97,7 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
     const bool in_margin = lattice.row_of(place) >= lattice.rows();
     if (!in_margin && !band.is_relevant(place))
       continue;
-    const Eigen::Vector2d position = F * lattice.reference(place);
-    state.x[place] = position.x();
-    state.y[place] = position.y();
+    state.position.set(place, F * lattice.reference(place));
   }
 
   state.stiffness = bond_factors(band, material, BondProperty::stiffness);
@@ -129,10 +125,9 @@ void add_noise(State &state, const RowPartition &band, double amplitude, std::ui
   for (const std::size_t place : band.known_sites())
   {
     const std::size_t number = (lattice.row_of(place) + 2) * (lattice.columns() + 4) + lattice.column_of(place) + 2;
-    if (state.held[place] == 0 && (state.rollers[place] & 1) == 0)
-      state.x[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number));
-    if (state.held[place] == 0 && (state.rollers[place] & 2) == 0)
-      state.y[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number + 1));
+    for (const std::size_t axis : axes)
+      if (state.is_free(place, axis))
+        state.position[axis][place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number + axis));
   }
   update_images(state, band);
 }
@@ -162,20 +157,16 @@ void relax_memory(State &state, const RowPartition &band, const Material &materi
 
 double stretch(const State &state, const TriangularLattice &lattice, const Bond &bond)
 {
-  const double dx = state.x[bond.far] - state.x[bond.near];
-  const double dy = state.y[bond.far] - state.y[bond.near];
   // The operations of the force loop, so that both agree to the last bit on whether a bond is past its limit.
-  const double ratio = lattice.length_ratio(bond.near, bond.kind), scaled_x = ratio * dx, scaled_y = ratio * dy;
-  return std::sqrt(scaled_x * scaled_x + scaled_y * scaled_y) * (1. / lattice.rest_length(bond.kind));
+  return (lattice.length_ratio(bond.near, bond.kind) * state.position.difference(bond.near, bond.far)).norm() *
+         (1. / lattice.rest_length(bond.kind));
 }
 
-double stretch_rate(const State &state, const TriangularLattice &lattice, const Bond &bond, const Field &vx,
-                    const Field &vy)
+double stretch_rate(const State &state, const TriangularLattice &lattice, const Bond &bond, const VectorField &velocity)
 {
-  const auto [near, kind, far] = bond;
-  const Eigen::Vector2d along(state.x[far] - state.x[near], state.y[far] - state.y[near]);
-  return lattice.length_ratio(near, kind) * along.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near])) /
-         (along.norm() * lattice.rest_length(kind));
+  const Eigen::Vector2d along = state.position.difference(bond.near, bond.far);
+  return lattice.length_ratio(bond.near, bond.kind) * along.dot(velocity.difference(bond.near, bond.far)) /
+         (along.norm() * lattice.rest_length(bond.kind));
 }
 
 } // namespace latcon::lattice

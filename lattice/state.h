@@ -21,11 +21,32 @@ namespace latcon::lattice
 /// the same bits either way.
 inline constexpr std::size_t min_places_for_threads = 4096;
 
-/// The same for lists of sites, each with its up to eighteen bonds one by one.
-inline constexpr std::size_t min_sites_for_threads = 64;
-
 /// A breaking stretch that no bond reaches.
 inline constexpr double unbreakable = std::numeric_limits<double>::infinity();
+
+/// The axes x and y by their numbers.
+inline constexpr std::array<std::size_t, 2> axes{{0, 1}};
+
+/// A vector at each place of a lattice. Make one of zeros as VectorField(n): see ZeroPages.
+struct VectorField
+{
+  VectorField() = default;
+  explicit VectorField(std::size_t n) : x(n), y(n) {}
+
+  Field x, y; ///< components
+
+  Field &operator[](std::size_t axis) { return axis == 0 ? x : y; }
+  const Field &operator[](std::size_t axis) const { return axis == 0 ? x : y; }
+  Eigen::Vector2d at(std::size_t place) const { return {x[place], y[place]}; }
+  void set(std::size_t place, const Eigen::Vector2d &vector)
+  {
+    x[place] = vector.x();
+    y[place] = vector.y();
+  }
+  void add(std::size_t place, const Eigen::Vector2d &vector) { set(place, at(place) + vector); }
+  /// What there is more at one place than at another.
+  Eigen::Vector2d difference(std::size_t from, std::size_t to) const { return at(to) - at(from); }
+};
 
 /// One factor per bond, by the place where it starts; nothing is stored if all are 1.
 struct BondFactors
@@ -88,9 +109,9 @@ struct BondHistory
 struct State
 {
   double time = 0.;                       ///< [s]
-  Field x, y;                             ///< current position [m]
-  Field vx, vy;                           ///< velocity [m/s]
-  Field ax, ay;                           ///< acceleration [m/s^2]; 0 at held sites and in the margin
+  VectorField position;                   ///< current position [m]
+  VectorField velocity;                   ///< [m/s]
+  VectorField acceleration;               ///< [m/s^2]; 0 at held sites and in the margin
   BondStates bonds;                       ///< by the place where they start
   BondHistory history;                    ///< of bonds with a memory; see relax_memory()
   BondFactors stiffness;                  ///< of volumes, hence of energies of bonds; from homogeneous_state()
@@ -103,6 +124,12 @@ struct State
   SiteFlags removed;                      ///< 1 at sites cut out as seed crack
   SiteFlags lost_bonds;                   ///< bonds a site has lost, to breaking or to removed neighbours
   Eigen::Matrix2d periods = Eigen::Matrix2d::Identity(); ///< F that takes reference periods to current ones [-]
+
+  /// Returns whether no motion is prescribed for a site along an axis.
+  bool is_free(std::size_t place, std::size_t axis) const
+  {
+    return held[place] == 0 && (rollers[place] >> axis & 1) == 0;
+  }
 };
 
 /// Calls visit(name, field) for each field of a state that changes from step to step and is known in own rows and halo,
@@ -110,9 +137,10 @@ struct State
 template <class Visitor>
 void for_each_field(State &state, const TriangularLattice &lattice, const Visitor &visit)
 {
-  for (const auto &[name, field] : {std::pair("x", &state.x), std::pair("y", &state.y), std::pair("vx", &state.vx),
-                                    std::pair("vy", &state.vy), std::pair("ax", &state.ax), std::pair("ay", &state.ay)})
-    visit(std::string(name), *field);
+  for (const auto &[prefix, field] :
+       {std::pair("", &state.position), std::pair("v", &state.velocity), std::pair("a", &state.acceleration)})
+    for (const std::size_t axis : axes)
+      visit(std::string(prefix) + "xy"[axis], (*field)[axis]);
   for (std::size_t word = 0; word < state.bonds.storage().size(); ++word)
     visit(word == 0                 ? "bonds"
           : lattice.is_triangular() ? "bonds_of_third_shell"
@@ -178,9 +206,9 @@ void relax_memory(State &state, const RowPartition &band, const Material &materi
 /// Current stretch |x_j - x_i| / l of a bond [-].
 double stretch(const State &state, const TriangularLattice &lattice, const Bond &bond);
 
-/// Its rate [1/s] with the velocities vx, vy [m/s].
-double stretch_rate(const State &state, const TriangularLattice &lattice, const Bond &bond, const Field &vx,
-                    const Field &vy);
+/// Its rate [1/s] with these velocities [m/s].
+double stretch_rate(const State &state, const TriangularLattice &lattice, const Bond &bond,
+                    const VectorField &velocity);
 
 /// Calls operation(row) for each of some rows, which are shared out among threads. For operations that couple no two
 /// sites, whose bits then cannot depend on how.

@@ -104,7 +104,7 @@ int main()
         for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
           visit(sheet.index(row, column));
     };
-    for_each_site([&](std::size_t i) { state.y[i] += amplitude * std::sin(K * sheet.reference(i).x()); });
+    for_each_site([&](std::size_t i) { state.position.y[i] += amplitude * std::sin(K * sheet.reference(i).x()); });
     update_images(state, sheet);
     const double h = 0.2 * lattice::time_step_limits(sheet, material, 1.).combined;
     lattice::Simulation simulation(sheet, material, std::move(state), h);
@@ -118,7 +118,7 @@ int main()
         [&](std::size_t i)
         {
           const Eigen::Vector2d X = sheet.reference(i);
-          now += 2. / static_cast<double>(sheet.n_sites()) * (simulation.state().y[i] - stretch * X.y()) *
+          now += 2. / static_cast<double>(sheet.n_sites()) * (simulation.state().position.y[i] - stretch * X.y()) *
                  std::sin(K * X.x());
         });
     }

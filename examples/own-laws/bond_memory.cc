@@ -75,8 +75,7 @@ int main()
   relax_memory(state, sheet, material);
   const lattice::State loaded =
     homogeneous_state(sheet, material, stretch * Eigen::Matrix2d::Identity(), lattice::Edges::held);
-  state.x = loaded.x;
-  state.y = loaded.y;
+  state.position = loaded.position;
   std::size_t bonds = 0;
   for_each_bond(state, sheet, [&](const lattice::Bond &) { ++bonds; });
   lattice::Simulation held(sheet, material, std::move(state), h);

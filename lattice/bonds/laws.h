@@ -83,8 +83,8 @@ struct LinearBond
 ///
 /// Several threads call the functions at once, with any lam > 0, also beyond the stretch at which bonds break: they may
 /// not change anything, nor throw. Where the law has no value they return NaN or infinity. That spreads to the sites of
-/// the bond and from there through the sheet; State::x and energies() show it, relax() and the program's commands stop
-/// at it.
+/// the bond and from there through the sheet; State::position and energies() show it, relax() and the program's
+/// commands stop at it.
 class CustomBondLaw
 {
 public:

@@ -46,8 +46,8 @@ inline void write_lammps_data(const latcon::lattice::Simulation &simulation, con
     for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
     {
       const std::size_t place = sheet.index(row, column);
-      std::fprintf(out, "%zu 1 %d %.17g %.17g 0\n", number(place), state.held[place] ? 2 : 1, state.x[place],
-                   state.y[place]);
+      std::fprintf(out, "%zu 1 %d %.17g %.17g 0\n", number(place), state.held[place] ? 2 : 1, state.position.x[place],
+                   state.position.y[place]);
     }
   std::fprintf(out, "\nBonds\n\n");
   std::size_t n = 0;

@@ -99,7 +99,7 @@ void write_positions(const benchmarks::Motion &motion, std::ofstream &out)
     for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
     {
       const std::size_t place = sheet.index(row, column);
-      out << motion.simulation.state().x[place] << " " << motion.simulation.state().y[place] << "\n";
+      out << motion.simulation.state().position.x[place] << " " << motion.simulation.state().position.y[place] << "\n";
     }
 }
 

@@ -128,16 +128,16 @@ TEST(CustomBond, WithoutAValueIsSeen)
   material.nearest.law = sheets::from_outside(Mistaken{0., 0., 2e5, 1.5});
   State state = homogeneous_state(sheet, material, sheets::stretched(1.2, 1.2), Edges::held);
   const std::size_t left = sheet.index(3, 3), right = left + 1;
-  state.x[left] -= 0.2 * sheets::spacing; // now the bonds to its right have stretches of 1.4 and less
+  state.position.x[left] -= 0.2 * sheets::spacing; // now the bonds to its right have stretches of 1.4 and less
   Forces forces(sheet, material);
-  forces.evaluate(state, state.vx, state.vy);
-  EXPECT_TRUE(std::isfinite(forces.fx()[left]));
-  state.x[left] -= 0.2 * sheets::spacing; // 1.6 along the row, 1.44 upwards
-  forces.evaluate(state, state.vx, state.vy);
+  forces.evaluate(state, state.velocity);
+  EXPECT_TRUE(std::isfinite(forces.on_sites().x[left]));
+  state.position.x[left] -= 0.2 * sheets::spacing; // 1.6 along the row, 1.44 upwards
+  forces.evaluate(state, state.velocity);
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
   {
-    EXPECT_EQ(std::isfinite(forces.fx()[place]), place != left && place != right) << place;
-    EXPECT_EQ(std::isfinite(forces.fy()[place]), place != left && place != right) << place;
+    EXPECT_EQ(std::isfinite(forces.on_sites().x[place]), place != left && place != right) << place;
+    EXPECT_EQ(std::isfinite(forces.on_sites().y[place]), place != left && place != right) << place;
   }
   EXPECT_THROW(relax(state, sheet, material, 1e-6), std::runtime_error);
 }

@@ -63,13 +63,10 @@ TEST(Fracture, AsksTheRuleAboutEachBond)
   {
     Simulation simulation(sheet, rubber, homogeneous_state(sheet, rubber, F, Edges::held), how,
                           Fracture(sheet, rubber, std::move(rule), Toughening{}, F));
-    Field vx(sheet.n_places()), vy(sheet.n_places());
+    VectorField velocity(sheet.n_places());
     for (const std::size_t place : sheet.sites())
-    {
-      vx[place] = (rate * sheet.reference(place)).x();
-      vy[place] = (rate * sheet.reference(place)).y();
-    }
-    simulation.set_velocities(vx, vy);
+      velocity.set(place, rate * sheet.reference(place));
+    simulation.set_velocities(velocity);
     simulation.constrain({held_sites(simulation.state(), sheet), true, true, steady(rate)});
     std::size_t near = 0, next = 0;
     for (const BrokenBond &bond : simulation.step())

@@ -186,10 +186,10 @@ TEST(RungeKuttaChebyshev, MultipliesWavesByItsPolynomial)
     for (std::size_t place = 0; place < sheet.n_places(); ++place)
       if (sheet.is_occupied(place))
       {
-        state.x[place] += wave(place, 0, 1.);
-        state.y[place] += wave(place, 1, 1.);
-        state.vx[place] += wave(place, 2, 1.);
-        state.vy[place] += wave(place, 3, 1.);
+        state.position.x[place] += wave(place, 0, 1.);
+        state.position.y[place] += wave(place, 1, 1.);
+        state.velocity.x[place] += wave(place, 2, 1.);
+        state.velocity.y[place] += wave(place, 3, 1.);
       }
     Simulation simulation(sheet, material, std::move(state), {h, n_stages});
     for (unsigned int step = 0; step < steps; ++step)
@@ -198,8 +198,8 @@ TEST(RungeKuttaChebyshev, MultipliesWavesByItsPolynomial)
     const double tolerance = 1e-5 * amplitude * waves.modes.col(mode).tail<2>().norm();
     for (const std::size_t place : sheet.sites())
     {
-      EXPECT_NEAR(simulation.state().vx[place], wave(place, 2, factor), tolerance) << mode;
-      EXPECT_NEAR(simulation.state().vy[place], wave(place, 3, factor), tolerance) << mode;
+      EXPECT_NEAR(simulation.state().velocity.x[place], wave(place, 2, factor), tolerance) << mode;
+      EXPECT_NEAR(simulation.state().velocity.y[place], wave(place, 3, factor), tolerance) << mode;
     }
   }
 }
@@ -209,7 +209,7 @@ TEST(RungeKuttaChebyshev, TakesFewerStagesInShorterSteps)
 {
   struct Counter : SiteForces
   {
-    const std::vector<SiteForce> &evaluate(State &, Field &, Field &) override
+    const std::vector<SiteForce> &evaluate(State &, VectorField &) override
     {
       ++n;
       return forces_;

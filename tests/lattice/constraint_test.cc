@@ -49,7 +49,7 @@ TEST_P(Constraints, FollowAHistoryAndItsWorkIsCounted)
       moved.step();
     for (const std::size_t place : held)
     {
-      const Eigen::Vector2d x(moved.state().x[place], moved.state().y[place]);
+      const Eigen::Vector2d x = moved.state().position.at(place);
       EXPECT_LT((x - F * sheet.reference(place)).norm(), 1e-12 * sheet.length());
     }
   };
@@ -71,9 +71,9 @@ TEST_P(Constraints, RollersSlideAlongOneAxis)
   double slid = 0.;
   for (const std::size_t place : rolling)
   {
-    EXPECT_NEAR(moved.state().y[place], low(1, 1) * sheet.reference(place).y(), 1e-12 * sheet.length());
-    slid =
-      latcon::support::largest_of({slid, std::abs(moved.state().x[place] - start(0, 0) * sheet.reference(place).x())});
+    EXPECT_NEAR(moved.state().position.y[place], low(1, 1) * sheet.reference(place).y(), 1e-12 * sheet.length());
+    slid = latcon::support::largest_of(
+      {slid, std::abs(moved.state().position.x[place] - start(0, 0) * sheet.reference(place).x())});
   }
   EXPECT_GT(slid, 1e-2 * sheet.spacing());
   expect_closed_ledger(moved);
@@ -88,8 +88,8 @@ TEST_P(Constraints, LetSitesGoWithTheirMotion)
     moved.step();
   double off = 0.;
   for (const std::size_t place : grip)
-    off =
-      latcon::support::largest_of({off, std::abs(moved.state().y[place] - start(1, 1) * sheet.reference(place).y())});
+    off = latcon::support::largest_of(
+      {off, std::abs(moved.state().position.y[place] - start(1, 1) * sheet.reference(place).y())});
   EXPECT_GT(off, sheet.spacing());
   EXPECT_EQ(moved.state().held[grip[grip.size() / 2]], 0);
   expect_closed_ledger(moved);

@@ -48,26 +48,24 @@ struct HeadOn
       direction(std::sqrt(3.) / 2., 0.5)
   {
     State state = loose_sites(sheet, material, {left, right});
-    const Eigen::Vector2d far = Eigen::Vector2d(state.x[left], state.y[left]) + (law.distance + gap) * direction;
-    state.x[right] = far.x();
-    state.y[right] = far.y();
+    const Eigen::Vector2d far = state.position.at(left) + (law.distance + gap) * direction;
+    state.position.set(right, far);
     const Eigen::Vector2d common(7., -2.);
     const Eigen::Vector2d v_left = common + 0.5 * approach * direction, v_right = common - 0.5 * approach * direction;
-    state.vx[left] = v_left.x();
-    state.vy[left] = v_left.y();
-    state.vx[right] = v_right.x();
-    state.vy[right] = v_right.y();
+    state.velocity.set(left, v_left);
+    state.velocity.set(right, v_right);
     simulation = std::make_unique<Simulation>(sheet, material, std::move(state), time_step);
     simulation->enable_contact(law);
   }
   Eigen::Vector2d velocity(std::size_t place) const
   {
-    return {simulation->state().vx[place], simulation->state().vy[place]};
+    return {simulation->state().velocity.x[place], simulation->state().velocity.y[place]};
   }
   double distance() const
   {
     const State &state = simulation->state();
-    return std::hypot(state.x[right] - state.x[left], state.y[right] - state.y[left]);
+    return std::hypot(state.position.x[right] - state.position.x[left],
+                      state.position.y[right] - state.position.y[left]);
   }
   double separation_speed() const { return (velocity(right) - velocity(left)).dot(direction); }
 
@@ -166,7 +164,7 @@ TEST(Contact, OfBondedOrWholeSitesThereIsNone)
   {
     Contact contact(sheet, contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 1.));
     contact.find_candidates(state);
-    return contact.evaluate(state, state.vx, state.vy).size() / 2;
+    return contact.evaluate(state, state.velocity).size() / 2;
   };
   EXPECT_EQ(n_touching(), 0u); // whole
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
@@ -201,10 +199,10 @@ TEST(Contact, ListNeverMissesAPair)
   std::uniform_real_distribution<double> uniform(-1., 1.);
   for (const std::size_t place : places)
   {
-    state.x[place] += sheets::spacing * uniform(generator);
-    state.y[place] += sheets::spacing * uniform(generator);
-    state.vx[place] = uniform(generator) + (place % 7 == 0 ? 5. * uniform(generator) : 0.);
-    state.vy[place] = uniform(generator);
+    state.position.x[place] += sheets::spacing * uniform(generator);
+    state.position.y[place] += sheets::spacing * uniform(generator);
+    state.velocity.x[place] = uniform(generator) + (place % 7 == 0 ? 5. * uniform(generator) : 0.);
+    state.velocity.y[place] = uniform(generator);
     state.lost_bonds[place] = place % 3 == 0 ? 1 : 0;
   }
   const ContactLaw law{sheets::spacing, 1e5, 10.};
@@ -215,8 +213,8 @@ TEST(Contact, ListNeverMissesAPair)
   {
     for (const std::size_t place : places)
     {
-      state.x[place] += 0.02 * sheets::spacing * state.vx[place];
-      state.y[place] += 0.02 * sheets::spacing * state.vy[place];
+      state.position.x[place] += 0.02 * sheets::spacing * state.velocity.x[place];
+      state.position.y[place] += 0.02 * sheets::spacing * state.velocity.y[place];
     }
     const std::size_t near = places[(step * 37) % places.size()], far = places[(step * 101 + 5) % places.size()];
     if (near != far)
@@ -224,7 +222,7 @@ TEST(Contact, ListNeverMissesAPair)
       state.lost_bonds[near] = state.lost_bonds[far] = 1;
       contact.add_broken_bonds({{{near, 0, far}, 0., 0., 0., 1., 0.}});
     }
-    const std::vector<SiteForce> &forces = contact.evaluate(state, state.vx, state.vy);
+    const std::vector<SiteForce> &forces = contact.evaluate(state, state.velocity);
     std::vector<SiteForce> wanted;
     for (std::size_t i = 0; i < places.size(); ++i)
       for (std::size_t j = i + 1; j < places.size(); ++j)
@@ -232,9 +230,9 @@ TEST(Contact, ListNeverMissesAPair)
         const std::size_t a = places[i], b = places[j];
         if (state.lost_bonds[a] == 0 || state.lost_bonds[b] == 0)
           continue;
-        const Eigen::Vector2d between(state.x[b] - state.x[a], state.y[b] - state.y[a]);
+        const Eigen::Vector2d between = state.position.at(b) - state.position.at(a);
         const double r = between.norm();
-        const Eigen::Vector2d rate(state.vx[b] - state.vx[a], state.vy[b] - state.vy[a]);
+        const Eigen::Vector2d rate = state.velocity.at(b) - state.velocity.at(a);
         const double repulsion = law.stiffness * (law.distance - r) - law.viscosity * rate.dot(between) / r;
         if (r >= law.distance || repulsion <= 0.)
           continue;
@@ -252,7 +250,7 @@ TEST(Contact, ListNeverMissesAPair)
   EXPECT_GT(touched, 1000u);
   double distance = 0.; // of all sites along their ways
   for (const std::size_t place : places)
-    distance += 300 * 0.02 * sheets::spacing * std::hypot(state.vx[place], state.vy[place]);
+    distance += 300 * 0.02 * sheets::spacing * std::hypot(state.velocity.x[place], state.velocity.y[place]);
   const double moved_far = distance / (0.5 * law.distance), joined = 2. * 300;
   EXPECT_GT(contact.n_listings(), 0.5 * moved_far);
   EXPECT_LT(contact.n_listings(), static_cast<double>(places.size()) + joined + moved_far)
@@ -269,7 +267,7 @@ TEST(Contact, LedgerClosesWhereAPairOverlapsFromTheStart)
   {
     State state = loose_sites(sheet, material, {left, right});
     state.bonds.add(left, 0);
-    state.x[right] = state.x[left] + 0.8 * sheets::spacing;
+    state.position.x[right] = state.position.x[left] + 0.8 * sheets::spacing;
     Simulation simulation(sheet, material, std::move(state), time_step,
                           Fracture(sheet, material, 0.5, Toughening{}, Eigen::Matrix2d::Identity()));
     simulation.enable_contact(contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 0.));
@@ -304,7 +302,7 @@ TEST(Contact, ListsDoNotDependOnThreads)
     omp_set_num_threads(threads);
     Contact contact(sheet, contact_like_nearest_bond(sheet, material, 1.1 * sheets::spacing, 1., 1.));
     contact.find_candidates(state);
-    return contact.evaluate(state, state.vx, state.vy);
+    return contact.evaluate(state, state.velocity);
   };
   const int before = omp_get_max_threads();
   const std::vector<SiteForce> one = forces(1);

@@ -56,8 +56,8 @@ TEST_P(SymmetricSeed, StaysSymmetricToTheLastBitAndItsLedgerCloses)
   for (const std::size_t place : sheet.sites())
   {
     const std::size_t mirror = sheets::mirrored(sheet, place);
-    ASSERT_EQ(crack->state().x[place], crack->state().x[mirror]);
-    ASSERT_EQ(crack->state().y[place], -crack->state().y[mirror]);
+    ASSERT_EQ(crack->state().position.x[place], crack->state().position.x[mirror]);
+    ASSERT_EQ(crack->state().position.y[place], -crack->state().position.y[mirror]);
   }
   const EnergyBalance e = crack->energies();
   EXPECT_GT(e.viscous, 1e-3 * e.initial);

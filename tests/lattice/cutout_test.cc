@@ -88,8 +88,8 @@ TEST(Cutout, NotchLeavesNoBondAcrossItAndKeepsMirrorSymmetry)
     for (const std::size_t place : sheet.sites())
     {
       const std::size_t mirror = sheets::mirrored(sheet, place);
-      EXPECT_EQ(state.x[place], state.x[mirror]);
-      EXPECT_EQ(state.y[place], -state.y[mirror]);
+      EXPECT_EQ(state.position.x[place], state.position.x[mirror]);
+      EXPECT_EQ(state.position.y[place], -state.position.y[mirror]);
     }
   }
 }

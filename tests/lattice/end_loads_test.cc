@@ -46,7 +46,8 @@ TEST_P(Ends, KeepTheLoadedSheetInEquilibrium)
   {
     double largest = 0.;
     for (std::size_t place = 0; place < sheet.n_places(); ++place)
-      largest = support::largest_of({largest, std::hypot(simulation.state().ax[place], simulation.state().ay[place])});
+      largest = support::largest_of(
+        {largest, std::hypot(simulation.state().acceleration.x[place], simulation.state().acceleration.y[place])});
     return largest * site_mass(bonds, sheet) / (cross_section(bonds.nearest, sheet) * force(bonds.nearest.law, 2.5));
   };
   EXPECT_GT(largest_residual(), 0.5);
@@ -90,7 +91,7 @@ double reflection(const Material &bonds, Orientation orientation, const Eigen::V
   const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
   const double speed = std::sqrt(polarisation.dot(tangent_along_x(sheet, bonds, F) * polarisation) / bonds.density);
   State state = homogeneous_state(sheet, bonds, F, {false, held, true, true});
-  Field vx(sheet.n_places(), 0.), vy(sheet.n_places(), 0.);
+  VectorField velocity(sheet.n_places());
   const double amplitude = 1e-3 * d, middle = sheet.length() - distance * d;
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
   {
@@ -98,15 +99,13 @@ double reflection(const Material &bonds, Orientation orientation, const Eigen::V
     const double u = amplitude * std::exp(-0.5 * z * z);
     if (state.held[place] != 0)
       continue;
-    state.x[place] += u * polarisation.x();
-    state.y[place] += u * polarisation.y();
-    vx[place] = speed * z / (width * d) * u * polarisation.x();
-    vy[place] = speed * z / (width * d) * u * polarisation.y();
+    state.position.add(place, u * polarisation);
+    velocity.set(place, speed * z / (width * d) * u * polarisation);
   }
   const double largest = speed / (width * d) * amplitude * std::exp(-0.5);
   Simulation simulation(sheet, bonds, std::move(state), 0.9 * time_step_limits(sheet, bonds, 1.).combined);
   simulation.load_ends(F, End::absorbing, held ? End::held : End::absorbing);
-  simulation.set_velocities(vx, vy);
+  simulation.set_velocities(velocity);
   if (energy != nullptr)
     *energy = 2. * simulation.energies().kinetic;
   const double end = 2. * distance * d / speed;
@@ -117,7 +116,8 @@ double reflection(const Material &bonds, Orientation orientation, const Eigen::V
   double left = 0.;
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
     if (simulation.state().inverse_mass[place] > 0.)
-      left = support::largest_of({left, std::hypot(simulation.state().vx[place], simulation.state().vy[place])});
+      left = support::largest_of(
+        {left, std::hypot(simulation.state().velocity.x[place], simulation.state().velocity.y[place])});
   return left / largest;
 }
 
@@ -168,7 +168,7 @@ TEST_P(Ends, LoadTheirFreeSitesAlone)
     {
       State state = homogeneous_state(sheet, bonds, sheared(), {false, false, held, held});
       EndLoads loads(sheet, bonds, state, sheared(), left, right);
-      const std::vector<SiteForce> &forces = loads.evaluate(state, state.vx, state.vy);
+      const std::vector<SiteForce> &forces = loads.evaluate(state, state.velocity);
       EXPECT_FALSE(forces.empty());
       for (const SiteForce &on : forces)
       {

@@ -34,8 +34,8 @@ struct TenSites
 
   const std::vector<BrokenBond> &apply()
   {
-    forces.evaluate(state, state.vx, state.vy);
-    return fracture.apply(state, forces, state.vx, state.vy);
+    forces.evaluate(state, state.velocity);
+    return fracture.apply(state, forces, state.velocity);
   }
 
   std::size_t n_bonds() const
@@ -74,7 +74,7 @@ TEST(Fracture, BreaksWhatIsBeyondTheLimitForGood)
 {
   TenSites sheet{Toughening{}};
   const std::size_t corner = sheet.sheet.index(0, 0);
-  sheet.state.x[corner] -= 0.6;
+  sheet.state.position.x[corner] -= 0.6;
   const std::vector<BrokenBond> broken = sheet.apply();
   ASSERT_EQ(broken.size(), 1u);
   EXPECT_EQ(broken[0].near, corner);
@@ -90,10 +90,11 @@ TEST(Fracture, BreaksWhatIsBeyondTheLimitForGood)
   EXPECT_EQ(sheet.state.lost_bonds[corner + 1], 1);
 
   // Only the other bond still pulls on the corner, already in the same evaluation.
-  const Eigen::Vector2d pull = sheet.forces.on_site(sheet.state, sheet.state.vx, sheet.state.vy, corner);
+  sheet.forces.evaluate(sheet.state, sheet.state.velocity);
+  const Eigen::Vector2d pull = sheet.forces.on_sites().at(corner);
   EXPECT_NEAR(pull.normalized().dot(Eigen::Vector2d(1.1, std::sqrt(0.75)).normalized()), 1., 1e-12);
 
-  sheet.state.x[corner] += 0.6; // back home: still broken
+  sheet.state.position.x[corner] += 0.6; // back home: still broken
   EXPECT_TRUE(sheet.apply().empty());
   EXPECT_EQ(sheet.n_bonds(), 17u);
   EXPECT_EQ(sheet.limit(0, 0, 0), 0.);
@@ -128,25 +129,24 @@ TEST(Fracture, FlagsARowIfAndOnlyIfOneOfItsBondsHasAnEvent)
             const double angle = 0.1 * direction + 0.01, speed = 100. * (direction % 7 - 3);
             const Eigen::Vector2d n(std::cos(angle), std::sin(angle)), v(speed * n.x(), speed * n.y());
             const double length = limit * l * (1. + ulps * 0x1p-53);
-            trial.x[near] = trial.y[near] = 0.;
-            trial.x[far] = length * n.x() - ahead * v.x();
-            trial.y[far] = length * n.y() - ahead * v.y();
-            trial.vx[far] = v.x();
-            trial.vy[far] = v.y();
+            trial.position.x[near] = trial.position.y[near] = 0.;
+            trial.position.x[far] = length * n.x() - ahead * v.x();
+            trial.position.y[far] = length * n.y() - ahead * v.y();
+            trial.velocity.set(far, v);
             Forces forces(sheet, material);
             Fracture fracture(sheet, material, 1.5, Toughening{2., 0.8}, F);
             fracture.configure(trial, forces);
             fracture.set_lookahead(ahead);
-            forces.evaluate(trial, trial.vx, trial.vy);
+            forces.evaluate(trial, trial.velocity);
             const bool flagged =
               ahead > 0. ? forces.row_has_events_ahead(trial, row, ahead) : forces.row_sums(row).has_events;
             // Applied to a sheet with all rows flagged, by another bond of each that is far beyond its limit.
             State crowded = trial;
             const std::size_t other = sheet.index(row, 0);
             crowded.bonds.add(other, 0);
-            crowded.x[other + 1] = crowded.x[other] + 9. * l;
-            forces.evaluate(crowded, crowded.vx, crowded.vy);
-            fracture.apply(crowded, forces, crowded.vx, crowded.vy);
+            crowded.position.x[other + 1] = crowded.position.x[other] + 9. * l;
+            forces.evaluate(crowded, crowded.velocity);
+            fracture.apply(crowded, forces, crowded.velocity);
             const bool happened = breaks ? !crowded.bonds.present(near, kind) : crowded.bonds.toughened(near, kind);
             EXPECT_EQ(flagged, happened) << ahead << ' ' << limit << ' ' << kind << ' ' << direction << ' ' << ulps;
             if (std::abs(ulps) > 3)
@@ -165,17 +165,17 @@ TEST(Fracture, TipIsTheRightMostSiteThatLostAQuarterOfItsBonds)
 {
   TenSites sheet{Toughening{}};
   EXPECT_FALSE(sheet.fracture.tip());
-  sheet.state.x[sheet.sheet.index(0, 0)] -= 2.;
+  sheet.state.position.x[sheet.sheet.index(0, 0)] -= 2.;
   EXPECT_EQ(sheet.apply().size(), 2u);
   ASSERT_TRUE(sheet.fracture.tip());
   EXPECT_EQ(*sheet.fracture.tip(), sheet.sheet.index(0, 0));
   // (0, 1) sinks: it loses (0, 2), (1, 0), (1, 1); now three of its own four are gone, and (1, 1) at X = 1.5 has lost
   // one.
-  sheet.state.y[sheet.sheet.index(0, 1)] -= 2.;
+  sheet.state.position.y[sheet.sheet.index(0, 1)] -= 2.;
   sheet.apply();
   EXPECT_EQ(*sheet.fracture.tip(), sheet.sheet.index(0, 1));
   // (0, 0) further left changes nothing; the tip never goes back.
-  sheet.state.x[sheet.sheet.index(2, 0)] -= 2.;
+  sheet.state.position.x[sheet.sheet.index(2, 0)] -= 2.;
   sheet.apply();
   EXPECT_EQ(*sheet.fracture.tip(), sheet.sheet.index(0, 1));
 }
@@ -214,8 +214,8 @@ TEST(Fracture, LeavesHeldSitesHeld)
                   Forces forces(sheet, material);
                   Fracture fracture(sheet, material, 1.5, Toughening{}, F);
                   fracture.configure(state, forces);
-                  forces.evaluate(state, state.vx, state.vy);
-                  EXPECT_EQ(fracture.apply(state, forces, state.vx, state.vy).size(), 1u);
+                  forces.evaluate(state, state.velocity);
+                  EXPECT_EQ(fracture.apply(state, forces, state.velocity).size(), 1u);
                   EXPECT_EQ(state.held, whole.held);
                 });
 }
@@ -232,10 +232,9 @@ TEST(Fracture, OwnsTheBreakingStretch)
   EXPECT_EQ(breaking_stretch_of(state, sheet.bond(near, 0)), unbreakable);
   // Which must not pass silently for bonds that hold.
   Forces forces(sheet, material);
-  forces.evaluate(state, state.vx, state.vy);
-  EXPECT_THROW(Fracture(sheet, material, 1.5, Toughening{}, F).apply(state, forces, state.vx, state.vy),
-               std::logic_error);
-  state.x[far] += 0.2 * sheets::spacing;
+  forces.evaluate(state, state.velocity);
+  EXPECT_THROW(Fracture(sheet, material, 1.5, Toughening{}, F).apply(state, forces, state.velocity), std::logic_error);
+  state.position.x[far] += 0.2 * sheets::spacing;
   state.bonds.toughen(near, 0);
   // Of all bonds the longest is not the nearest to its limit.
   const std::optional<StretchedBond> nearest =
@@ -277,9 +276,9 @@ TEST(Fracture, CutsHeldSitesOutForGood)
   simulation.constrain({held_sites(simulation.state(), sheet), true, true, steady(sheets::stretched(400., 200.))});
   simulation.step();
   EXPECT_EQ(simulation.state().held[corner], 0);
-  EXPECT_EQ(simulation.state().vx[corner], 0.);
-  EXPECT_EQ(simulation.state().vy[corner], 0.);
-  EXPECT_NE(simulation.state().vy[next], 0.);
+  EXPECT_EQ(simulation.state().velocity.x[corner], 0.);
+  EXPECT_EQ(simulation.state().velocity.y[corner], 0.);
+  EXPECT_NE(simulation.state().velocity.y[next], 0.);
 }
 
 // Bonds cut on a schedule leave the sheet whatever their stretch, once; what they held is in the ledger.
@@ -302,7 +301,7 @@ TEST(Fracture, CutsGivenBonds)
   EXPECT_GT(energies.broken, 0.);
   EXPECT_NEAR(energies.elastic + energies.broken, before, 1e-12 * before);
   // The forces are those without the bonds: the site is no longer in equilibrium.
-  EXPECT_NE(simulation.state().ax[place], 0.);
+  EXPECT_NE(simulation.state().acceleration.x[place], 0.);
   EXPECT_THROW(simulation.cut_bonds({{place, n_bond_kinds}}), std::invalid_argument);
   EXPECT_THROW(simulation.cut_bonds({{sheet.index(0, 0) - 1, 0}}), std::invalid_argument);
 }
@@ -312,17 +311,17 @@ TEST(Fracture, CutsGivenBonds)
 TEST(Fracture, ToughensOnRetraction)
 {
   TenSites sheet{Toughening{2., 0.8}};
-  sheet.state.x[sheet.sheet.index(2, 0)] += 0.15;
+  sheet.state.position.x[sheet.sheet.index(2, 0)] += 0.15;
   sheet.apply();
   EXPECT_EQ(sheet.limit(2, 0, 0), 1.5); // 0.85: not yet
-  sheet.state.x[sheet.sheet.index(2, 0)] += 0.15;
+  sheet.state.position.x[sheet.sheet.index(2, 0)] += 0.15;
   sheet.apply();
   EXPECT_EQ(sheet.limit(2, 0, 0), 3.);
   EXPECT_EQ(sheet.limit(0, 0, 0), 1.5);
   EXPECT_EQ(sheet.limit(2, 1, 0), 1.5);
   sheet.apply();
   EXPECT_EQ(sheet.limit(2, 0, 0), 3.);           // once
-  sheet.state.x[sheet.sheet.index(2, 0)] -= 1.3; // stretch 2
+  sheet.state.position.x[sheet.sheet.index(2, 0)] -= 1.3; // stretch 2
   for (const BrokenBond &bond : sheet.apply())
     EXPECT_NE(bond.near, sheet.sheet.index(2, 0));
   EXPECT_EQ(sheet.limit(2, 0, 0), 3.);

@@ -49,14 +49,13 @@ protected:
     const TriangularLattice sheet = sheets::square(12);
     Simulation simulation(sheet, material, homogeneous_state(sheet, material, sheets::stretched(1.5, 1.4), Edges::held),
                           {GetParam().step / static_cast<double>(refinement), stages});
-    Field vx(sheet.n_places()), vy(sheet.n_places());
-    for (std::size_t i = 0; i < vx.size(); ++i)
+    VectorField velocity(sheet.n_places());
+    for (std::size_t i = 0; i < sheet.n_places(); ++i)
     {
       const Eigen::Vector2d X = sheet.reference(i) / sheets::spacing;
-      vx[i] = 4. * std::sin(0.5 * X.x()) * std::cos(0.4 * X.y());
-      vy[i] = 3. * std::cos(0.3 * X.x() + 0.5 * X.y());
+      velocity.set(i, {4. * std::sin(0.5 * X.x()) * std::cos(0.4 * X.y()), 3. * std::cos(0.3 * X.x() + 0.5 * X.y())});
     }
-    simulation.set_velocities(vx, vy);
+    simulation.set_velocities(velocity);
     simulation.constrain({held_sites(simulation.state(), sheet), true, true, steady(sheets::stretched(400., 200.))});
     for (std::size_t step = 0; step < refinement * GetParam().steps; ++step)
       simulation.step();
@@ -70,9 +69,9 @@ protected:
   }
   static Eigen::VectorXd positions(const State &state)
   {
-    Eigen::VectorXd all(2 * state.x.size());
-    all << Eigen::Map<const Eigen::VectorXd>(state.x.data(), state.x.size()),
-      Eigen::Map<const Eigen::VectorXd>(state.y.data(), state.y.size());
+    Eigen::VectorXd all(2 * state.position.x.size());
+    all << Eigen::Map<const Eigen::VectorXd>(state.position.x.data(), state.position.x.size()),
+      Eigen::Map<const Eigen::VectorXd>(state.position.y.data(), state.position.y.size());
     return all;
   }
 };
@@ -141,14 +140,14 @@ TEST(VelocityVerlet, DampingLimitOfOneDashpotIsOne)
     const std::size_t left = sheet.index(3, 2);
     state.bonds.clear(sheet.n_places());
     state.bonds.add(left, 0);
-    state.vx[left] = -1e-6;
-    state.vx[left + 1] = 1e-6;
+    state.velocity.x[left] = -1e-6;
+    state.velocity.x[left + 1] = 1e-6;
     Forces forces(sheet, material);
     VelocityVerlet verlet(sheet, forces, z / gamma);
     verlet.initialise(state);
     for (int step = 0; step < steps; ++step)
       verlet.step(state);
-    return std::abs(state.vx[left + 1] - state.vx[left]) / 2e-6;
+    return std::abs(state.velocity.x[left + 1] - state.velocity.x[left]) / 2e-6;
   };
   EXPECT_LT(relative_velocity_after(0.99, 2000), 1.);
   EXPECT_GT(relative_velocity_after(1.01, 2000), 1.);
@@ -166,13 +165,13 @@ TEST(Noise, DependsOnSeedAloneAndKeepsItsAmplitude)
   add_noise(a, sheet, 1e-5, 7);
   add_noise(b, sheet, 1e-5, 7);
   add_noise(c, sheet, 1e-5, 8);
-  EXPECT_EQ(a.x, b.x);
-  EXPECT_NE(a.x, c.x);
+  EXPECT_EQ(a.position.x, b.position.x);
+  EXPECT_NE(a.position.x, c.position.x);
   double largest = 0., sum = 0., square = 0.;
   std::size_t n = 0;
-  for (std::size_t i = 0; i < a.x.size(); ++i)
+  for (std::size_t i = 0; i < a.position.x.size(); ++i)
     if (still.inverse_mass[i] > 0.)
-      for (const double u : {a.x[i] - still.x[i], a.y[i] - still.y[i]})
+      for (const double u : {a.position.x[i] - still.position.x[i], a.position.y[i] - still.position.y[i]})
       {
         largest = support::largest_of({largest, std::abs(u)});
         sum += u;
@@ -180,7 +179,7 @@ TEST(Noise, DependsOnSeedAloneAndKeepsItsAmplitude)
         ++n;
       }
     else
-      EXPECT_EQ(a.x[i], still.x[i]);
+      EXPECT_EQ(a.position.x[i], still.position.x[i]);
   // Uniform on [-A, A]: mean 0 +- A / sqrt(3n), mean square A^2 / 3; three standard deviations.
   EXPECT_LE(largest, 1e-5 * (1. + 1e-9));
   EXPECT_NEAR(sum / n, 0., 3. * 1e-5 / std::sqrt(3. * n));

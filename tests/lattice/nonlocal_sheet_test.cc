@@ -63,9 +63,9 @@ TEST_P(OfSixDirections, IsTheLatticeBitForBit)
     EXPECT_EQ(crack->tip(), expected->tip());
     for (const auto energy : sheets::energies)
       EXPECT_EQ(crack->energies().*energy, expected->energies().*energy);
-    for (Field State::*field : {&State::x, &State::y, &State::vx})
+    for (VectorField State::*field : {&State::position, &State::velocity})
       for (const std::size_t place : lattice.sites())
-        ASSERT_EQ((crack->state().*field)[place], (expected->state().*field)[place]) << place;
+        ASSERT_EQ((crack->state().*field).at(place), (expected->state().*field).at(place)) << place;
   }
 }
 

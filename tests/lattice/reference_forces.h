@@ -76,9 +76,9 @@ reference_forces(const latcon::lattice::State &state, const latcon::lattice::Tri
     const latcon::lattice::Shell &shell = *material.shell(kind);
     const double section = state.stiffness.of(near, kind) * cross_section(shell, sheet);
     const double rest_length = sheet.rest_length(kind);
-    const Vector2d r(state.x[far] - state.x[near], state.y[far] - state.y[near]);
+    const Vector2d r = state.position.difference(near, far);
     const std::size_t moving = sheet.canonical_place(far);
-    const Vector2d velocity(state.vx[moving] - state.vx[near], state.vy[moving] - state.vy[near]);
+    const Vector2d velocity = state.velocity.difference(near, moving);
     const double stretch = r.norm() / rest_length;
     const double rate = velocity.dot(r.normalized());
     const double axial = section * (force(shell.law, stretch) + shell.viscosity * rate / rest_length);

@@ -106,8 +106,9 @@ inline void expect_same_bits(const latcon::lattice::Simulation &one, const latco
   const SiteEvaluator evaluator(sheet, one.material());
   for (const std::size_t place : sheet.sites())
   {
-    for (Field State::*field : {&State::x, &State::y, &State::vx, &State::vy, &State::ax, &State::ay})
-      ASSERT_EQ(std::memcmp(&(a.*field)[place], &(b.*field)[place], sizeof(double)), 0) << place;
+    for (VectorField State::*field : {&State::position, &State::velocity, &State::acceleration})
+      for (const std::size_t axis : axes)
+        ASSERT_EQ(std::memcmp(&(a.*field)[axis][place], &(b.*field)[axis][place], sizeof(double)), 0) << place;
     ASSERT_EQ(evaluator.at(a, place).first_piola_stress, evaluator.at(b, place).first_piola_stress) << place;
   }
 }

@@ -49,7 +49,10 @@ TEST(EnergyBalance, ClosesWhenMovingSitesAreCut)
   const Eigen::Matrix2d F = sheets::stretched(1.4, 1.6);
   Simulation simulation(sheet, material, homogeneous_state(sheet, material, F, Edges::held), 2e-8,
                         Fracture(sheet, material, unbreakable, Toughening{}, F));
-  simulation.set_velocities(Field(sheet.n_places(), 3.), Field(sheet.n_places(), -2.));
+  VectorField velocity(sheet.n_places());
+  for (const std::size_t place : sheet.sites())
+    velocity.set(place, {3., -2.});
+  simulation.set_velocities(velocity);
   for (int step = 0; step < 20; ++step)
     simulation.step();
   const EnergyBalance before = simulation.energies();
@@ -135,10 +138,10 @@ TEST(Simulation, DividesAStepThatMakesABondShort)
     Simulation simulation(sheet, material,
                           homogeneous_state(sheet, material, now * Eigen::Matrix2d::Identity(), Edges::held),
                           TimeStepping(h, 2));
-    Field vx(sheet.n_places()), vy(sheet.n_places());
-    vx[near] = 0.5 * (now - then) * sheet.spacing() / h;
-    vx[far] = -vx[near];
-    simulation.set_velocities(vx, vy);
+    VectorField velocity(sheet.n_places());
+    velocity.x[near] = 0.5 * (now - then) * sheet.spacing() / h;
+    velocity.x[far] = -velocity.x[near];
+    simulation.set_velocities(velocity);
     simulation.step();
     EXPECT_EQ(simulation.n_divided_steps(), then < short_stretch ? 1u : 0u) << then;
   }

@@ -28,16 +28,10 @@ TEST(SiteFields, AreSumsOverTheBondsOfASite)
       State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
       relax_memory(state, sheet, material);
       const State stretched = homogeneous_state(sheet, material, F, Edges::held);
-      state.x = stretched.x;
-      state.y = stretched.y;
+      state.position = stretched.position;
       for (const std::size_t place : sheet.sites())
-      {
-        state.vx[place] = (rate * sheet.reference(place)).x();
-        state.vy[place] = (rate * sheet.reference(place)).y();
-      }
-      Forces(sheet, material)
-        .evaluate(state, state.vx, state.vy,
-                  {{}, {}, [](std::size_t, const double *, const double *) {}, &state.history});
+        state.velocity.set(place, rate * sheet.reference(place));
+      Forces(sheet, material).evaluate(state, state.velocity, {{}, {}, {}, &state.history});
       const std::size_t middle = sheet.index(sheet.rows() / 2, sheet.columns() / 2);
       Eigen::Matrix2d stress = Eigen::Matrix2d::Zero();
       double density = 0.;
@@ -114,7 +108,7 @@ TEST(ThirdShell, HomogeneousSheetHasTheEnergyAndStressOfItsNineDirections)
     EXPECT_NEAR(elastic_energy(state, sheet, material) / area, energy, 1e-12 * energy);
     const SiteEvaluator evaluator(sheet, material);
     Forces forces(sheet, material);
-    forces.evaluate(state, state.vx, state.vy);
+    forces.evaluate(state, state.velocity);
     for (const std::size_t place : sheet.sites())
     {
       const SiteValues values = evaluator.at(state, place);
@@ -124,7 +118,7 @@ TEST(ThirdShell, HomogeneousSheetHasTheEnergyAndStressOfItsNineDirections)
       EXPECT_NEAR(values.strain_energy_density, energy, 1e-12 * energy);
       EXPECT_LT((values.first_piola_stress - stress).norm(), 1e-12 * stress.norm());
       // Of 18 forces, each 2.5e5 Pa times a section of about d.
-      EXPECT_LT(std::hypot(forces.fx()[place], forces.fy()[place]), 18. * 1e-13 * 2.5e5 * d);
+      EXPECT_LT(forces.on_sites().at(place).norm(), 18. * 1e-13 * 2.5e5 * d);
     }
   }
 }

@@ -79,12 +79,12 @@ struct Crack
 void expect_scaled(const Crack &one, const Crack &other, const Units &units)
 {
   const State &a = one.simulation->state(), &b = other.simulation->state();
-  for (std::size_t place = 0; place < a.x.size(); ++place)
+  for (std::size_t place = 0; place < a.position.x.size(); ++place)
   {
-    ASSERT_EQ(b.x[place], units.length * a.x[place]);
-    ASSERT_EQ(b.y[place], units.length * a.y[place]);
-    ASSERT_EQ(b.vx[place], units.velocity() * a.vx[place]);
-    ASSERT_EQ(b.vy[place], units.velocity() * a.vy[place]);
+    ASSERT_EQ(b.position.x[place], units.length * a.position.x[place]);
+    ASSERT_EQ(b.position.y[place], units.length * a.position.y[place]);
+    ASSERT_EQ(b.velocity.x[place], units.velocity() * a.velocity.x[place]);
+    ASSERT_EQ(b.velocity.y[place], units.velocity() * a.velocity.y[place]);
   }
   for (const auto energy : sheets::energies)
     EXPECT_EQ(other.simulation->energies().*energy, units.energy() * (one.simulation->energies().*energy));

@@ -205,7 +205,7 @@ NearTipSampler::Axis NearTipSampler::axis(const lattice::State &state, std::size
     lowest = std::min(lowest, place);
     highest = std::max(highest, place);
   }
-  const Eigen::Vector2d low(state.x[lowest], state.y[lowest]), high(state.x[highest], state.y[highest]);
+  const Eigen::Vector2d low = state.position.at(lowest), high(state.position.x[highest], state.position.y[highest]);
   return {0.5 * (lattice_.reference(lowest) + lattice_.reference(highest)), 0.5 * (low + high)};
 }
 
@@ -227,12 +227,12 @@ NearTipSample NearTipSampler::look(const lattice::State &state, const Axis &axis
       return;
     if (state.removed[place] != 0 || 2u * state.lost_bonds[place] > material_.coordination(lattice_, place))
       return;
-    const Eigen::Vector2d position(state.x[place], state.y[place]);
+    const Eigen::Vector2d position = state.position.at(place);
     const Eigen::Vector2d displacement = position - axis.current - offset;
     const Eigen::Vector2d from_loading = position - options_.deformation * reference;
     NearTipSums::Site values;
     values[NearTipSums::motion].resize(6);
-    values[NearTipSums::motion] << state.vx[place], state.vy[place], displacement, from_loading;
+    values[NearTipSums::motion] << state.velocity.x[place], state.velocity.y[place], displacement, from_loading;
     if (with_tensors)
     {
       const lattice::SiteValues site = evaluator_.at(state, place);

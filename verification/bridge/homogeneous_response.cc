@@ -72,9 +72,9 @@ LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, co
 {
   const lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
   lattice::Forces forces(sheet, material);
-  forces.evaluate(state, state.vx, state.vy);
-  const Eigen::Matrix2d P = edge_stress(
-    sheet, material, [&](std::size_t place) { return Eigen::Vector2d(forces.fx()[place], forces.fy()[place]); });
+  forces.evaluate(state, state.velocity);
+  const Eigen::Matrix2d P =
+    edge_stress(sheet, material, [&](std::size_t place) { return forces.on_sites().at(place); });
   const std::size_t middle = sheet.index(2 * (sheet.rows() / 4), sheet.columns() / 2);
   return {lattice::SiteEvaluator(sheet, material).at(state, middle).strain_energy_density, P};
 }

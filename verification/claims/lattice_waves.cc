@@ -39,7 +39,7 @@ Eigen::Vector2d project(const lattice::Field &shape, const lattice::State &now, 
 {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (std::size_t place = 0; place < shape.size(); ++place)
-    sum += shape[place] * Eigen::Vector2d(now.x[place] - at_rest.x[place], now.y[place] - at_rest.y[place]);
+    sum += shape[place] * (now.position.at(place) - at_rest.position.at(place));
   return sum;
 }
 
@@ -90,10 +90,10 @@ lattice::State excited(const WaveCell &cell, const lattice::Material &material, 
   {
     const double shape = amplitude * std::cos(cell.phase(place));
     const Eigen::Vector2cd u = shape * wave.polarisation, v = wave.rate * u;
-    state.x[place] += u.x().real();
-    state.y[place] += u.y().real();
-    state.vx[place] += v.x().real();
-    state.vy[place] += v.y().real();
+    state.position.x[place] += u.x().real();
+    state.position.y[place] += u.y().real();
+    state.velocity.x[place] += v.x().real();
+    state.velocity.y[place] += v.y().real();
   }
   lattice::update_images(state, lattice::RowPartition(sheet));
   lattice::relax_memory(state, sheet, material);
@@ -103,8 +103,7 @@ lattice::State excited(const WaveCell &cell, const lattice::Material &material, 
     if (memory == nullptr)
       continue;
     const Eigen::Vector2d X = sheet.reference(place), R = sheet.bond_vector(kind);
-    const Eigen::Vector2d n =
-      Eigen::Vector2d(at_rest.x[far] - at_rest.x[place], at_rest.y[far] - at_rest.y[place]).normalized();
+    const Eigen::Vector2d n = (at_rest.position.at(far) - at_rest.position.at(place)).normalized();
     const std::complex<double> stretch = amplitude * (std::cos(cell.K.dot(X + R)) - std::cos(cell.K.dot(X))) /
                                          R.norm() * (n.x() * wave.polarisation.x() + n.y() * wave.polarisation.y());
     for (std::size_t i = 0; i < memory->branches().size(); ++i)
@@ -137,10 +136,8 @@ void add_wave(lattice::State &state, const WaveCell &cell, double amplitude, con
   {
     const double phase = cell.phase(place);
     const Eigen::Vector2d u = amplitude * std::cos(phase) * p, v = amplitude * frequency * std::sin(phase) * p;
-    state.x[place] += u.x();
-    state.y[place] += u.y();
-    state.vx[place] += v.x();
-    state.vy[place] += v.y();
+    state.position.add(place, u);
+    state.velocity.add(place, v);
   }
 }
 

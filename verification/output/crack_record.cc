@@ -36,8 +36,8 @@ FastestSite fastest_site(const lattice::Simulation &simulation)
     for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
     {
       const std::size_t place = sheet.index(row, column);
-      double speed = std::hypot(state.vx[place], state.vy[place]);
-      if (!std::isfinite(speed) || !std::isfinite(state.x[place]) || !std::isfinite(state.y[place]))
+      double speed = std::hypot(state.velocity.x[place], state.velocity.y[place]);
+      if (!std::isfinite(speed) || !std::isfinite(state.position.x[place]) || !std::isfinite(state.position.y[place]))
         speed = std::numeric_limits<double>::infinity();
       if (speed > fastest.speed)
         fastest = {place, speed};

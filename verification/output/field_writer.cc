@@ -203,10 +203,9 @@ void FieldWriter::add_frame(const lattice::State &state)
   frame->SetPoints(points);
   frame->SetVerts(vertices);
   vtkPointData &data = *frame->GetPointData();
-  const auto displacement = [&](std::size_t i) -> Eigen::Vector2d {
-    return Eigen::Vector2d(state.x[slots[i]], state.y[slots[i]]) - lattice_.reference(slots[i]);
-  };
-  const auto velocity = [&](std::size_t i) { return Eigen::Vector2d(state.vx[slots[i]], state.vy[slots[i]]); };
+  const auto displacement = [&](std::size_t i) -> Eigen::Vector2d
+  { return state.position.at(slots[i]) - lattice_.reference(slots[i]); };
+  const auto velocity = [&](std::size_t i) { return state.velocity.at(slots[i]); };
   if (fields_ == FrameFields::all)
   {
     add_field<vtkDoubleArray>(data, "displacement", "m", slots.size(), displacement);

@@ -98,16 +98,13 @@ public:
   // Adds impulses per sheet thickness over the masses of the sites to their velocities.
   void kick(const std::vector<double> &px, const std::vector<double> &py)
   {
-    const lattice::State &state = simulation_->state();
-    if (px.size() != state.vx.size() || py.size() != state.vy.size())
-      throw std::invalid_argument("impulses are needed for all " + std::to_string(state.vx.size()) + " places");
-    lattice::Field vx = state.vx, vy = state.vy;
-    for (std::size_t place = 0; place < vx.size(); ++place)
-    {
-      vx[place] += px[place] * state.inverse_mass[place];
-      vy[place] += py[place] * state.inverse_mass[place];
-    }
-    simulation_->set_velocities(vx, vy);
+    const std::size_t n = lattice_->n_places();
+    if (px.size() != n || py.size() != n)
+      throw std::invalid_argument("impulses are needed for all " + std::to_string(n) + " places");
+    lattice::VectorField velocity = simulation_->state().velocity;
+    for (std::size_t place = 0; place < n; ++place)
+      velocity.add(place, simulation_->state().inverse_mass[place] * Eigen::Vector2d(px[place], py[place]));
+    simulation_->set_velocities(velocity);
   }
 
   std::map<std::string, double> energies() const
@@ -150,14 +147,17 @@ private:
   std::optional<std::size_t> edges_; // constraint that the caller moves
 };
 
-// View of a field, which cannot be written.
-template <const auto lattice::State::*field>
-py::array view(py::object self)
+// View of a field of a state, which cannot be written.
+template <class Field>
+auto view(const Field &field)
 {
-  const auto &values = self.cast<Sheet &>().simulation().state().*field;
-  py::array_t<std::decay_t<decltype(values[0])>> array(values.size(), values.data(), self);
-  array.attr("flags").attr("writeable") = false;
-  return array;
+  return [field](py::object self)
+  {
+    const auto &values = std::invoke(field, self.cast<Sheet &>().simulation().state());
+    py::array_t<std::decay_t<decltype(values[0])>> array(values.size(), values.data(), self);
+    array.attr("flags").attr("writeable") = false;
+    return array;
+  };
 }
 
 } // namespace
@@ -191,11 +191,11 @@ PYBIND11_MODULE(latcon_stepping, module)
     .def("sites", &Sheet::sites)
     .def("bonds", &Sheet::bonds)
     .def("reference", &Sheet::reference)
-    .def_property_readonly("x", view<&lattice::State::x>)
-    .def_property_readonly("y", view<&lattice::State::y>)
-    .def_property_readonly("vx", view<&lattice::State::vx>)
-    .def_property_readonly("vy", view<&lattice::State::vy>)
-    .def_property_readonly("lost_bonds", view<&lattice::State::lost_bonds>)
+    .def_property_readonly("x", view([](const lattice::State &state) -> const auto & { return state.position.x; }))
+    .def_property_readonly("y", view([](const lattice::State &state) -> const auto & { return state.position.y; }))
+    .def_property_readonly("vx", view([](const lattice::State &state) -> const auto & { return state.velocity.x; }))
+    .def_property_readonly("vy", view([](const lattice::State &state) -> const auto & { return state.velocity.y; }))
+    .def_property_readonly("lost_bonds", view(&lattice::State::lost_bonds))
     .def_property_readonly("time", [](Sheet &sheet) { return sheet.simulation().state().time; })
     .def_property_readonly("time_step", [](Sheet &sheet) { return sheet.simulation().time_step(); })
     .def_property_readonly("n_broken", [](Sheet &sheet) { return sheet.simulation().n_broken(); })

@@ -42,16 +42,14 @@ void expect_same_state(Simulation &shared, const State &alone)
     ASSERT_EQ(state.held[place], alone.held[place]);
     if (!band.is_first() && !band.owns(place))
       continue;
-    ASSERT_EQ(state.x[place], alone.x[place]) << place;
-    ASSERT_EQ(state.y[place], alone.y[place]);
-    ASSERT_EQ(state.vx[place], alone.vx[place]);
-    ASSERT_EQ(state.vy[place], alone.vy[place]);
+    ASSERT_EQ(state.position.at(place), alone.position.at(place)) << place;
+    ASSERT_EQ(state.velocity.at(place), alone.velocity.at(place));
     for (std::size_t kind = 0; kind < alone.bonds.n_kinds(); kind += BondStates::kinds_per_word)
       ASSERT_EQ(state.bonds.words(kind)[place], alone.bonds.words(kind)[place]);
     if (band.owns(place))
     {
-      ASSERT_EQ(state.ax[place], alone.ax[place]);
-      ASSERT_EQ(state.ay[place], alone.ay[place]);
+      ASSERT_EQ(state.acceleration.x[place], alone.acceleration.x[place]);
+      ASSERT_EQ(state.acceleration.y[place], alone.acceleration.y[place]);
     }
   }
 }
@@ -174,7 +172,7 @@ TEST_P(SharedCrack, HasTheBitsOfOneRank)
   }
   ASSERT_TRUE(theirs.tip());
   const std::size_t tip = *theirs.tip();
-  EXPECT_EQ(ours.position(tip), Eigen::Vector2d(theirs.state().x[tip], theirs.state().y[tip]));
+  EXPECT_EQ(ours.position(tip), theirs.state().position.at(tip));
   expect_same_energies(ours.energies(), theirs.energies());
   expect_same_state(ours, theirs.state());
 }
@@ -227,15 +225,12 @@ TEST_P(SharedMotion, HasTheBitsOfOneRank)
         theirs->step();
       }
       expect_same_state(*ours, theirs->state());
-      Field vx(sheet.n_places()), vy(sheet.n_places());
-      for (std::size_t place = 0; place < vx.size(); ++place)
-      {
-        vx[place] = std::sin(static_cast<double>(place));
-        vy[place] = std::cos(static_cast<double>(place));
-      }
+      VectorField velocity(sheet.n_places());
+      for (std::size_t place = 0; place < sheet.n_places(); ++place)
+        velocity.set(place, {std::sin(static_cast<double>(place)), std::cos(static_cast<double>(place))});
       for (Simulation *simulation : {ours.get(), theirs.get()})
       {
-        simulation->set_velocities(vx, vy);
+        simulation->set_velocities(velocity);
         simulation->constrain(
           {held_sites(simulation->state(), sheet), true, true, steady(sheets::stretched(40., 20.))});
         for (int step = 0; step < 100; ++step)

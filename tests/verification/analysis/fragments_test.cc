@@ -111,7 +111,7 @@ TEST_F(Cut, OverstretchedBondsAreThoseThatOnlyTougheningKept)
   EXPECT_EQ(n_overstretched_bonds(state, sheet, 2.), 0u);
   // One site is moved far up: its bonds are long, independent of their breaking stretch.
   const std::size_t place = sheet.index(8, 8);
-  state.y[place] += 6. * sheets::spacing;
+  state.position.y[place] += 6. * sheets::spacing;
   std::size_t n = 0;
   for_each_bond_of_site(state, sheet, place, [&](const Bond &) { ++n; });
   EXPECT_EQ(n, 12u);

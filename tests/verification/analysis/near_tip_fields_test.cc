@@ -47,10 +47,8 @@ struct SlitSheet
       {
         const Eigen::Vector2d X = sheet.reference(place) - sheet.reference(tip);
         const Eigen::Vector2d x = position(X), v = velocity(X);
-        state.x[place] = x.x();
-        state.y[place] = x.y();
-        state.vx[place] = v.x();
-        state.vy[place] = v.y();
+        state.position.set(place, x);
+        state.velocity.set(place, v);
       }
   }
 
@@ -148,8 +146,8 @@ TEST(NearTipSampler, AxisOfAMirrorSymmetricStateIsItsMirror)
       if (slit.sheet.is_site(place))
       {
         const Eigen::Vector2d X = (slit.sheet.reference(place) - axis) / d;
-        slit.state.vx[place] = std::cos(X.y()) * (1. + X.x());
-        slit.state.vy[place] = std::sin(X.y()) * X.x();
+        slit.state.velocity.x[place] = std::cos(X.y()) * (1. + X.x());
+        slit.state.velocity.y[place] = std::sin(X.y()) * X.x();
       }
     for (const std::size_t tip : {low, high})
     {
@@ -187,7 +185,7 @@ TEST(NearTipSampler, FoldsWhereThePathDescends)
     const double sense = std::cos(turn) > 0. ? 1. : -1.; // ascending or descending
     for (std::size_t place = 0; place < long_sheet.n_places(); ++place)
       if (long_sheet.is_site(place))
-        state.vy[place] = sense;
+        state.velocity.y[place] = sense;
     sampler.sample(state, tip);
   }
   sampler.finish();

@@ -140,9 +140,9 @@ void exchange_axes(CutLattice &cut)
   for (std::size_t place = 0; place < cut.lattice.n_places(); ++place)
   {
     const Eigen::Vector2d X = cut.lattice.reference(place);
-    const double ux = cut.state.x[place] - X.x(), uy = cut.state.y[place] - X.y();
-    cut.state.x[place] = X.x() + uy;
-    cut.state.y[place] = X.y() + ux;
+    const double ux = cut.state.position.x[place] - X.x(), uy = cut.state.position.y[place] - X.y();
+    cut.state.position.x[place] = X.x() + uy;
+    cut.state.position.y[place] = X.y() + ux;
     cut.fields[place].first_piola_stress = cut.fields[place].first_piola_stress.reverse().eval();
   }
   std::swap(cut.reaction_change.x(), cut.reaction_change.y());

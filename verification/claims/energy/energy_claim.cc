@@ -269,12 +269,12 @@ output::Results contact_rows(const bridge::Subject &subject, const input::Case &
   // So slow that they overlap by a thousandth of the distance at most.
   const double speed = 1e-3 * law.distance / impact.duration;
   const Eigen::Vector2d common = 2. * speed * Eigen::Vector2d(direction.y(), -0.3);
-  state.x[right] = state.x[left] + law.distance * (1. - 1e-12) * direction.x();
-  state.y[right] = state.y[left] + law.distance * (1. - 1e-12) * direction.y();
+  state.position.x[right] = state.position.x[left] + law.distance * (1. - 1e-12) * direction.x();
+  state.position.y[right] = state.position.y[left] + law.distance * (1. - 1e-12) * direction.y();
   for (const auto &[place, sign] : {std::pair(left, 0.5), std::pair(right, -0.5)})
   {
-    state.vx[place] = common.x() + sign * speed * direction.x();
-    state.vy[place] = common.y() + sign * speed * direction.y();
+    state.velocity.x[place] = common.x() + sign * speed * direction.x();
+    state.velocity.y[place] = common.y() + sign * speed * direction.y();
   }
   lattice::TimeStepping stepping = input.fracture_time_stepping();
   stepping.step = support::smallest_of({stepping.step, impact.duration / steps});
@@ -283,8 +283,7 @@ output::Results contact_rows(const bridge::Subject &subject, const input::Case &
   while (simulation.state().time < 1.5 * impact.duration)
     simulation.step();
 
-  const auto velocity = [&](std::size_t place)
-  { return Eigen::Vector2d(simulation.state().vx[place], simulation.state().vy[place]); };
+  const auto velocity = [&](std::size_t place) { return simulation.state().velocity.at(place); };
   const double restitution = (velocity(right) - velocity(left)).dot(direction) / speed;
   const double momentum = (0.5 * (velocity(right) + velocity(left)) - common).norm() / speed;
   const lattice::EnergyBalance energies = simulation.energies();

@@ -229,7 +229,7 @@ EdgeLayer relaxed_edge(double spacing, const lattice::Material &material, double
   {
     double y = 0.;
     for (std::size_t column = 0; column < sheet.columns(); ++column)
-      y += state.y[sheet.index(row, column)] / static_cast<double>(sheet.columns());
+      y += state.position.y[sheet.index(row, column)] / static_cast<double>(sheet.columns());
     return y;
   };
   const std::size_t top = sheet.rows() - 1, middle = sheet.rows() / 2;

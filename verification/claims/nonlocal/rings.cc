@@ -136,10 +136,10 @@ double StencilSheet::imbalance(const Eigen::Matrix2d &F) const
 {
   const lattice::State at_rest = state(F);
   lattice::Forces forces(sheet_, material_);
-  forces.evaluate(at_rest, at_rest.vx, at_rest.vy);
+  forces.evaluate(at_rest, at_rest.velocity);
   double square = 0., tension = 0.;
   for (const std::size_t place : sheet_.sites())
-    square += std::pow(forces.fx()[place], 2) + std::pow(forces.fy()[place], 2);
+    square += std::pow(forces.on_sites().x[place], 2) + std::pow(forces.on_sites().y[place], 2);
   for (const lattice::Bond &bond : bonds(at_rest, sheet_))
   {
     const lattice::Shell &shell = *material_.shell(sheet_, bond.kind);
@@ -166,17 +166,15 @@ Eigen::Matrix2d StencilSheet::wave_stiffness(const Eigen::Matrix2d &F, const Eig
     { return std::cos(K.dot(sheet_.reference(place) - sheet_.reference(crest)) + shift); };
     for (const std::size_t place : all)
     {
-      state.x[place] += phase(place) * displacement.x();
-      state.y[place] += phase(place) * displacement.y();
+      state.position.add(place, phase(place) * displacement);
     }
     lattice::update_images(state, sheet_);
-    forces.evaluate(state, state.vx, state.vy);
+    forces.evaluate(state, state.velocity);
     if (sheet_.scattered() == nullptr)
-      return Eigen::Vector2d(forces.fx()[crest], forces.fy()[crest]);
+      return forces.on_sites().at(crest);
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
     for (const std::size_t place : all)
-      mean +=
-        phase(place) / static_cast<double>(sheet_.n_sites()) * Eigen::Vector2d(forces.fx()[place], forces.fy()[place]);
+      mean += phase(place) / static_cast<double>(sheet_.n_sites()) * forces.on_sites().at(place);
     return mean;
   };
   Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();
@@ -214,9 +212,9 @@ Eigen::Matrix2d StencilSheet::relaxed_stress(const lattice::Material &material, 
   lattice::Simulation held(sheet_, material, suddenly_strained(sheet_, material, F), lattice::TimeStepping(step));
   for (std::size_t i = 0; i < n_steps; ++i)
     held.step();
-  return bridge::edge_stress(sheet_, material,
-                             [&](std::size_t place)
-                             { return held.forces().on_site(held.state(), held.state().vx, held.state().vy, place); });
+  lattice::Forces forces(sheet_, material);
+  forces.evaluate(held.state(), held.state().velocity);
+  return bridge::edge_stress(sheet_, material, [&](std::size_t place) { return forces.on_sites().at(place); });
 }
 
 } // namespace latcon::claims

@@ -147,7 +147,7 @@ CutSolution solution(const CutLattice &cut, const bridge::EquivalentSheet &domai
     const Eigen::Vector2d X = cut.lattice.reference(place);
     const Eigen::Matrix2d F = bridge::to_lattice(states[i].F), P = bridge::to_lattice(states[i].P);
     found.P.push_back(P);
-    of_lattice.emplace_back(cut.state.x[place] - X.x(), cut.state.y[place] - X.y());
+    of_lattice.emplace_back(cut.state.position.x[place] - X.x(), cut.state.position.y[place] - X.y());
     displacement_max.add((of_lattice.back() - of_continuum[i]).norm() / scale);
     if (!cut.sites[i].has_all_bonds)
       continue;

@@ -24,7 +24,7 @@ Eigen::Vector2d reactions(const lattice::TriangularLattice &sheet, const lattice
 {
   const auto distance = [](bool is_held, double value) { return is_held ? value : std::numeric_limits<double>::max(); };
   lattice::Forces forces(sheet, material);
-  forces.evaluate(state, state.vx, state.vy);
+  forces.evaluate(state, state.velocity);
   Eigen::Vector2d reaction = Eigen::Vector2d::Zero();
   for (const std::size_t place : sheet.sites())
     if (state.held[place] != 0)
@@ -35,9 +35,9 @@ Eigen::Vector2d reactions(const lattice::TriangularLattice &sheet, const lattice
       const double others =
         support::smallest_of({distance(held.left, X.x()), distance(held.bottom, 0.5 * sheet.height() + X.y())});
       if (right < top && right < others)
-        reaction.x() -= forces.fx()[place];
+        reaction.x() -= forces.on_sites().x[place];
       if (top <= right && top < others)
-        reaction.y() -= forces.fy()[place];
+        reaction.y() -= forces.on_sites().y[place];
     }
   return reaction;
 }

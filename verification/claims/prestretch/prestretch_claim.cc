@@ -48,10 +48,9 @@ LatticeSide relaxed_lattice(const bridge::Subject &subject, const lattice::Trian
   side.energy_density /= static_cast<double>(side.interior.size());
 
   lattice::Forces forces(sheet, subject.material);
-  forces.evaluate(side.state, side.state.vx, side.state.vy);
+  forces.evaluate(side.state, side.state.velocity);
   side.edge_stress =
-    bridge::edge_stress(sheet, subject.material,
-                        [&](std::size_t place) { return Eigen::Vector2d(forces.fx()[place], forces.fy()[place]); });
+    bridge::edge_stress(sheet, subject.material, [&](std::size_t place) { return forces.on_sites().at(place); });
   return side;
 }
 
@@ -86,7 +85,7 @@ std::vector<Compared> compare(const bridge::Subject &subject, const lattice::Tri
     const std::size_t place = side.interior[i];
     const continuum::PointState &state = continuum_states[i];
     const Eigen::Vector2d X = sheet.reference(place);
-    const Eigen::Vector2d u(side.state.x[place] - X.x(), side.state.y[place] - X.y());
+    const Eigen::Vector2d u(side.state.position.x[place] - X.x(), side.state.position.y[place] - X.y());
     displacement_error.add((u - Eigen::Vector2d(state.displacement[0], state.displacement[1])).norm());
     const Eigen::Matrix2d F = bridge::to_lattice(state.F), P = bridge::to_lattice(state.P);
     gradient_error.add((side.fields[place].deformation_gradient - F).norm() / F.norm());

@@ -240,7 +240,9 @@ void add_held_lattice(const bridge::Subject &subject, const lattice::TriangularL
   RelaxationComparison comparison(subject, sheet, material, n_bonds, F);
   const auto compare = [&]
   {
-    const auto force = [&](std::size_t place) { return simulation.forces().on_site(state, state.vx, state.vy, place); };
+    lattice::Forces forces(all, simulation.material());
+    forces.evaluate(state, state.velocity);
+    const auto force = [&](std::size_t place) { return forces.on_sites().at(place); };
     const lattice::EnergyBalance energies = simulation.energies();
     comparison.compare(state.time, bridge::edge_stress(sheet, simulation.material(), force),
                        simulation.mechanism_energies(),

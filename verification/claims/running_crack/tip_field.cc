@@ -63,9 +63,8 @@ double dissipation(const lattice::State &state, const lattice::TriangularLattice
                                  [&](const lattice::Bond &bond)
                                  {
                                    const auto [near, kind, far] = bond;
-                                   const Eigen::Vector2d r(state.x[far] - state.x[near], state.y[far] - state.y[near]);
-                                   const Eigen::Vector2d rate(state.vx[far] - state.vx[near],
-                                                              state.vy[far] - state.vy[near]);
+                                   const Eigen::Vector2d r = state.position.at(far) - state.position.at(near);
+                                   const Eigen::Vector2d rate = state.velocity.at(far) - state.velocity.at(near);
                                    const lattice::Shell &shell = *material.shell(kind);
                                    power += 0.5 * lattice::cross_section(shell, sheet) * shell.viscosity /
                                             sheet.rest_length(kind) * std::pow(rate.dot(r.normalized()), 2);
@@ -209,8 +208,8 @@ TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &mat
       const Eigen::Vector2d X = sheet.reference(site.place);
       const double sign = site.is_above ? 1. : -1.; // the lower half is the mirror image
       TipValues values;
-      values.velocity = {now.vx[site.place], sign * now.vy[site.place]};
-      values.excess = Eigen::Vector2d(now.x[site.place], now.y[site.place]) - F * X;
+      values.velocity = {now.velocity.x[site.place], sign * now.velocity.y[site.place]};
+      values.excess = now.position.at(site.place) - F * X;
       values.excess.y() *= sign;
       values.opening_stress = evaluator.at(now, site.place).first_piola_stress(1, 1);
       values.dissipation = dissipation(now, sheet, material, site.place);

@@ -35,23 +35,21 @@ double reflected_share(const bridge::Subject &subject, const Eigen::Vector2d &po
     std::sqrt(polarisation.dot(lattice::tangent_along_x(sheet, material, F) * polarisation) / material.density);
   lattice::State state = lattice::homogeneous_state(sheet, material, F, {false, false, true, true});
   const lattice::State at_rest = state;
-  lattice::Field vx(sheet.n_places(), 0.), vy(sheet.n_places(), 0.);
+  lattice::VectorField velocity(sheet.n_places());
   const double amplitude = 1e-5 * width * d, middle = sheet.length() - distance * d;
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
   {
     const double z = (sheet.reference(place).x() - middle) / (width * d);
     const double u = amplitude * std::exp(-0.5 * z * z), v = speed * z / (width * d) * u;
-    state.x[place] += u * polarisation.x();
-    state.y[place] += u * polarisation.y();
-    vx[place] = v * polarisation.x();
-    vy[place] = v * polarisation.y();
+    state.position.add(place, u * polarisation);
+    velocity.set(place, v * polarisation);
   }
   const auto integral = [&](const lattice::State &now)
   {
     double sum = 0.;
     for (std::size_t place = 0; place < sheet.n_places(); ++place)
       if (now.inverse_mass[place] > 0.)
-        sum += polarisation.dot(Eigen::Vector2d(now.x[place] - at_rest.x[place], now.y[place] - at_rest.y[place]));
+        sum += polarisation.dot(now.position.at(place) - at_rest.position.at(place));
     return sum;
   };
   const double before = integral(state);
@@ -59,7 +57,7 @@ double reflected_share(const bridge::Subject &subject, const Eigen::Vector2d &po
     sheet, material, std::move(state),
     0.9 * lattice::time_step_limits(sheet, material, 0.99 * smallest_stretch(sheet, F)).combined);
   simulation.load_ends(F, lattice::EndLoads::End::absorbing, lattice::EndLoads::End::absorbing);
-  simulation.set_velocities(vx, vy);
+  simulation.set_velocities(velocity);
   while (simulation.state().time < 2. * distance * d / speed)
     simulation.step();
   return integral(simulation.state()) / before;
