@@ -20,21 +20,6 @@ bool outermost(const TriangularLattice &lattice, std::size_t place, bool left)
   return lattice.column_of(place) == (left ? 0 : lattice.sites_in_row(row) - 1);
 }
 
-// As tangent_along_x, with the stiffness that memories add to bonds in fast motion.
-Eigen::Matrix2d fast_tangent_along_x(const TriangularLattice &lattice, const Material &material,
-                                     const Eigen::Matrix2d &F)
-{
-  Eigen::Matrix2d tangent = tangent_along_x(lattice, material, F);
-  for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
-    if (const Shell *shell = material.shell(lattice, kind); shell && n_variables(shell->memory) > 0)
-    {
-      const Eigen::Vector2d N = lattice.bond_vector(kind) / lattice.rest_length(kind), n = (F * N).normalized();
-      tangent += cross_section(*shell, lattice, kind) * lattice.rest_length(kind) / lattice.site_area() * N.x() *
-                 N.x() * largest_stiffness(shell->memory) * n * n.transpose();
-    }
-  return tangent;
-}
-
 // Force of the bonds that a site lacks, as they would be in the sheet at x = F X.
 Eigen::Vector2d missing_force(const TriangularLattice &lattice, const Material &material, std::size_t place,
                               const Eigen::Matrix2d &F)
@@ -59,7 +44,8 @@ Eigen::Vector2d missing_force(const TriangularLattice &lattice, const Material &
 
 } // namespace
 
-Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F)
+Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F,
+                                bool is_fast)
 {
   Eigen::Matrix2d tangent = Eigen::Matrix2d::Zero();
   for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
@@ -70,7 +56,8 @@ Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material
       const double stretch = (F * R).norm() / l;
       const Eigen::Vector2d n = (F * R).normalized();
       const Eigen::Matrix2d along = n * n.transpose();
-      const Eigen::Matrix2d h = stiffness(shell->law, stretch) * along +
+      const double of_memory = is_fast ? largest_stiffness(shell->memory) : 0.;
+      const Eigen::Matrix2d h = (stiffness(shell->law, stretch) + of_memory) * along +
                                 force(shell->law, stretch) / stretch * (Eigen::Matrix2d::Identity() - along);
       tangent += cross_section(*shell, lattice, kind) * l / lattice.site_area() * (R.x() / l) * (R.x() / l) * h;
     }
@@ -108,7 +95,7 @@ EndLoads::EndLoads(const RowPartition &band, const Material &material, const Sta
   require(waves_run_along_x(lattice, material, F),
           "no waves run along x in the loaded sheet, so that an end cannot absorb them");
   const support::SymmetricModes modes =
-    support::symmetric_modes(material.density * fast_tangent_along_x(lattice, material, F));
+    support::symmetric_modes(material.density * tangent_along_x(lattice, material, F, true));
   const bool along = lattice.orientation() == Orientation::rows_along_crack;
   impedance_ = (along ? std::sqrt(3.) / 2. : 1.) * lattice.spacing() *
                (modes.vectors * modes.values.cwiseSqrt().asDiagonal() * modes.vectors.transpose());

@@ -8,7 +8,9 @@ namespace latcon::lattice
 /// Long-wave tangent along x of the sheet at x = F X: rho c^2 p = A p for a plane wave along X with referential speed c
 /// and polarisation p, A = (1/V) sum_k A0 l (N_k . e_x)^2 h_k [Pa], h_k = psi'' n n + (psi'/lam)(I - n n)
 /// (theory-comparison.md, eqs. (W.1) and (W.2)), sum over the bonds that a site owns. Symmetric.
-Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F);
+/// @param is_fast psi'' + largest_stiffness() of the memory in place of psi''
+Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F,
+                                bool is_fast = false);
 
 /// Returns whether both long waves along x propagate in the sheet at x = F X, i.e. tangent_along_x is positive
 /// definite. An absorbing end requires it.

@@ -274,7 +274,7 @@ void Forces::evaluate_row(const State &state, const VectorField &velocity, std::
                           const RowFunction &post_force)
 {
   RowCallbacks work;
-  work.post_force = std::ref(post_force);
+  work.post_force = post_force;
   const auto number = static_cast<std::ptrdiff_t>(row);
   evaluate_rows({state, velocity}, number, number + 1, scratch_.front(), work);
 }

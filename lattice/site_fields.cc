@@ -9,48 +9,50 @@
 namespace latcon::lattice
 {
 
-SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
+SiteValues site_values(const State &state, const TriangularLattice &lattice, const Material &material,
+                       std::size_t place)
 {
   SiteValues values;
   // Normal equations of the fit of F: F (sum R R^T) = sum r R^T.
   Eigen::Matrix2d reference_moment = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d mixed_moment = Eigen::Matrix2d::Zero();
-  for_each_bond_of_site(
-    state, lattice_, place,
-    [&](const Bond &bond)
-    {
-      const auto [near, kind, far] = bond;
-      const Shell &shell = *material_.shell(lattice_, kind);
-      const Eigen::Vector2d r = state.position.difference(near, far);
-      const Eigen::Vector2d rate = state.velocity.difference(near, far);
-      const double length = r.norm(), ratio = lattice_.length_ratio(near, kind);
-      const Eigen::Vector2d direction = r / length, R = lattice_.bond_vector(bond);
-      const double rest_length = lattice_.rest_length(kind) / ratio, stretch = length / rest_length;
-      const double section = state.stiffness.of(near, kind) * ratio * cross_section(shell, lattice_, kind);
-      double axial = section * (force(shell.law, stretch) + shell.viscosity * rate.dot(direction) / rest_length);
-      if (state.history.remembers(kind))
-      {
-        // As of the last update.
-        auto variables = state.history.variables_of(near, kind);
-        std::array<double, max_history_variables> dissipation{};
-        const double then = state.history.kinds[kind].stretch[near];
-        axial += section * advance(shell.memory, then, then, variables.data(), dissipation.data());
-      }
-      ++values.bonds;
-      values.strain_energy_density += 0.5 * section * rest_length * energy(shell.law, stretch);
-      values.first_piola_stress += 0.5 * axial * direction * R.transpose();
-      reference_moment += R * R.transpose();
-      mixed_moment += r * R.transpose();
-    });
+  for_each_bond_of_site(state, lattice, place,
+                        [&](const Bond &bond)
+                        {
+                          const auto [near, kind, far] = bond;
+                          const Shell &shell = *material.shell(lattice, kind);
+                          const Eigen::Vector2d r = state.position.difference(near, far);
+                          const Eigen::Vector2d rate = state.velocity.difference(near, far);
+                          const double length = r.norm(), ratio = lattice.length_ratio(near, kind);
+                          const Eigen::Vector2d direction = r / length, R = lattice.bond_vector(bond);
+                          const double rest_length = lattice.rest_length(kind) / ratio, stretch = length / rest_length;
+                          const double section =
+                            state.stiffness.of(near, kind) * ratio * cross_section(shell, lattice, kind);
+                          double axial =
+                            section * (force(shell.law, stretch) + shell.viscosity * rate.dot(direction) / rest_length);
+                          if (state.history.remembers(kind))
+                          {
+                            // As of the last update.
+                            auto variables = state.history.variables_of(near, kind);
+                            std::array<double, max_history_variables> dissipation{};
+                            const double then = state.history.kinds[kind].stretch[near];
+                            axial += section * advance(shell.memory, then, then, variables.data(), dissipation.data());
+                          }
+                          ++values.bonds;
+                          values.strain_energy_density += 0.5 * section * rest_length * energy(shell.law, stretch);
+                          values.first_piola_stress += 0.5 * axial * direction * R.transpose();
+                          reference_moment += R * R.transpose();
+                          mixed_moment += r * R.transpose();
+                        });
 
-  const double area = lattice_.site_area();
+  const double area = lattice.site_area();
   values.strain_energy_density /= area;
   values.first_piola_stress /= area;
   if (values.bonds + state.lost_bonds[place] > 0)
     values.damage = static_cast<double>(state.lost_bonds[place]) / (values.bonds + state.lost_bonds[place]);
 
   // Bonds along one line leave the moment singular; d^4 is the scale of its determinant.
-  const double d2 = lattice_.spacing() * lattice_.spacing();
+  const double d2 = lattice.spacing() * lattice.spacing();
   if (!(reference_moment.determinant() > 1e-6 * d2 * d2))
     return values;
   const Eigen::Matrix2d F = mixed_moment * reference_moment.inverse();
@@ -63,9 +65,8 @@ SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
 std::vector<SiteValues> site_fields(const State &state, const TriangularLattice &lattice, const Material &material)
 {
   std::vector<SiteValues> fields(lattice.n_places());
-  const SiteEvaluator evaluator(lattice, material);
   for (const std::size_t place : lattice.sites())
-    fields[place] = evaluator.at(state, place);
+    fields[place] = site_values(state, lattice, material, place);
   return fields;
 }
 

@@ -32,20 +32,9 @@ struct SiteValues
   double damage = 0.;
 };
 
-/// Evaluates SiteValues, with what depends on lattice and material alone at hand.
-class SiteEvaluator
-{
-public:
-  /// The lattice must outlive this object.
-  SiteEvaluator(const TriangularLattice &lattice, const Material &material) : lattice_(lattice), material_(material) {}
-
-  /// @param place of a site, not in the margin
-  SiteValues at(const State &state, std::size_t place) const;
-
-private:
-  const TriangularLattice &lattice_;
-  Material material_;
-};
+/// Values at one site. @param place not in the margin
+SiteValues site_values(const State &state, const TriangularLattice &lattice, const Material &material,
+                       std::size_t place);
 
 /// SiteValues of all sites, by their places; in the margin those of no bonds.
 std::vector<SiteValues> site_fields(const State &state, const TriangularLattice &lattice, const Material &material);

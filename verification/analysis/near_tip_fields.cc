@@ -150,7 +150,7 @@ NearTipField NearTipSums::mean() const
 NearTipSampler::NearTipSampler(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                const NearTipOptions &options)
   : lattice_(lattice), material_(material), options_(options), grid_(make_grid(lattice, options)),
-    evaluator_(lattice, material), gradient_fit_(lattice), plain_(grid_), folded_(n_blocks, NearTipSums(grid_))
+    gradient_fit_(lattice), plain_(grid_), folded_(n_blocks, NearTipSums(grid_))
 {
   if (!(options.X_end >= options.X_begin))
     throw std::invalid_argument("the sampled interval of the tip must have X_end > X_begin");
@@ -235,7 +235,7 @@ NearTipSample NearTipSampler::look(const lattice::State &state, const Axis &axis
     values[NearTipSums::motion] << state.velocity.x[place], state.velocity.y[place], displacement, from_loading;
     if (with_tensors)
     {
-      const lattice::SiteValues site = evaluator_.at(state, place);
+      const lattice::SiteValues site = site_values(state, lattice_, material_, place);
       values[NearTipSums::tensors].resize(12);
       values[NearTipSums::tensors] << site.deformation_gradient.reshaped<Eigen::RowMajor>(),
         site.first_piola_stress.reshaped<Eigen::RowMajor>(), site.cauchy_stress.reshaped<Eigen::RowMajor>();

@@ -252,7 +252,6 @@ private:
   lattice::Material material_;
   NearTipOptions options_;
   NearTipGrid grid_;
-  lattice::SiteEvaluator evaluator_;
   lattice::StrainGradientFit gradient_fit_;
   std::vector<Eigen::Vector2d> path_; // of the tip at all calls, reference [m]
   NearTipSums plain_;

@@ -76,7 +76,7 @@ LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, co
   const Eigen::Matrix2d P =
     edge_stress(sheet, material, [&](std::size_t place) { return forces.on_sites().at(place); });
   const std::size_t middle = sheet.index(2 * (sheet.rows() / 4), sheet.columns() / 2);
-  return {lattice::SiteEvaluator(sheet, material).at(state, middle).strain_energy_density, P};
+  return {lattice::site_values(state, sheet, material, middle).strain_energy_density, P};
 }
 
 Eigen::Matrix2d lattice_rotation(int k)

@@ -133,7 +133,7 @@ Eigen::Matrix2d stress_of_loaded_sheet(const input::Case &input)
   const lattice::State state =
     lattice::homogeneous_state(whole, material, input.deformation(), {true, true, true, true});
   const std::size_t row = sheet.rows() / 2;
-  return lattice::SiteEvaluator(sheet, material).at(state, sheet.index(row, sheet.sites_in_row(row) / 2)).cauchy_stress;
+  return lattice::site_values(state, sheet, material, sheet.index(row, sheet.sites_in_row(row) / 2)).cauchy_stress;
 }
 
 // Returns the standard deviation of the mean over all blocks, estimated from those of blocks that have one; none for

@@ -80,7 +80,7 @@ TEST_P(NearTipFieldsOf, LinearFieldsAreExact)
   const NearTipGrid &grid = field.grid;
   EXPECT_NEAR(grid.pitch_X * grid.pitch_Y, slit.sheet.site_area(), 1e-12 * d * d);
   EXPECT_EQ(grid.behind, static_cast<int>(12 * d / grid.pitch_X + 1e-9));
-  const Eigen::Matrix2d P = SiteEvaluator(slit.sheet, slit.material).at(slit.state, slit.tip).first_piola_stress;
+  const Eigen::Matrix2d P = site_values(slit.state, slit.sheet, slit.material, slit.tip).first_piola_stress;
   for (int j = -grid.half_height; j <= grid.half_height; ++j)
     for (int i = -grid.behind; i <= grid.ahead; ++i)
     {

@@ -152,7 +152,7 @@ CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet
   cut.fields = lattice::site_fields(cut.state, lattice, subject.material);
 
   const std::size_t inside = lattice.index(lattice.rows() / 2, lattice.columns() / 2);
-  const lattice::SiteValues values = lattice::SiteEvaluator(lattice, subject.material).at(whole, inside);
+  const lattice::SiteValues values = lattice::site_values(whole, lattice, subject.material, inside);
   cut.homogeneous_energy = values.strain_energy_density;
   cut.homogeneous_P = values.first_piola_stress;
   cut.energy_change = lattice::elastic_energy(cut.state, lattice, subject.material) -

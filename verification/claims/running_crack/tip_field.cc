@@ -178,7 +178,6 @@ TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &mat
   const lattice::TimeStepping stepping = time_stepping(drive, sheet, material);
   lattice::Simulation simulation(sheet, material, std::move(state), stepping,
                                  lattice::Fracture(sheet, material, lattice::unbreakable, lattice::Toughening(), F));
-  const lattice::SiteEvaluator evaluator(sheet, material);
 
   TipRun run{TipField(drive), {}};
   auto next = schedule.begin();
@@ -211,7 +210,7 @@ TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &mat
       values.velocity = {now.velocity.x[site.place], sign * now.velocity.y[site.place]};
       values.excess = now.position.at(site.place) - F * X;
       values.excess.y() *= sign;
-      values.opening_stress = evaluator.at(now, site.place).first_piola_stress(1, 1);
+      values.opening_stress = site_values(now, sheet, material, site.place).first_piola_stress(1, 1);
       values.dissipation = dissipation(now, sheet, material, site.place);
       run.field.add(site, values);
     }
