@@ -80,7 +80,6 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
   if (begin == end)
     return;
   const Motion motion{updating.state, updating.velocity};
-  scratch.ahead.clear();
   scratch.sums.clear();
   for (std::ptrdiff_t row = begin - reach_; row < begin; ++row)
     if (const auto from = lattice_.row(row))
@@ -94,11 +93,6 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
     // As far up as bonds of this row reach, and where this has not been done for the thread next to it.
     if (work.pre_force && row + 2 * reach_ < end)
       work.pre_force(index + lattice_.reach());
-    scratch.ahead.clear();
-    if (row + 2 * reach_ + 1 < end)
-      for (const VectorField *field : work.fields)
-        for (const std::size_t axis : axes)
-          scratch.ahead.push_back(&(*field)[axis][lattice_.index(index + lattice_.reach() + 1, 0)]);
     const Motion &of_row = row < end - reach_ ? updating : motion;
     row_sums_[index] = bonds_of_row(of_row, index, row, begin, scratch);
     const OfRow on_sites = scratch.sums.at(row);
@@ -201,8 +195,6 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   const std::size_t columns = lattice_.columns();
   std::vector<kernels::BondsOfKind> &kinds = scratch.kinds;
   kernels::RowOfBonds bonds = row_of_bonds(motion, from, kinds);
-  bonds.ahead = scratch.ahead.data();
-  bonds.n_ahead = scratch.ahead.size();
   scratch.remembered.resize(n_kinds_);
   kernels::RowSums sums;
   sums.mechanism_power.assign(mechanism_gives_energy_.size(), 0.);
@@ -224,7 +216,6 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
         remember(motion, from, kind, sums.mechanism_power.data(), scratch);
     }
     kernels::loops().bonds_of_row(bonds, sums);
-    bonds.n_ahead = 0;
     // A site gathers from the places around it, so bonds that start beyond a periodic edge must be there.
     for (std::size_t kind = first; kind < first + bonds.n_kinds && gathers && columns_repeat_; ++kind)
       for (double *component : kinds[kind].force)

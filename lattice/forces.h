@@ -48,8 +48,6 @@ public:
     /// Before any bond of the row is looked at; may give the row its positions and velocities to be evaluated. Not for
     /// sheets that are periodic, whose images must be there too. May be empty.
     std::function<void(std::size_t row)> pre_force;
-    /// Fields that the callbacks work on; they are fetched from memory while the rows before are computed.
-    std::vector<const VectorField *> fields = {};
     /// Takes the forces on the sites of the row; may change all but those positions and velocities.
     RowFunction post_force = {};
     /// History to be updated to the evaluated positions, that of the evaluated state; nullptr: none.
@@ -133,7 +131,6 @@ private:
     LastRows sums; // on the sites of the rows that bonds reach from one row
     std::vector<kernels::BondsOfKind> kinds = {};
     std::vector<kernels::RememberedRow> remembered = {}; // by kind
-    std::vector<const double *> ahead = {};   // what is fetched during a row
     Field lengths;                            // of the bonds of a row with a memory, and their inverse
   };
 

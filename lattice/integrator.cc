@@ -83,7 +83,7 @@ void Integrator::accelerate_row(State &state, std::size_t row, const Forces::OfR
 void Integrator::accelerate(State &state)
 {
   const auto after = [&](std::size_t row, const Forces::OfRow &force) { accelerate_row(state, row, force); };
-  forces_.evaluate(state, evaluated(state), {{}, {}, std::ref(after), &state.history});
+  forces_.evaluate(state, evaluated(state), {{}, std::ref(after), &state.history});
   evaluate_site_forces(state);
   accelerate_sites(state);
 }

@@ -13,7 +13,6 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lattice/row_kernels.cc"
-#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -145,8 +144,6 @@ void bonds_of_laws(const Law law, const SecondLaw second_law, const RowOfBonds &
   RowOfBonds row = given;
   row.kinds = kinds.data();
   const BondConstants first = kinds[0].constants, second = kinds[n_kinds - 1].constants;
-  const double *const *const ahead = row.ahead;
-  const std::size_t n_ahead = row.n_ahead;
   const double first_limit = std::min(row.breaking_stretch, row.toughened_stretch);
   const bool keeps_lengths =
     std::any_of(kinds.begin(), kinds.end(), [](const BondsOfKind &bonds) { return bonds.remembered != nullptr; });
@@ -164,9 +161,6 @@ void bonds_of_laws(const Law law, const SecondLaw second_law, const RowOfBonds &
   {
     // Beyond the last site the first is done again, for nothing.
     find_lengths<n_kinds, has_factors>(row, site + width() < end ? site + width() : 0, lengths[1 - turn]);
-    if (site % block == 0)
-      for (std::size_t i = 0; i < n_ahead; ++i)
-        hwy::Prefetch(ahead[i] + site);
     const Lanes x = load(row.x + site), y = load(row.y + site), vx = load(row.vx + site), vy = load(row.vy + site);
     const Lengths &here = lengths[turn];
     if (HWY_UNLIKELY(keeps_lengths))

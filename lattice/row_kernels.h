@@ -67,9 +67,6 @@ struct RowOfBonds
   double shortness_limit = std::numeric_limits<double>::infinity();
   const BondsOfKind *kinds = nullptr; ///< `n_kinds` of them
   std::size_t n_kinds = 0;
-  /// `n_ahead` arrays whose same slots are prefetched, since they are needed next.
-  const double *const *ahead = nullptr;
-  std::size_t n_ahead = 0;
 };
 
 /// Sums over the bonds that start in a row.

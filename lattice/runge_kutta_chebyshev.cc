@@ -35,8 +35,6 @@ void RungeKuttaChebyshev::step(State &state)
                                    &previous_.velocity[axis][i]);
   };
   Forces::RowCallbacks work = move_rows(state, first_stage);
-  work.fields = {&state.position,  &state.velocity,     &state.acceleration, &start_.position,
-                 &start_.velocity, &previous_.position, &previous_.velocity};
   for (const ChebyshevStages::Stage &stage : stages_.stages())
   {
     const auto next = [&](std::size_t row, const Forces::OfRow &force)

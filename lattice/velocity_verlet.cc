@@ -30,7 +30,6 @@ void VelocityVerlet::step(State &state)
   };
   forces_.set_elapsed(time_step());
   Forces::RowCallbacks work = move_rows(state, drift);
-  work.fields = {&state.position, &state.velocity, &state.acceleration, &predicted_velocity_};
   work.post_force = std::ref(kick);
   work.history = &state.history;
   forces_.evaluate(state, predicted_velocity_, work);
