@@ -24,15 +24,6 @@ namespace latcon::lattice::kernels::HWY_NAMESPACE
 
 #include "lattice/site_loops.inc"
 
-// Lengths and inverse lengths of the bonds that start at these sites, both 0 for an absent one: it has no direction,
-// hence no force. Root and quotient take as long as all the rest, in units of the processor that do nothing
-// else: they are begun one vector of sites ahead of their use, so that the rest goes on meanwhile.
-struct Lengths
-{
-  alignas(64) double length[2 * n_kinds_per_shell][block];
-  alignas(64) double inverse[2 * n_kinds_per_shell][block];
-};
-
 // The difference of a field between the ends of bonds. @tparam has_factors whether bonds may have a length_ratio
 template <bool has_factors>
 HWY_INLINE Lanes difference(const BondsOfKind &bonds, const double *of_sites, std::size_t site, Lanes near)
@@ -44,39 +35,17 @@ HWY_INLINE Lanes difference(const BondsOfKind &bonds, const double *of_sites, st
     return apart;
 }
 
-template <std::size_t n_kinds, bool has_factors>
-HWY_INLINE void find_lengths(const RowOfBonds &row, std::size_t site, Lengths &lengths)
+HWY_INLINE Lanes stretch_of(const BondConstants &bond, Lanes length)
 {
-  const Lanes x = load(row.x + site), y = load(row.y + site);
-  const auto states = load_states(row.kinds[0].states + site);
-  HWY_UNROLL(6)
-  for (std::size_t kind = 0; kind < n_kinds; ++kind)
-  {
-    const BondsOfKind &bonds = row.kinds[kind];
-    const Lanes dx = difference<has_factors>(bonds, row.x, site, x),
-                dy = difference<has_factors>(bonds, row.y, site, y);
-    const Lanes length = hn::Sqrt(dx * dx + dy * dy);
-    const auto present = mask_of_bit(states, bonds.present);
-    store(hn::IfThenElseZero(present, length), lengths.length[kind]);
-    store(hn::IfThenElseZero(present, lanes(1.) / length), lengths.inverse[kind]);
-  }
+  return (1. / bond.rest_length) * length;
 }
 
-HWY_INLINE Lanes stretch_of(const BondConstants &bond, const double *length)
-{
-  return (1. / bond.rest_length) * load(length);
-}
-
-// Returns whether one of the bonds is past its own limit, or has retracted.
-bool any_event(const RowOfBonds &row, std::size_t site, const Lengths &lengths)
+// Returns whether one of the bonds is past its own limit, or has retracted. @param stretches of the bonds of each kind
+bool any_event(const RowOfBonds &row, std::size_t site, const Lanes *stretches)
 {
   auto events = hn::FirstN(D(), 0);
   for (std::size_t kind = 0; kind < row.n_kinds; ++kind)
-  {
-    const BondsOfKind &bonds = row.kinds[kind];
-    const Lanes stretch = stretch_of(bonds.constants, lengths.length[kind]);
-    events = hn::Or(events, are_events(row, bonds, site, stretch, [](Lanes limit) { return limit; }));
-  }
+    events = hn::Or(events, are_events(row, row.kinds[kind], site, stretches[kind], [](Lanes limit) { return limit; }));
   return !hn::AllFalse(D(), events);
 }
 
@@ -97,20 +66,28 @@ struct Running
   Lanes power, shortness, longest; // viscous power, largest inverse stretch, largest stretch
 };
 
-// Forces of the bonds of a kind.
+// Forces of the bonds of a kind at sites with these positions, velocities and states of bonds. @return their stretches
 template <bool has_factors, class Law>
-HWY_INLINE void bonds_of_kind(const Law &law, const BondConstants &bond, const RowOfBonds &row,
-                              const BondsOfKind &bonds, std::size_t site, Lanes x, Lanes y, Lanes vx, Lanes vy,
-                              const double *length, const double *inverse_length, Running &so_far)
+HWY_INLINE Lanes bonds_of_kind(const Law &law, const BondConstants &bond, const RowOfBonds &row,
+                               const BondsOfKind &bonds, std::size_t site, Lanes x, Lanes y, Lanes vx, Lanes vy,
+                               hn::Vec<Bits> states, Running &so_far)
 {
   const std::size_t far = site + static_cast<std::size_t>(bonds.shift);
-  const Lanes inverse = load(inverse_length);
-  Lanes nx = difference<has_factors>(bonds, row.x, site, x) * inverse,
-        ny = difference<has_factors>(bonds, row.y, site, y) * inverse;
+  const Lanes dx = difference<has_factors>(bonds, row.x, site, x), dy = difference<has_factors>(bonds, row.y, site, y);
+  // Both 0 for an absent bond: it has no direction, hence no force.
+  const auto present = mask_of_bit(states, bonds.present);
+  const Lanes distance = hn::Sqrt(dx * dx + dy * dy), length = hn::IfThenElseZero(present, distance),
+              inverse = hn::IfThenElseZero(present, lanes(1.) / distance);
+  Lanes nx = dx * inverse, ny = dy * inverse;
   if constexpr (has_factors)
   {
     nx = load_factors(bonds.length_ratio, site) * nx;
     ny = load_factors(bonds.length_ratio, site) * ny;
+  }
+  if (HWY_UNLIKELY(bonds.remembered != nullptr))
+  {
+    store(length, bonds.lengths[0] + site);
+    store(inverse, bonds.lengths[1] + site);
   }
   const Lanes rate = (load(row.vx + far) - vx) * nx + (load(row.vy + far) - vy) * ny;
   const Lanes stretch = stretch_of(bond, length);
@@ -130,6 +107,7 @@ HWY_INLINE void bonds_of_kind(const Law &law, const BondConstants &bond, const R
   if constexpr (Law::stiffens_when_short)
     so_far.shortness = hn::Max(so_far.shortness, inverse_stretch);
   so_far.longest = hn::Max(so_far.longest, stretch);
+  return stretch;
 }
 
 // @tparam n_kinds one, those of a shell, or of two shells, of which the second has the second law
@@ -145,8 +123,6 @@ void bonds_of_laws(const Law law, const SecondLaw second_law, const RowOfBonds &
   row.kinds = kinds.data();
   const BondConstants first = kinds[0].constants, second = kinds[n_kinds - 1].constants;
   const double first_limit = std::min(row.breaking_stretch, row.toughened_stretch);
-  const bool keeps_lengths =
-    std::any_of(kinds.begin(), kinds.end(), [](const BondsOfKind &bonds) { return bonds.remembered != nullptr; });
   const bool asks_each = kinds[0].strength != nullptr || kinds[0].retraction_stretch > 0.;
   Lanes power[block];
   for (Lanes &sum : power)
@@ -154,40 +130,28 @@ void bonds_of_laws(const Law law, const SecondLaw second_law, const RowOfBonds &
   Lanes shortness = lanes(0.);
   bool has_events = false;
   const std::size_t end = (row.n + block - 1) / block * block;
-  Lengths lengths[2];
-  find_lengths<n_kinds, has_factors>(row, 0, lengths[0]);
-  std::size_t turn = 0;
   for (std::size_t site = 0; site < end; site += width())
   {
-    // Beyond the last site the first is done again, for nothing.
-    find_lengths<n_kinds, has_factors>(row, site + width() < end ? site + width() : 0, lengths[1 - turn]);
     const Lanes x = load(row.x + site), y = load(row.y + site), vx = load(row.vx + site), vy = load(row.vy + site);
-    const Lengths &here = lengths[turn];
-    if (HWY_UNLIKELY(keeps_lengths))
-      for (std::size_t kind = 0; kind < n_kinds; ++kind)
-      {
-        store(load(here.length[kind]), kinds[kind].lengths[0] + site);
-        store(load(here.inverse[kind]), kinds[kind].lengths[1] + site);
-      }
+    const hn::Vec<Bits> states = load_states(kinds[0].states + site);
     Lanes &sum = power[site % block / width()];
     Running so_far{sum, shortness, lanes(0.)};
+    Lanes stretches[n_kinds];
     HWY_UNROLL(3)
     for (std::size_t kind = 0; kind < n_first; ++kind)
-      bonds_of_kind<has_factors>(law, first, row, kinds[kind], site, x, y, vx, vy, here.length[kind],
-                                 here.inverse[kind], so_far);
+      stretches[kind] = bonds_of_kind<has_factors>(law, first, row, kinds[kind], site, x, y, vx, vy, states, so_far);
     if constexpr (n_kinds > n_first)
     {
       HWY_UNROLL(3)
       for (std::size_t kind = n_first; kind < n_kinds; ++kind)
-        bonds_of_kind<has_factors>(second_law, second, row, kinds[kind], site, x, y, vx, vy, here.length[kind],
-                                   here.inverse[kind], so_far);
+        stretches[kind] =
+          bonds_of_kind<has_factors>(second_law, second, row, kinds[kind], site, x, y, vx, vy, states, so_far);
     }
     sum = so_far.power;
     shortness = so_far.shortness;
     // Few bonds are near a limit that all have, so whose it is can be asked then.
     if (HWY_UNLIKELY(!has_events && (asks_each || !hn::AllFalse(D(), hn::Gt(so_far.longest, lanes(first_limit))))))
-      has_events = any_event(given, site, here);
-    turn = 1 - turn;
+      has_events = any_event(given, site, stretches);
   }
   sums.viscous_power = add(sums.viscous_power, power);
   sums.has_events = sums.has_events || has_events;
@@ -216,7 +180,7 @@ void add_overstress(const Memory &memory, const RowOfBonds row, const BondsOfKin
     const Lanes ratio = load_factors(bonds.length_ratio, site), inverse = load(bonds.lengths[1] + site);
     const Lanes nx = ratio * (difference<true>(bonds, row.x, site, load(row.x + site)) * inverse),
                 ny = ratio * (difference<true>(bonds, row.y, site, load(row.y + site)) * inverse);
-    const Lanes stretch = stretch_of(bonds.constants, bonds.lengths[0] + site);
+    const Lanes stretch = stretch_of(bonds.constants, load(bonds.lengths[0] + site));
     Lanes variables[n_sums], dissipation[n_sums];
     for (std::size_t v = 0; v < n; ++v)
       variables[v] = load(remembered.variable[v] + site);
