@@ -37,28 +37,24 @@ void Forces::set_elapsed(double duration)
       set_duration(shell->memory, duration);
 }
 
-void Forces::evaluate(const State &state, const VectorField &velocity, const RowCallbacks &work)
+void Forces::evaluate(const State &state, const VectorField &velocity, const RowFunction &post_force,
+                      BondHistory *history)
 {
   const Rows own = band_.rows();
   const bool threads = (own.end - own.begin) * lattice_.stride() >= min_places_for_threads;
   const std::size_t n_scratch = threads ? static_cast<std::size_t>(omp_get_max_threads()) : 1;
   while (scratch_.size() < n_scratch)
     scratch_.emplace_back(lattice_, n_kinds_);
-  BondHistory *const history = state.history.empty() ? nullptr : work.history;
+  if (state.history.empty())
+    history = nullptr;
 #pragma omp parallel if (threads)
   {
     const auto first = static_cast<std::ptrdiff_t>(own.begin);
     const std::ptrdiff_t rows = static_cast<std::ptrdiff_t>(own.end) - first;
     const std::ptrdiff_t n = omp_get_num_threads(), i = omp_get_thread_num();
     const std::ptrdiff_t begin = first + rows * i / n, end = first + rows * (i + 1) / n;
-    // The rows that the threads next to this one look at, before anyone does.
-    if (work.pre_force)
-      for (std::ptrdiff_t row = begin; row < end; ++row)
-        if (row < begin + reach_ || row >= end - reach_)
-          work.pre_force(static_cast<std::size_t>(row));
-#pragma omp barrier
     Scratch &scratch = scratch_[static_cast<std::size_t>(i)];
-    evaluate_rows({state, velocity, history}, begin, end, scratch, work);
+    evaluate_rows({state, velocity, history}, begin, end, scratch, post_force);
     if (history != nullptr)
     {
       // The rows whose bonds the thread above computed too, and those below the band.
@@ -75,7 +71,7 @@ void Forces::evaluate(const State &state, const VectorField &velocity, const Row
 }
 
 void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
-                           const RowCallbacks &work)
+                           const RowFunction &post_force)
 {
   if (begin == end)
     return;
@@ -90,9 +86,6 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
   for (std::ptrdiff_t row = begin; row < end; ++row)
   {
     const auto index = static_cast<std::size_t>(row);
-    // As far up as bonds of this row reach, and where this has not been done for the thread next to it.
-    if (work.pre_force && row + 2 * reach_ < end)
-      work.pre_force(index + lattice_.reach());
     const Motion &of_row = row < end - reach_ ? updating : motion;
     row_sums_[index] = bonds_of_row(of_row, index, row, begin, scratch);
     const OfRow on_sites = scratch.sums.at(row);
@@ -109,8 +102,8 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
         }
     for (std::size_t axis = 0; axis < 2 && is_kept_[index]; ++axis)
       std::copy_n(on_sites[axis], lattice_.columns(), &on_sites_[axis][lattice_.index(index, 0)]);
-    if (work.post_force)
-      work.post_force(index, on_sites);
+    if (post_force)
+      post_force(index, on_sites);
     if (!lattice_.is_triangular())
       scratch.sums.clear(row);
   }
@@ -264,10 +257,8 @@ void Forces::evaluate(const State &state, const VectorField &velocity)
 void Forces::evaluate_row(const State &state, const VectorField &velocity, std::size_t row,
                           const RowFunction &post_force)
 {
-  RowCallbacks work;
-  work.post_force = post_force;
   const auto number = static_cast<std::ptrdiff_t>(row);
-  evaluate_rows({state, velocity}, number, number + 1, scratch_.front(), work);
+  evaluate_rows({state, velocity}, number, number + 1, scratch_.front(), post_force);
 }
 
 } // namespace latcon::lattice

@@ -40,23 +40,14 @@ public:
 
   /// Components of the forces on the sites of a row [N/m].
   using OfRow = std::array<double *, 2>;
+  /// Takes the forces on the sites of a row while they are in cache; may not change positions and velocities.
   using RowFunction = std::function<void(std::size_t row, const OfRow &force)>;
-  /// Callbacks of an integrator for each row of the band during an evaluation, while the row is in cache: once per row,
-  /// in any order, by several threads.
-  struct RowCallbacks
-  {
-    /// Before any bond of the row is looked at; may give the row its positions and velocities to be evaluated. Not for
-    /// sheets that are periodic, whose images must be there too. May be empty.
-    std::function<void(std::size_t row)> pre_force;
-    /// Takes the forces on the sites of the row; may change all but those positions and velocities.
-    RowFunction post_force = {};
-    /// History to be updated to the evaluated positions, that of the evaluated state; nullptr: none.
-    BondHistory *history = nullptr;
-  };
-
   /// Computes the force on every site of the band at the positions of the state and the given velocities [m/s], those
   /// of images included. Forces at held sites are those the bonds exert on them.
-  void evaluate(const State &state, const VectorField &velocity, const RowCallbacks &work);
+  /// @param post_force called once per row, in any order, by several threads; may be empty
+  /// @param history that of the state, to be updated to its positions; nullptr: none
+  void evaluate(const State &state, const VectorField &velocity, const RowFunction &post_force,
+                BondHistory *history = nullptr);
   /// Evaluates the forces into on_sites().
   void evaluate(const State &state, const VectorField &velocity);
   /// Computes the forces on the sites of one row of the band anew, and the sums over its bonds, at the positions and
@@ -135,7 +126,7 @@ private:
   };
 
   void evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
-                     const RowCallbacks &work);
+                     const RowFunction &post_force);
   kernels::RowOfBonds row_of_bonds(const Motion &motion, std::size_t row,
                                    std::vector<kernels::BondsOfKind> &kinds) const;
   kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, std::ptrdiff_t begin,

@@ -11,12 +11,9 @@ namespace latcon::lattice
 
 Integrator::Integrator(const RowPartition &band, Forces &forces, double time_step)
   : band_(band), lattice_(band.lattice()), forces_(forces), sent_(band.halo_sites(true)),
-    received_(band.halo_sites(false)), interior_(band.rows()), time_step_(time_step)
+    received_(band.halo_sites(false)), time_step_(time_step)
 {
   require(time_step > 0., "time stepping needs a positive time step");
-  const std::size_t reach = band.is_shared() ? lattice_.reach() : 0;
-  interior_.begin = std::min(interior_.begin + reach, interior_.end);
-  interior_.end -= std::min(reach, interior_.end - interior_.begin);
 }
 
 void Integrator::find_rollers(const State &state)
@@ -44,23 +41,6 @@ void Integrator::initialise(State &state)
   accelerate(state);
 }
 
-Forces::RowCallbacks Integrator::move_rows(State &state, const std::function<void(std::size_t row)> &move)
-{
-  Forces::RowCallbacks work;
-  for_each_row(lattice_, {band_.rows().begin, interior_.begin}, move);
-  for_each_row(lattice_, {interior_.end, band_.rows().end}, move);
-  if (lattice_.images().empty())
-    work.pre_force = [this, &move](std::size_t row)
-    {
-      if (row >= interior_.begin && row < interior_.end)
-        move(row);
-    };
-  else
-    for_each_row(lattice_, interior_, move);
-  exchange_ghosts(state);
-  return work;
-}
-
 void Integrator::exchange_ghosts(State &state)
 {
   VectorField &velocity = evaluated(state);
@@ -83,7 +63,7 @@ void Integrator::accelerate_row(State &state, std::size_t row, const Forces::OfR
 void Integrator::accelerate(State &state)
 {
   const auto after = [&](std::size_t row, const Forces::OfRow &force) { accelerate_row(state, row, force); };
-  forces_.evaluate(state, evaluated(state), {{}, std::ref(after), &state.history});
+  forces_.evaluate(state, evaluated(state), std::ref(after), &state.history);
   evaluate_site_forces(state);
   accelerate_sites(state);
 }

@@ -58,10 +58,6 @@ public:
 protected:
   /// Brings what forces are evaluated at up to date in the halo and at images. Collective.
   void exchange_ghosts(State &state);
-  /// Moves the rows of the band to where forces are evaluated next: those that other ranks need now, the others in that
-  /// evaluation, while they are in cache, unless the sheet is periodic. Collective.
-  /// @param move moves a row; must outlive that evaluation @return its callbacks so far
-  Forces::RowCallbacks move_rows(State &state, const std::function<void(std::size_t row)> &move);
   /// Computes the accelerations by all forces at the present positions and velocities. Updates the memory of bonds.
   void accelerate(State &state);
   /// Adds the accelerations by site forces to those of a state; along a roller's fixed component there is none.
@@ -79,7 +75,6 @@ private:
   void accelerate_row(State &state, std::size_t row, const Forces::OfRow &force) const;
 
   SitesOfRanks sent_, received_; // of the halo
-  Rows interior_;                // beyond the reach of the bonds of other ranks
   double time_step_;
   std::vector<SiteForces *> site_forces_;
   struct RollerVelocity

@@ -25,7 +25,7 @@ void RungeKuttaChebyshev::set_time_step(double time_step)
 void RungeKuttaChebyshev::step(State &state)
 {
   const double h = time_step();
-  const std::function<void(std::size_t)> first_stage = [&](std::size_t row)
+  const auto first_stage = [&](std::size_t row)
   {
     const std::size_t i = lattice_.index(row, 0);
     for (const std::size_t axis : axes)
@@ -34,7 +34,8 @@ void RungeKuttaChebyshev::step(State &state)
                                    &start_.velocity[axis][i], &previous_.position[axis][i],
                                    &previous_.velocity[axis][i]);
   };
-  Forces::RowCallbacks work = move_rows(state, first_stage);
+  for_each_row(lattice_, band_.rows(), first_stage);
+  exchange_ghosts(state);
   for (const ChebyshevStages::Stage &stage : stages_.stages())
   {
     const auto next = [&](std::size_t row, const Forces::OfRow &force)
@@ -47,9 +48,7 @@ void RungeKuttaChebyshev::step(State &state)
                                     &previous_.velocity[axis][i]);
     };
     forces_.set_elapsed(stage.elapsed * h);
-    work.post_force = std::ref(next);
-    forces_.evaluate(state, state.velocity, work);
-    work.pre_force = nullptr;
+    forces_.evaluate(state, state.velocity, std::ref(next));
     evaluate_site_forces(state);
     std::swap(state.position, previous_.position);
     std::swap(state.velocity, previous_.velocity);

@@ -14,7 +14,7 @@ VelocityVerlet::VelocityVerlet(const RowPartition &band, Forces &forces, double 
 void VelocityVerlet::step(State &state)
 {
   // Positions and predicted velocities of a row at the end of a step, velocities half way.
-  const std::function<void(std::size_t)> drift = [&](std::size_t row)
+  const auto drift = [&](std::size_t row)
   {
     const std::size_t i = lattice_.index(row, 0);
     for (const std::size_t axis : axes)
@@ -29,10 +29,9 @@ void VelocityVerlet::step(State &state)
                             &state.acceleration[axis][i], &state.velocity[axis][i]);
   };
   forces_.set_elapsed(time_step());
-  Forces::RowCallbacks work = move_rows(state, drift);
-  work.post_force = std::ref(kick);
-  work.history = &state.history;
-  forces_.evaluate(state, predicted_velocity_, work);
+  for_each_row(lattice_, band_.rows(), drift);
+  exchange_ghosts(state);
+  forces_.evaluate(state, predicted_velocity_, std::ref(kick), &state.history);
   evaluate_site_forces(state);
   accelerate_sites(state);
   kick_sites(state, 0.5 * time_step());

@@ -31,7 +31,7 @@ TEST(SiteFields, AreSumsOverTheBondsOfASite)
       state.position = stretched.position;
       for (const std::size_t place : sheet.sites())
         state.velocity.set(place, rate * sheet.reference(place));
-      Forces(sheet, material).evaluate(state, state.velocity, {{}, {}, &state.history});
+      Forces(sheet, material).evaluate(state, state.velocity, {}, &state.history);
       const std::size_t middle = sheet.index(sheet.rows() / 2, sheet.columns() / 2);
       Eigen::Matrix2d stress = Eigen::Matrix2d::Zero();
       double density = 0.;
