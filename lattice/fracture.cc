@@ -35,12 +35,6 @@ void Fracture::configure(State &state, Forces &forces) const
   forces.set_retraction_threshold(retraction_stretch_);
 }
 
-void Fracture::set_lookahead(double duration)
-{
-  require(duration >= 0., "breaking looks ahead in time, not back");
-  lookahead_ = duration;
-}
-
 double Fracture::limit(const State &state, const Bond &bond, double rate) const
 {
   const auto [near, kind, far] = bond;
@@ -49,7 +43,8 @@ double Fracture::limit(const State &state, const Bond &bond, double rate) const
 }
 
 // With the expressions of the loops over a row: one that they do not flag has no event.
-Fracture::Event Fracture::event(const State &state, const Bond &bond, const VectorField &evaluated_velocity) const
+Fracture::Event Fracture::event(const State &state, const Bond &bond, const VectorField &evaluated_velocity,
+                                double lookahead) const
 {
   const auto [near, kind, far] = bond;
   const double ratio = lattice_.length_ratio(near, kind);
@@ -59,12 +54,12 @@ Fracture::Event Fracture::event(const State &state, const Bond &bond, const Vect
   const auto among = [](double value, double from, double to) {
     return value > to ? Event::broken : value < from ? Event::retracted : Event::none;
   };
-  if (!(lookahead_ > 0.))
+  if (!(lookahead > 0.))
     return among(stretch(state, lattice_, bond), shortest, longest);
   const double l = lattice_.rest_length(kind);
   const Eigen::Vector2d r = ratio * state.position.difference(near, far),
                         v = ratio * state.velocity.difference(near, far);
-  return among(formulas::squared_length_after(lookahead_, r.x(), r.y(), v.x(), v.y()),
+  return among(formulas::squared_length_after(lookahead, r.x(), r.y(), v.x(), v.y()),
                formulas::squared_length(shortest, l), formulas::squared_length(longest, l));
 }
 
@@ -128,7 +123,7 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
 }
 
 const std::vector<BrokenBond> &Fracture::apply(State &state, const Forces &forces,
-                                               const VectorField &evaluated_velocity, int *number)
+                                               const VectorField &evaluated_velocity, double lookahead, int *number)
 {
   if (state.breaking_stretch != breaking_stretch_ || state.toughened_stretch != toughened_stretch_ ||
       state.strength.empty() != material_.disorder.strength.is_none())
@@ -136,19 +131,19 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, const Forces &force
   std::vector<std::vector<BrokenBond>> of_rows(lattice_.rows());
   const auto find = [&](std::size_t row)
   {
-    if (!(lookahead_ > 0. ? forces.row_has_events_ahead(state, row, lookahead_) : forces.row_sums(row).has_events))
+    if (!(lookahead > 0. ? forces.row_has_events_ahead(state, row, lookahead) : forces.row_sums(row).has_events))
       return;
     for_each_bond(state, lattice_, {row, row + 1},
                   [&](const Bond &bond)
                   {
-                    const Event now = event(state, bond, evaluated_velocity);
+                    const Event now = event(state, bond, evaluated_velocity, lookahead);
                     if (now == Event::broken)
                       of_rows[row].push_back(broken(state, bond));
                     else if (now == Event::retracted)
                       state.bonds.toughen(bond.near, bond.kind);
                   });
   };
-  if (lookahead_ > 0.)
+  if (lookahead > 0.)
     for_each_row(lattice_, band_.rows(), find);
   else // rows are flagged already: not worth waking threads
     for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)

@@ -90,12 +90,6 @@ public:
     return rule_->largest_limit(toughening_.factor) * material_.disorder.strength.largest();
   }
 
-  /// Makes a bond break, or toughen, in the evaluation after which it will reach its limit within `duration` [s], >= 0,
-  /// at the velocities of its ends; default 0: once it is past its limit. Half a time step makes it the end of a step
-  /// that is nearest to the moment of coming there, so that breaking is neither late nor early in the mean. @throws
-  /// std::invalid_argument for a negative duration
-  void set_lookahead(double duration);
-
   /// Cuts sites and their bonds out of the sheet. Collective.
   /// @return elastic energy of the bonds removed, per sheet thickness [J/m]
   double remove_sites(State &state, const std::vector<std::size_t> &places);
@@ -105,14 +99,15 @@ public:
   /// @param bonds place where each starts and its kind @return elastic energy that they held, per sheet thickness [J/m]
   double remove_bonds(State &state, std::vector<std::pair<std::size_t, std::size_t>> bonds);
 
-  /// Breaks every bond beyond its limit at the last evaluation of `forces`, or soon to be beyond it, toughens what is
-  /// to be toughened, and moves the tip. Velocities of the state must be known in the halo if this looks ahead.
-  /// Collective.
+  /// Breaks every bond that is beyond its limit at the last evaluation of `forces`, or will be within `lookahead`,
+  /// toughens what is to be toughened, and moves the tip. Collective.
+  /// @param lookahead [s], >= 0, at the velocities of the state, which must be known in the halo then. Half a time step
+  /// makes bonds break at the end of the step that is nearest to the moment, neither late nor early in the mean
   /// @param number in: of this rank, out: the largest over all ranks; see RowPartition::all_gather
   /// @return the bonds of the whole sheet that broke now, in the order of storage
   /// @throws std::logic_error for a state that configure() has not set
   const std::vector<BrokenBond> &apply(State &state, const Forces &forces, const VectorField &evaluated_velocity,
-                                       int *number = nullptr);
+                                       double lookahead = 0., int *number = nullptr);
 
   /// Finds the tip among all sites and toughens behind it; for a state that was cut or loaded from outside.
   void locate_tip(State &state);
@@ -149,7 +144,7 @@ private:
     broken,   // past the limit
     retracted // to be toughened
   };
-  Event event(const State &state, const Bond &bond, const VectorField &evaluated_velocity) const;
+  Event event(const State &state, const Bond &bond, const VectorField &evaluated_velocity, double lookahead) const;
   double limit(const State &state, const Bond &bond, double rate) const;
   BrokenBond broken(const State &state, const Bond &bond) const;
   std::vector<BrokenBond> lose_bonds(State &state, const std::vector<BrokenBond> &own, int *number) const;
@@ -163,7 +158,6 @@ private:
   Toughening toughening_;
   double breaking_stretch_, toughened_stretch_; // smallest limits
   std::vector<double> retraction_stretch_;      // by kind; none: not watched
-  double lookahead_ = 0.;                       // [s]
   std::optional<std::size_t> tip_;              // its place; none before a site was considered
   double tip_Y_before_ = 0.;                    // reference Y of the tip before this step [m]
   double toughened_to_ = -std::numeric_limits<double>::infinity(); // X [m] behind which all bonds are toughened

@@ -136,7 +136,6 @@ TEST(Fracture, FlagsARowIfAndOnlyIfOneOfItsBondsHasAnEvent)
             Forces forces(sheet, material);
             Fracture fracture(sheet, material, 1.5, Toughening{2., 0.8}, F);
             fracture.configure(trial, forces);
-            fracture.set_lookahead(ahead);
             forces.evaluate(trial, trial.velocity);
             const bool flagged =
               ahead > 0. ? forces.row_has_events_ahead(trial, row, ahead) : forces.row_sums(row).has_events;
@@ -146,7 +145,7 @@ TEST(Fracture, FlagsARowIfAndOnlyIfOneOfItsBondsHasAnEvent)
             crowded.bonds.add(other, 0);
             crowded.position.x[other + 1] = crowded.position.x[other] + 9. * l;
             forces.evaluate(crowded, crowded.velocity);
-            fracture.apply(crowded, forces, crowded.velocity);
+            fracture.apply(crowded, forces, crowded.velocity, ahead);
             const bool happened = breaks ? !crowded.bonds.present(near, kind) : crowded.bonds.toughened(near, kind);
             EXPECT_EQ(flagged, happened) << ahead << ' ' << limit << ' ' << kind << ' ' << direction << ' ' << ulps;
             if (std::abs(ulps) > 3)
@@ -370,7 +369,6 @@ TEST(Fracture, RefusesRulesOutOfRange)
   const TriangularLattice periodic(1., 10., 10., Orientation::rows_along_crack, {true, false});
   EXPECT_THROW(Fracture(periodic, sheets::rubber(), 3., Toughening{}, Eigen::Matrix2d::Identity()),
                std::invalid_argument);
-  EXPECT_THROW(TenSites(Toughening{}).fracture.set_lookahead(-1.), std::invalid_argument);
   EXPECT_THROW(TenSites(Toughening{}, 0.), std::invalid_argument);
   EXPECT_THROW(TenSites(Toughening{2., 0., -1.}), std::invalid_argument);
   EXPECT_THROW(TenSites(Toughening{0.5, 0., 1.}), std::invalid_argument);
