@@ -3,19 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <stdexcept>
 #include <unordered_map>
-#include <vector>
 
 #include <Eigen/Core>
+
+#include "lattice/bonds/require.h"
 
 namespace latcon::lattice
 {
 
 /// Points of the plane sorted into square cells, to find those near a position without looking at all of them (Allen
-/// and Tildesley, Computer Simulation of Liquids, 2017, section 5.3.2). Only cells with points are kept, so that these
-/// may spread as far as they like.
+/// and Tildesley, Computer Simulation of Liquids, 2017, section 5.3.2). Cells are hashed, so that points may spread
+/// as far as they like.
 class LinkCells
 {
 public:
@@ -29,8 +28,7 @@ public:
   /// @param reach distance up to which neighbours are wanted [m], > 0 @throws std::invalid_argument
   explicit LinkCells(double reach) : inverse_size_(1. / (room * reach))
   {
-    if (!(reach > 0.))
-      throw std::invalid_argument("link cells need a positive reach");
+    require(reach > 0., "link cells need a positive reach");
   }
 
   /// Removes all points.
@@ -40,16 +38,12 @@ public:
   /// was never put anywhere.
   void move(std::size_t id, const Eigen::Vector2d &from, const Eigen::Vector2d &to)
   {
-    const Cell left = cell(from), reached = cell(to);
-    if (left != nowhere)
-    {
-      std::vector<Point> &others = points_[left];
-      others.erase(std::find_if(others.begin(), others.end(), [id](const Point &point) { return point.id == id; }));
-      if (others.empty() && left != reached)
-        points_.erase(left);
-    }
-    if (reached != nowhere)
-      points_[reached].push_back({id, to});
+    const auto [begin, end] = points_.equal_range(cell(from));
+    const auto left = std::find_if(begin, end, [id](const auto &point) { return point.second.id == id; });
+    if (left != end)
+      points_.erase(left);
+    if (const Cell reached = cell(to); reached != nowhere)
+      points_.emplace(reached, Point{id, to});
   }
 
   /// Calls visit(point) once for every point that is at `reach` or less from a position, and for some that are farther:
@@ -58,18 +52,16 @@ public:
   void for_each_near(const Eigen::Vector2d &position, Visitor &&visit) const
   {
     const Cell here = cell(position);
-    if (here == nowhere)
-      return;
     for (const Cell column : {here - next_column, here, here + next_column})
       for (const Cell near : {column - 1, column, column + 1})
-        if (const auto points = points_.find(near); points != points_.end())
-          std::for_each(points->second.begin(), points->second.end(), visit);
+        for (auto [point, end] = points_.equal_range(near); point != end; ++point)
+          visit(point->second);
   }
 
 private:
   using Cell = std::int64_t; // column times next_column, plus row
   static constexpr Cell next_column = Cell{1} << 32;
-  static constexpr Cell nowhere = std::numeric_limits<Cell>::max();
+  static constexpr Cell nowhere = Cell{1} << 62; // neither are those around it among the cells of points
 
   /// Two points at exactly `reach` must be in cells that touch, whatever the rounding of their quotients.
   static constexpr double room = 1. + 1e-6;
@@ -85,7 +77,7 @@ private:
   }
 
   double inverse_size_;
-  std::unordered_map<Cell, std::vector<Point>> points_; // of each cell that has one
+  std::unordered_multimap<Cell, Point> points_;
 };
 
 } // namespace latcon::lattice
