@@ -289,7 +289,6 @@ void Simulation::advance(double duration, double end)
 
 void Simulation::save(Snapshot &snapshot)
 {
-  snapshot.set_time(state_.time);
   Snapshot::Archive<false> saving(snapshot);
   archive(saving);
 }

@@ -147,8 +147,8 @@ lattice::EnergyBalance CrackRecord::checked_energies()
           << " at X = " << X.x() << " m, Y = " << X.y() << " m, with " << fastest.speed << " m/s; ";
   if (!last_valid_state_.empty())
   {
-    message << "the last frame shows the last valid state, at " << last_valid_state_.time() << " s; ";
     simulation_.restore(last_valid_state_);
+    message << "the last frame shows the last valid state, at " << simulation_.state().time << " s; ";
   }
   message << "try a smaller " << step_entry_;
   throw support::SolverError(message.str());
