@@ -200,7 +200,7 @@ void Fracture::toughen_behind_tip(State &state)
   double reach = 0.; // of midpoints from near ends on the grid, along X
   for (std::size_t kind = 0; kind < lattice_.n_kinds(); ++kind)
     reach = std::max(reach, 0.5 * std::abs(lattice_.bond_vector(kind).x()));
-  reach += lattice_.scatter() * lattice_.spacing();
+  reach += lattice_.grid().scatter.amplitude * lattice_.spacing();
   constexpr double endless = std::numeric_limits<double>::infinity();
   const auto [rows, columns] = lattice_.window({toughened_to_ - reach, -endless}, {boundary + reach, endless});
   const Rows own{std::max(rows.begin, band_.rows().begin), std::min(rows.end, band_.rows().end)};

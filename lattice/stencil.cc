@@ -17,15 +17,6 @@ namespace
 
 constexpr double round_off = 1e-9; // of lengths over h, and of angles
 
-// Harmonics of the direction of a bond. Their means over all directions are 1, 0, 0, 0, 0, which is the same as the
-// fourth moments of all directions.
-using Harmonics = Eigen::Matrix<double, 5, 1>;
-Harmonics harmonics(const Eigen::Vector2d &R)
-{
-  const double angle = std::atan2(R.y(), R.x());
-  return Harmonics{{1., std::cos(2. * angle), std::sin(2. * angle), std::cos(4. * angle), std::sin(4. * angle)}};
-}
-
 // Half-bonds of a ring whose lengths are nearer than `width` spacings to its radius, with weights that are not yet
 // corrected.
 std::vector<HalfBond> half_bonds(const Grid &grid, const Ring &ring, double width)
@@ -49,7 +40,8 @@ std::vector<HalfBond> half_bonds(const Grid &grid, const Ring &ring, double widt
   return found;
 }
 
-// Corrects weights q to q (1 + z / sqrt q), with the smallest sum of z^2 that gives them the means of all directions.
+// Corrects weights q to q (1 + z / sqrt q), with the smallest sum of z^2 that gives harmonics of directions their means
+// over all directions: 1, 0, 0, 0, 0, which is the same as the fourth moments of all directions.
 void correct(std::vector<HalfBond> &bonds)
 {
   Eigen::VectorXd root(bonds.size());
@@ -61,7 +53,9 @@ void correct(std::vector<HalfBond> &bonds)
   {
     bonds[i].weight /= sum;
     root[i] = std::sqrt(bonds[i].weight);
-    scaled.col(i) = root[i] * harmonics(bonds[i].vector);
+    const double angle = std::atan2(bonds[i].vector.y(), bonds[i].vector.x());
+    scaled.col(i) << 1., std::cos(2. * angle), std::sin(2. * angle), std::cos(4. * angle), std::sin(4. * angle);
+    scaled.col(i) *= root[i];
   }
   const Eigen::VectorXd missing = Eigen::VectorXd::Unit(5, 0) - scaled * root;
   if (missing.norm() < 1e-14) // three directions have these moments
@@ -93,9 +87,9 @@ Eigen::Vector2d Grid::from_row_frame(double along, double across) const
   return orientation == Orientation::rows_along_crack ? Eigen::Vector2d(u, v) : Eigen::Vector2d(v, u);
 }
 
-Eigen::Vector2d Scatter::displacement(std::ptrdiff_t row, std::ptrdiff_t column) const
+Eigen::Vector2d Scatter::displacement(std::size_t row, std::size_t column) const
 {
-  const std::uint64_t point = static_cast<std::uint64_t>(row) << 32u | static_cast<std::uint32_t>(column),
+  const std::uint64_t point = row << 32u | static_cast<std::uint32_t>(column),
                       key = splitmix64(splitmix64(splitmix64(seed) + 3) + point);
   return amplitude * Eigen::Vector2d(symmetric_uniform(splitmix64(key)), symmetric_uniform(splitmix64(key + 1)));
 }
@@ -120,8 +114,9 @@ std::vector<Ring> lattice_rings(double d, Orientation orientation, double half_w
   return {{d, nearest, 0, half_width}, {std::sqrt(3.) * d, turned - nearest, 1, half_width}};
 }
 
-std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings, const Scatter &scatter)
+std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings)
 {
+  const double scatter = grid.scatter.amplitude;
   require(grid.spacing > 0. && std::isfinite(grid.spacing), "the spacing of a grid must be positive");
   std::vector<HalfBond> stencil;
   for (const Ring &ring : rings)
@@ -131,10 +126,9 @@ std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &ri
     require(ring.half_width >= 0. && ring.half_width <= M_PI / 6. + round_off,
             "the half-width of the arcs of a ring must be between 0 and 30 degrees");
     const Ring all_directions{ring.radius, ring.direction, ring.shell};
-    std::vector<HalfBond> bonds =
-      half_bonds(grid, scatter.amplitude > 0. ? all_directions : ring, 1. + std::sqrt(8.) * scatter.amplitude);
+    std::vector<HalfBond> bonds = half_bonds(grid, scatter > 0. ? all_directions : ring, 1. + std::sqrt(8.) * scatter);
     require(!bonds.empty(), "a ring has no bonds in its arcs: a finer grid or wider arcs are needed");
-    if (scatter.amplitude == 0.)
+    if (scatter == 0.)
       correct(bonds);
     stencil.insert(stencil.end(), bonds.begin(), bonds.end());
   }
