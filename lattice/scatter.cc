@@ -59,11 +59,11 @@ void maximise_entropy(const Exponents &J, Eigen::VectorXd &weights)
   soft.tail<n_common>().setZero();
   weights *= 2. * sums.sum() / weights.dot(J * sums);
   Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(size);
-  const auto gradient = [&]
-  { return Eigen::VectorXd(J.transpose() * weights + soft.cwiseProduct(multipliers) - 2. * sums); };
-  Eigen::VectorXd residual = gradient();
-  for (int step = 0; residual.norm() > tolerance * std::sqrt(static_cast<double>(size)); ++step)
+  for (int step = 0;; ++step)
   {
+    const Eigen::VectorXd residual = J.transpose() * weights + soft.cwiseProduct(multipliers) - 2. * sums;
+    if (residual.norm() <= tolerance * std::sqrt(static_cast<double>(size)))
+      return;
     require(step < most_steps && residual.allFinite(),
             "the points are too scattered for positive weights: less scatter or a finer grid is needed");
     const Eigen::VectorXd direction = newton_direction(J, weights, soft, -residual), along = J * direction;
@@ -78,7 +78,6 @@ void maximise_entropy(const Exponents &J, Eigen::VectorXd &weights)
       share *= 0.5;
     weights.array() *= (share * along).array().exp();
     multipliers += share * direction;
-    residual = gradient();
   }
 }
 
@@ -135,7 +134,7 @@ ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
         for (const int order : {2, 4})
           add_harmonic(n_of_point * n + order - 2, order, 1.);
         length_ratios[kind][place] = lattice.rest_length(kind) / length;
-        squares.push_back(length * length);
+        squares.push_back(std::pow(lattice.rest_length(kind) / length_ratios[kind][place], 2)); // as forces have it
         shortest = std::min(shortest, length);
       }
     Exponents J(static_cast<Eigen::Index>(links.size()), n_of_point * n + n_common);

@@ -224,7 +224,8 @@ private:
         waves_.add((sheet.wave_stiffness(F, K) - mean).norm() /
                    (wave_bound(subject_, F, K) + longer * of_lengths + 1e-8 * mean.norm()));
       }
-    if (!subject_.is_stable() || stencil.scatter > 0.) // waves between scattered points are not longer than the sheet
+    // Waves between scattered points are not longer than the sheet.
+    if (!subject_.is_stable() || stencil.grid.scatter.amplitude > 0.)
       return;
     const Eigen::Matrix2d &F = subject_.deformation;
     for (const double degrees : stencil_wave_degrees)
