@@ -57,18 +57,13 @@ void cut_out(State &state, const TriangularLattice &lattice, const Cutout &cutou
   const auto is_cut = [&](const Eigen::Vector2d &X)
   { return (X - middle).norm() < radius - room || (notch > 0. && std::abs(X.y()) <= room && X.x() <= notch + room); };
   for (std::size_t place = 0; place < lattice.n_places(); ++place)
-    if (lattice.is_occupied(place) && is_cut(lattice.reference(lattice.canonical_place(place))))
+    if (lattice.is_site(place) && is_cut(lattice.reference(place)))
     {
       state.removed[place] = 1;
       state.held[place] = state.rollers[place] = 0;
       state.inverse_mass[place] = 0.;
+      for_each_bond_of_site(state, lattice, place, [&](const Bond &bond) { state.bonds.remove(bond.near, bond.kind); });
     }
-  for_each_bond(state, lattice,
-                [&](const Bond &bond)
-                {
-                  if (state.removed[bond.near] != 0 || state.removed[bond.far] != 0)
-                    state.bonds.remove(bond.near, bond.kind);
-                });
   if (notch > 0.) // through the slit between sites
     for (const auto &[place, kind] : bonds_across(lattice, -lattice.spacing(), notch + room, 0.))
       state.bonds.remove(place, kind);

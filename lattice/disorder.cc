@@ -67,23 +67,19 @@ Distribution::Distribution(Kind kind, double width) : kind_(kind), width_(kind =
 
 double Distribution::factor(std::uint64_t key) const
 {
-  switch (kind_)
-  {
-  case Kind::uniform:
-    return 1. + scale_ * (2. * uniform(splitmix64(key)) - 1.);
-  case Kind::normal:
-    // Box and Muller (1958); pairs beyond the cut are drawn again.
-    for (std::uint64_t stream = splitmix64(key);; stream = splitmix64(stream))
-    {
-      const double radius = std::sqrt(-2. * std::log(uniform(splitmix64(stream + 1))));
-      const double normal = radius * std::cos(2. * M_PI * uniform(splitmix64(stream + 2)));
-      if (std::abs(normal) <= cut_off)
-        return 1. + scale_ * normal;
-    }
-  case Kind::weibull:
-    return scale_ * std::pow(-std::log(uniform(splitmix64(key))), exponent_);
-  default:
+  if (kind_ == Kind::none)
     return 1.;
+  if (kind_ == Kind::uniform)
+    return 1. + scale_ * (2. * uniform(splitmix64(key)) - 1.);
+  if (kind_ == Kind::weibull)
+    return scale_ * std::pow(-std::log(uniform(splitmix64(key))), exponent_);
+  // Box and Muller (1958); pairs beyond the cut are drawn again.
+  for (std::uint64_t stream = splitmix64(key);; stream = splitmix64(stream))
+  {
+    const double radius = std::sqrt(-2. * std::log(uniform(splitmix64(stream + 1))));
+    const double normal = radius * std::cos(2. * M_PI * uniform(splitmix64(stream + 2)));
+    if (std::abs(normal) <= cut_off)
+      return 1. + scale_ * normal;
   }
 }
 

@@ -68,17 +68,6 @@ void correct(std::vector<HalfBond> &bonds)
     bonds[i].weight = root[i] * (root[i] + z[i]);
 }
 
-// Returns whether sums of the bonds' offsets reach all points of the grid: whether the largest common divisor of the
-// areas that two of them span is that of a cell.
-bool reach_all_points(const std::vector<HalfBond> &bonds)
-{
-  int divisor = 0;
-  for (std::size_t i = 0; i < bonds.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      divisor = std::gcd(divisor, bonds[i].columns * bonds[j].rows - bonds[j].columns * bonds[i].rows);
-  return divisor == 1;
-}
-
 } // namespace
 
 Eigen::Vector2d Grid::from_row_frame(double along, double across) const
@@ -132,7 +121,12 @@ std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &ri
       correct(bonds);
     stencil.insert(stencil.end(), bonds.begin(), bonds.end());
   }
-  require(reach_all_points(stencil), "the bonds join not all points of the grid: wider arcs are needed");
+  // Sums of offsets reach all points if the areas that two of them span have that of a cell as largest common divisor.
+  int divisor = 0;
+  for (const HalfBond &a : stencil)
+    for (const HalfBond &b : stencil)
+      divisor = std::gcd(divisor, a.columns * b.rows - b.columns * a.rows);
+  require(divisor == 1, "the bonds join not all points of the grid: wider arcs are needed");
   return stencil;
 }
 

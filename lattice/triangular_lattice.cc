@@ -55,6 +55,7 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
   require(!stencil.empty() && stencil.size() <= most_kinds, "a sheet has 1 to 127 half-bonds");
   for (std::size_t kind = 0; kind < n_kinds(); ++kind)
   {
+    shortest_bond_ = std::min(shortest_bond_, rest_length(kind));
     reach_ = std::max(reach_, static_cast<std::size_t>(rows_across(kind)));
     for (const std::size_t row : {0u, 1u})
       column_reach_ = std::max(column_reach_, static_cast<std::size_t>(std::abs(columns_across(kind, row))));
@@ -74,6 +75,7 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
   if (grid.scatter.amplitude > 0.)
   {
     scattered_ = std::make_shared<const ScatteredBonds>(*this);
+    shortest_bond_ = scattered_->shortest;
     for (std::size_t kind = 0; kind < n_kinds(); ++kind)
       stencil_[kind].weight = scattered_->bounding_weights[kind];
   }
@@ -112,13 +114,6 @@ std::optional<std::size_t> TriangularLattice::row(std::ptrdiff_t number) const
 {
   const std::size_t row = row_of(canonical_place(index(static_cast<std::size_t>(number), 0)));
   return row < rows_ ? std::optional(row) : std::nullopt;
-}
-
-double TriangularLattice::shortest_bond() const
-{
-  const auto is_shorter = [](const HalfBond &a, const HalfBond &b) { return a.rest_length < b.rest_length; };
-  return scattered_ ? scattered_->shortest
-                    : std::min_element(stencil_.begin(), stencil_.end(), is_shorter)->rest_length;
 }
 
 std::pair<Rows, Rows> TriangularLattice::window(const Eigen::Vector2d &lower, const Eigen::Vector2d &upper) const

@@ -196,8 +196,7 @@ public:
   {
     return scattered_ ? Eigen::Vector2d(reference(bond.far) - reference(bond.near)) : bond_vector(bond.kind);
   }
-  /// Rest length of the shortest bond [m].
-  double shortest_bond() const;
+  double shortest_bond() const { return shortest_bond_; } ///< its rest length [m]
   /// D [m]: a bond of cross-section s V / D per sheet thickness, s being the area factor of its shell, has its share of
   /// the energy of the shell. The spacing d on the triangular lattice; d |R| / (3 q l) for a weight q in a ring of
   /// radius l. Where points are scattered it is that of a bound, and bonds have factors; see State::stiffness.
@@ -227,6 +226,7 @@ private:
   double d_;
   bool is_triangular_;
   std::size_t reach_ = 0, column_reach_ = 0;
+  double shortest_bond_ = std::numeric_limits<double>::infinity();
   std::size_t first_column_; // place of column 0 in its row
   Periodic periodic_;
   std::size_t rows_;
