@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -22,8 +22,8 @@ constexpr double most_sites = 1e7;
 std::vector<std::size_t> sites_in(const Eigen::AlignedBox2d &box, const TriangularLattice &lattice)
 {
   const auto [rows, columns] = lattice.window(box.min(), box.max());
-  require(double(rows.end - rows.begin) * double(columns.end - columns.begin) <= most_sites,
-          "it takes more than 1e7 sites");
+  support::require(double(rows.end - rows.begin) * double(columns.end - columns.begin) <= most_sites,
+                   "it takes more than 1e7 sites");
 
   std::vector<std::size_t> sites;
   for (const std::size_t place : lattice.sites(rows, columns))
@@ -40,11 +40,11 @@ std::vector<std::size_t> sites_in(const Eigen::AlignedBox2d &box, const Triangul
 // Returns the sites of a seed crack if it can be one.
 std::vector<std::size_t> checked(std::vector<std::size_t> sites, const TriangularLattice &lattice)
 {
-  require(!sites.empty(), "there is no site in it");
+  support::require(!sites.empty(), "there is no site in it");
   const double highest = 0.5 * lattice.height() - 2. * lattice.spacing();
   for (const std::size_t place : sites)
-    require(std::abs(lattice.reference(place).y()) <= highest,
-            "it comes within two spacings of the lower or the upper edge of the sheet");
+    support::require(std::abs(lattice.reference(place).y()) <= highest,
+                     "it comes within two spacings of the lower or the upper edge of the sheet");
   return sites;
 }
 
@@ -103,7 +103,7 @@ std::vector<std::size_t> seed_line(const TriangularLattice &lattice, const Eigen
   const auto is_off = [&](std::size_t place) { return std::abs(lattice.reference(place).y() - Y) > room; };
   sites.erase(std::remove_if(sites.begin(), sites.end(), is_off), sites.end());
   const auto first = nearest(0);
-  require(sites.end() - first >= static_cast<std::ptrdiff_t>(n), "it goes beyond the right end of the sheet");
+  support::require(sites.end() - first >= static_cast<std::ptrdiff_t>(n), "it goes beyond the right end of the sheet");
   return checked({first, first + static_cast<std::ptrdiff_t>(n)}, lattice);
 }
 

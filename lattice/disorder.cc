@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -50,7 +50,7 @@ Distribution::Distribution(Kind kind, double width) : kind_(kind), width_(kind =
   if (kind == Kind::none)
     return;
   const bool is_allowed = kind == Kind::weibull ? width <= widest(kind) : width < widest(kind);
-  require(width > 0. && is_allowed, "the width of a distribution of bonds is out of its range");
+  support::require(width > 0. && is_allowed, "the width of a distribution of bonds is out of its range");
   if (kind == Kind::weibull)
   {
     exponent_ = 1. / weibull_shape(width);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -12,7 +12,7 @@ Integrator::Integrator(const RowPartition &band, Forces &forces, double time_ste
   : band_(band), lattice_(band.lattice()), forces_(forces), sent_(band.halo_sites(true)),
     received_(band.halo_sites(false)), interior_(band.rows()), time_step_(time_step)
 {
-  require(time_step > 0., "time stepping needs a positive time step");
+  support::require(time_step > 0., "time stepping needs a positive time step");
   const std::size_t reach = band.is_shared() ? lattice_.reach() : 0;
   interior_.begin = std::min(interior_.begin + reach, interior_.end);
   interior_.end -= std::min(reach, interior_.end - interior_.begin);

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -28,7 +28,7 @@ public:
   /// @param reach distance up to which neighbours are wanted [m], > 0 @throws std::invalid_argument
   explicit LinkCells(double reach) : inverse_size_(1. / (room * reach))
   {
-    require(reach > 0., "link cells need a positive reach");
+    support::require(reach > 0., "link cells need a positive reach");
   }
 
   /// Removes all points.

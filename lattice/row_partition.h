@@ -10,15 +10,15 @@
 #include <mpi.h>
 
 #include "lattice/triangular_lattice.h"
-#include "lattice/zero_pages.h"
+#include "support/zero_pages.h"
 
 namespace latcon::lattice
 {
 
 /// A field over the places of a lattice, one value each, margin included. Make one of zeros as Field(n): see ZeroPages.
-using Field = std::vector<double, ZeroPages<double>>;
+using Field = std::vector<double, support::ZeroPages<double>>;
 /// A small whole number per place.
-using SiteFlags = std::vector<std::uint8_t, ZeroPages<std::uint8_t>>;
+using SiteFlags = std::vector<std::uint8_t, support::ZeroPages<std::uint8_t>>;
 
 /// Places of sites, a list for each rank.
 using SitesOfRanks = std::vector<std::vector<std::size_t>>;

@@ -6,8 +6,8 @@
 
 #include <Eigen/SparseCore>
 
-#include "lattice/bonds/require.h"
 #include "lattice/triangular_lattice.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -64,8 +64,8 @@ void maximise_entropy(const Exponents &J, Eigen::VectorXd &weights)
     const Eigen::VectorXd residual = J.transpose() * weights + soft.cwiseProduct(multipliers) - 2. * sums;
     if (residual.norm() <= tolerance * std::sqrt(static_cast<double>(size)))
       return;
-    require(step < most_steps && residual.allFinite(),
-            "the points are too scattered for positive weights: less scatter or a finer grid is needed");
+    support::require(step < most_steps && residual.allFinite(),
+                     "the points are too scattered for positive weights: less scatter or a finer grid is needed");
     const Eigen::VectorXd direction = newton_direction(J, weights, soft, -residual), along = J * direction;
     const auto function = [&](double share)
     {

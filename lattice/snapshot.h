@@ -5,8 +5,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "lattice/bonds/require.h"
 #include "lattice/row_partition.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -31,7 +31,7 @@ void archive_rows(Archive &archive, const std::string &name, Vector &field, cons
   archive(name, values);
   if constexpr (Archive::loads)
   {
-    require(values.size() == lattice.n_sites(), "`" + name + "` is of a sheet of another size");
+    support::require(values.size() == lattice.n_sites(), "`" + name + "` is of a sheet of another size");
     for (const std::size_t row : rows)
       for (const std::size_t place : lattice.sites({row, row + 1}))
         field[place] = values[lattice.site_number(place)];
@@ -77,8 +77,8 @@ public:
       auto &chunks = snapshot_.chunks_;
       if constexpr (loads)
       {
-        require(n_chunks_ < chunks.size() && chunks[n_chunks_].size() == n * sizeof(T),
-                "the snapshot is of another simulation");
+        support::require(n_chunks_ < chunks.size() && chunks[n_chunks_].size() == n * sizeof(T),
+                         "the snapshot is of another simulation");
         std::copy(chunks[n_chunks_].begin(), chunks[n_chunks_].end(), reinterpret_cast<char *>(first));
       }
       else

@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "lattice/bonds/require.h"
 #include "lattice/disorder.h"
 #include "support/dense.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -61,9 +61,10 @@ void correct(std::vector<HalfBond> &bonds)
   if (missing.norm() < 1e-14) // three directions have these moments
     return;
   const Eigen::VectorXd z = support::shortest_least_squares(scaled, missing);
-  require((scaled * z - missing).norm() < 1e-12 && (root + z).minCoeff() > 0.,
-          "a ring has too few bonds in its arcs for isotropic fourth moments with positive weights: a finer grid or "
-          "wider arcs are needed");
+  support::require(
+    (scaled * z - missing).norm() < 1e-12 && (root + z).minCoeff() > 0.,
+    "a ring has too few bonds in its arcs for isotropic fourth moments with positive weights: a finer grid or "
+    "wider arcs are needed");
   for (std::size_t i = 0; i < bonds.size(); ++i)
     bonds[i].weight = root[i] * (root[i] + z[i]);
 }
@@ -106,17 +107,17 @@ std::vector<Ring> lattice_rings(double d, Orientation orientation, double half_w
 std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings)
 {
   const double scatter = grid.scatter.amplitude;
-  require(grid.spacing > 0. && std::isfinite(grid.spacing), "the spacing of a grid must be positive");
+  support::require(grid.spacing > 0. && std::isfinite(grid.spacing), "the spacing of a grid must be positive");
   std::vector<HalfBond> stencil;
   for (const Ring &ring : rings)
   {
-    require(ring.radius > 0. && std::isfinite(ring.radius) && ring.shell < n_shells,
-            "a ring needs a positive radius and a shell");
-    require(ring.half_width >= 0. && ring.half_width <= M_PI / 6. + round_off,
-            "the half-width of the arcs of a ring must be between 0 and 30 degrees");
+    support::require(ring.radius > 0. && std::isfinite(ring.radius) && ring.shell < n_shells,
+                     "a ring needs a positive radius and a shell");
+    support::require(ring.half_width >= 0. && ring.half_width <= M_PI / 6. + round_off,
+                     "the half-width of the arcs of a ring must be between 0 and 30 degrees");
     const Ring all_directions{ring.radius, ring.direction, ring.shell};
     std::vector<HalfBond> bonds = half_bonds(grid, scatter > 0. ? all_directions : ring, 1. + std::sqrt(8.) * scatter);
-    require(!bonds.empty(), "a ring has no bonds in its arcs: a finer grid or wider arcs are needed");
+    support::require(!bonds.empty(), "a ring has no bonds in its arcs: a finer grid or wider arcs are needed");
     if (scatter == 0.)
       correct(bonds);
     stencil.insert(stencil.end(), bonds.begin(), bonds.end());
@@ -126,7 +127,7 @@ std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &ri
   for (const HalfBond &a : stencil)
     for (const HalfBond &b : stencil)
       divisor = std::gcd(divisor, a.columns * b.rows - b.columns * a.rows);
-  require(divisor == 1, "the bonds join not all points of the grid: wider arcs are needed");
+  support::require(divisor == 1, "the bonds join not all points of the grid: wider arcs are needed");
   return stencil;
 }
 

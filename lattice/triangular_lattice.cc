@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <tuple>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -15,7 +15,7 @@ namespace
 std::size_t intervals(double extent, double pitch, bool is_even = false)
 {
   const std::size_t multiple = is_even ? 2 : 1;
-  require(extent < 1e9 * pitch, "a lattice has fewer than 1e9 rows and columns");
+  support::require(extent < 1e9 * pitch, "a lattice has fewer than 1e9 rows and columns");
   return multiple * static_cast<std::size_t>(std::lround(extent / (static_cast<double>(multiple) * pitch)));
 }
 
@@ -51,8 +51,9 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
   : grid_(grid), stencil_(stencil), d_(d), is_triangular_(has_triangular_kinds(grid, stencil)), periodic_(periodic)
 {
   const double spacing = grid.spacing;
-  require(spacing > 0. && length > 0. && height > 0. && d > 0., "a lattice needs positive spacing, length and height");
-  require(!stencil.empty() && stencil.size() <= most_kinds, "a sheet has 1 to 127 half-bonds");
+  support::require(spacing > 0. && length > 0. && height > 0. && d > 0.,
+                   "a lattice needs positive spacing, length and height");
+  support::require(!stencil.empty() && stencil.size() <= most_kinds, "a sheet has 1 to 127 half-bonds");
   for (std::size_t kind = 0; kind < n_kinds(); ++kind)
   {
     shortest_bond_ = std::min(shortest_bond_, rest_length(kind));
@@ -65,8 +66,8 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
   columns_ = repeats_along() ? intervals(along, spacing) : intervals(along, spacing, !rows_along_x()) + 1;
   rows_ = intervals(across, grid.pitch() * spacing, rows_along_x() || repeats_across()) + (repeats_across() ? 0 : 1);
   // The margin of a periodic sheet is filled from the sheet once around, so it must not be wider.
-  require(columns_ >= (repeats_along() ? column_reach_ : 3) && rows_ >= (repeats_across() ? reach_ : 2),
-          "the sheet is too small for its lattice spacing: fewer than two rows or three columns");
+  support::require(columns_ >= (repeats_along() ? column_reach_ : 3) && rows_ >= (repeats_across() ? reach_ : 2),
+                   "the sheet is too small for its lattice spacing: fewer than two rows or three columns");
   const auto aligned = [](std::size_t n) { return (n + row_alignment - 1) / row_alignment * row_alignment; };
   first_column_ = aligned(column_reach_);
   stride_ = first_column_ + aligned(columns_ + column_reach_);

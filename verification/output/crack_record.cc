@@ -8,8 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lattice/bonds/require.h"
 #include "support/errors.h"
+#include "support/require.h"
 #include "verification/analysis/fragments.h"
 
 namespace latcon::output
@@ -156,7 +156,7 @@ lattice::EnergyBalance CrackRecord::checked_energies()
 
 void CrackRecord::check_loaded() const
 {
-  using lattice::require;
+  using support::require;
   const lattice::TriangularLattice &sheet = simulation_.lattice();
   const auto is_site = [&](std::size_t place) { return place < sheet.n_places() && sheet.is_site(place); };
   require(last_tip_.has_value() == !tip_.records().empty() && (!last_tip_ || is_site(*last_tip_)),
