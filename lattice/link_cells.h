@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -13,8 +14,8 @@ namespace latcon::lattice
 {
 
 /// Points of the plane sorted into square cells, to find those near a position without looking at all of them (Allen
-/// and Tildesley, Computer Simulation of Liquids, 2017, section 5.3.2). Cells are hashed, so that points may spread
-/// as far as they like.
+/// and Tildesley, Computer Simulation of Liquids, 2017, section 5.3.2). Only cells with points are kept, so that these
+/// may spread as far as they like.
 class LinkCells
 {
 public:
@@ -38,12 +39,15 @@ public:
   /// was never put anywhere.
   void move(std::size_t id, const Eigen::Vector2d &from, const Eigen::Vector2d &to)
   {
-    const auto [begin, end] = points_.equal_range(cell(from));
-    const auto left = std::find_if(begin, end, [id](const auto &point) { return point.second.id == id; });
-    if (left != end)
-      points_.erase(left);
+    if (const auto left = points_.find(cell(from)); left != points_.end())
+    {
+      std::vector<Point> &others = left->second;
+      others.erase(std::find_if(others.begin(), others.end(), [id](const Point &point) { return point.id == id; }));
+      if (others.empty())
+        points_.erase(left);
+    }
     if (const Cell reached = cell(to); reached != nowhere)
-      points_.emplace(reached, Point{id, to});
+      points_[reached].push_back({id, to});
   }
 
   /// Calls visit(point) once for every point that is at `reach` or less from a position, and for some that are farther:
@@ -54,8 +58,8 @@ public:
     const Cell here = cell(position);
     for (const Cell column : {here - next_column, here, here + next_column})
       for (const Cell near : {column - 1, column, column + 1})
-        for (auto [point, end] = points_.equal_range(near); point != end; ++point)
-          visit(point->second);
+        if (const auto points = points_.find(near); points != points_.end())
+          std::for_each(points->second.begin(), points->second.end(), visit);
   }
 
 private:
@@ -77,7 +81,7 @@ private:
   }
 
   double inverse_size_;
-  std::unordered_multimap<Cell, Point> points_;
+  std::unordered_map<Cell, std::vector<Point>> points_; // of each cell that has one
 };
 
 } // namespace latcon::lattice
