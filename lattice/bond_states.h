@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lattice/triangular_lattice.h"
-#include "lattice/zero_pages.h"
+#include "support/zero_pages.h"
 
 namespace latcon::lattice
 {
@@ -16,7 +16,7 @@ class BondStates
 {
 public:
   using Word = std::uint16_t;
-  using Words = std::vector<Word, ZeroPages<Word>>;
+  using Words = std::vector<Word, support::ZeroPages<Word>>;
   static constexpr std::size_t kinds_per_word = 2 * n_kinds_per_shell;
 
   /// No bonds at all at n places. @param n_kinds kinds of bonds that may be added: the first so many

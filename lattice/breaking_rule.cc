@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <limits>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
 
 CriticalStretch::CriticalStretch(double stretch, double factor, double time) : factor_(factor), time_(time)
 {
-  require(stretch > 0., "the breaking stretch must be positive");
+  support::require(stretch > 0., "the breaking stretch must be positive");
   stretch_.fill(stretch);
 }
 
@@ -32,7 +32,7 @@ double CriticalStretch::largest_limit(double toughening) const
 
 BondEnergy::BondEnergy(const Material &material, double energy) : material_(material), energy_(energy)
 {
-  require(energy > 0., "the critical energy of bonds must be positive");
+  support::require(energy > 0., "the critical energy of bonds must be positive");
 }
 
 double BondEnergy::stretch_at(std::size_t shell, double energy) const

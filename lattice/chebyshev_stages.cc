@@ -1,6 +1,6 @@
 #include "lattice/chebyshev_stages.h"
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -28,7 +28,7 @@ struct Chebyshev
 
 ChebyshevStages::ChebyshevStages(unsigned int stages)
 {
-  require(stages >= 2, "a Runge-Kutta-Chebyshev method of second order has two stages or more");
+  support::require(stages >= 2, "a Runge-Kutta-Chebyshev method of second order has two stages or more");
   const double w0 = 1. + damping / (static_cast<double>(stages) * stages);
   const Chebyshev at(stages, w0);
   const double w1 = at.first[stages] / at.second[stages];

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -46,8 +46,9 @@ Constraint::Motion steady(const Eigen::Matrix2d &velocity_gradient)
 
 Constraint::Motion piecewise_linear(std::vector<double> times, std::vector<Eigen::Matrix2d> deformations)
 {
-  require(times.size() == deformations.size() && std::is_sorted(times.begin(), times.end(), std::less_equal<>()),
-          "a piecewise linear motion needs increasing times, and a deformation for each");
+  support::require(times.size() == deformations.size() &&
+                     std::is_sorted(times.begin(), times.end(), std::less_equal<>()),
+                   "a piecewise linear motion needs increasing times, and a deformation for each");
   return [times = std::move(times), deformations = std::move(deformations)](double from, double to)
   {
     // The rate itself within one piece, so that it is the same number in every step; otherwise the mean.
@@ -71,7 +72,7 @@ void constrain(State &state, const RowPartition &band, const Constraint &constra
   const TriangularLattice &lattice = band.lattice();
   for (const std::size_t place : constraint.sites)
   {
-    require(lattice.is_site(place), "only a site can be constrained");
+    support::require(lattice.is_site(place), "only a site can be constrained");
     if (state.removed[place] != 0 || state.held[place] != 0)
       continue;
     const bool is_whole = components(constraint) == 3;

@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "lattice/bonds/require.h"
 #include "lattice/integrator.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -83,7 +83,7 @@ public:
     archive("released", released_);
     if constexpr (Archive::loads)
     {
-      require(velocity.size() == 6, "`velocity` of a constraint has six numbers");
+      support::require(velocity.size() == 6, "`velocity` of a constraint has six numbers");
       velocity_.translation << velocity[0], velocity[1];
       velocity_.gradient << velocity[2], velocity[3], velocity[4], velocity[5];
     }

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -22,82 +22,49 @@ constexpr double most_sites = 1e7;
 std::vector<std::size_t> sites_in(const Eigen::AlignedBox2d &box, const TriangularLattice &lattice)
 {
   const auto [rows, columns] = lattice.window(box.min(), box.max());
-  require(double(rows.end - rows.begin) * double(columns.end - columns.begin) <= most_sites,
-          "it takes more than 1e7 sites");
+  support::require(double(rows.end - rows.begin) * double(columns.end - columns.begin) <= most_sites,
+                   "it takes more than 1e7 sites");
 
   std::vector<std::size_t> sites;
   for (const std::size_t place : lattice.sites(rows, columns))
     if (box.contains(lattice.reference(place)))
       sites.push_back(place);
+  // Sites at one X are stored by increasing Y.
   const double room = relative_room * lattice.spacing();
-  std::sort(sites.begin(), sites.end(),
-            [&](std::size_t a, std::size_t b)
-            {
-              const Eigen::Vector2d A = lattice.reference(a), B = lattice.reference(b);
-              return std::abs(A.x() - B.x()) > room ? A.x() < B.x() : A.y() < B.y();
-            });
+  std::stable_sort(sites.begin(), sites.end(),
+                   [&](std::size_t a, std::size_t b)
+                   { return lattice.reference(a).x() < lattice.reference(b).x() - room; });
   return sites;
 }
 
-std::vector<std::size_t> sites_of(const SeedSlit &slit, const TriangularLattice &lattice)
+// Returns the sites of a seed crack if it can be one.
+std::vector<std::size_t> checked(std::vector<std::size_t> sites, const TriangularLattice &lattice)
 {
-  const double room = relative_room * lattice.spacing();
-  const Eigen::Vector2d lower(slit.position - room, slit.offset - 0.5 * slit.height - room),
-    upper(slit.position + slit.length + room, slit.offset + 0.5 * slit.height + room);
-  return sites_in({lower, upper}, lattice);
-}
-
-std::vector<std::size_t> sites_of(const SeedLine &line, const TriangularLattice &lattice)
-{
-  const double h = lattice.spacing(), room = relative_room * h, top = 0.5 * lattice.height();
-  // Lines are at most a spacing apart, and their sites less than two.
-  const Eigen::Vector2d start(std::clamp(line.position, 0., lattice.length()), std::clamp(line.offset, -top, top));
-  const Eigen::Vector2d around(2. * h, 0.5 * h + room), end(2. * h * static_cast<double>(line.n), 0.);
-  std::vector<std::size_t> sites = sites_in({start - around, start + end + around}, lattice);
-  const auto nearest = [&](int axis, double wanted)
-  {
-    return std::min_element(sites.begin(), sites.end(),
-                            [&](std::size_t a, std::size_t b)
-                            {
-                              const double A = lattice.reference(a)[axis], B = lattice.reference(b)[axis];
-                              const double farther = std::abs(A - wanted) - std::abs(B - wanted);
-                              return std::abs(farther) > room ? farther < 0. : A > B;
-                            });
-  };
-  const double Y = lattice.reference(*nearest(1, line.offset)).y();
-  const auto is_off = [&](std::size_t place) { return std::abs(lattice.reference(place).y() - Y) > room; };
-  sites.erase(std::remove_if(sites.begin(), sites.end(), is_off), sites.end());
-  const auto first = nearest(0, line.position);
-  require(sites.end() - first >= static_cast<std::ptrdiff_t>(line.n), "it goes beyond the right end of the sheet");
-  return {first, first + static_cast<std::ptrdiff_t>(line.n)};
+  support::require(!sites.empty(), "there is no site in it");
+  const double highest = 0.5 * lattice.height() - 2. * lattice.spacing();
+  for (const std::size_t place : sites)
+    support::require(std::abs(lattice.reference(place).y()) <= highest,
+                     "it comes within two spacings of the lower or the upper edge of the sheet");
+  return sites;
 }
 
 } // namespace
 
 void cut_out(State &state, const TriangularLattice &lattice, const Cutout &cutout)
 {
-  const double room = relative_room * lattice.spacing();
-  const auto *const hole = std::get_if<RoundHole>(&cutout);
-  const double notch = hole != nullptr ? 0. : std::get<Notch>(cutout).length;
-  const auto in_piece = [&](const Eigen::Vector2d &X)
-  {
-    return hole != nullptr ? (X - Eigen::Vector2d(0.5 * lattice.length(), 0.)).norm() < hole->radius - room
-                           : std::abs(X.y()) <= room && X.x() <= notch + room;
-  };
+  const double room = relative_room * lattice.spacing(), radius = cutout.hole_radius, notch = cutout.notch_length;
+  const Eigen::Vector2d middle(0.5 * lattice.length(), 0.);
+  const auto is_cut = [&](const Eigen::Vector2d &X)
+  { return (X - middle).norm() < radius - room || (notch > 0. && std::abs(X.y()) <= room && X.x() <= notch + room); };
   for (std::size_t place = 0; place < lattice.n_places(); ++place)
-    if (lattice.is_occupied(place) && in_piece(lattice.reference(lattice.canonical_place(place))))
+    if (lattice.is_site(place) && is_cut(lattice.reference(place)))
     {
       state.removed[place] = 1;
       state.held[place] = state.rollers[place] = 0;
       state.inverse_mass[place] = 0.;
+      for_each_bond_of_site(state, lattice, place, [&](const Bond &bond) { state.bonds.remove(bond.near, bond.kind); });
     }
-  for_each_bond(state, lattice,
-                [&](const Bond &bond)
-                {
-                  if (state.removed[bond.near] != 0 || state.removed[bond.far] != 0)
-                    state.bonds.remove(bond.near, bond.kind);
-                });
-  if (hole == nullptr) // through the slit between sites
+  if (notch > 0.) // through the slit between sites
     for (const auto &[place, kind] : bonds_across(lattice, -lattice.spacing(), notch + room, 0.))
       state.bonds.remove(place, kind);
 }
@@ -118,15 +85,33 @@ std::vector<std::pair<std::size_t, std::size_t>> bonds_across(const TriangularLa
   return bonds;
 }
 
-std::vector<std::size_t> seed_sites(const TriangularLattice &lattice, const Seed &seed)
+std::vector<std::size_t> seed_line(const TriangularLattice &lattice, const Eigen::Vector2d &start, std::size_t n)
 {
-  std::vector<std::size_t> places = std::visit([&](const auto &shape) { return sites_of(shape, lattice); }, seed);
-  require(!places.empty(), "there is no site in it");
-  const double highest = 0.5 * lattice.height() - 2. * lattice.spacing();
-  for (const std::size_t place : places)
-    require(std::abs(lattice.reference(place).y()) <= highest,
-            "it comes within two spacings of the lower or the upper edge of the sheet");
-  return places;
+  const double h = lattice.spacing(), room = relative_room * h, top = 0.5 * lattice.height();
+  // Lines are at most a spacing apart, and their sites less than two.
+  const Eigen::Vector2d inside(std::clamp(start.x(), 0., lattice.length()), std::clamp(start.y(), -top, top));
+  const Eigen::Vector2d around(2. * h, 0.5 * h + room), end(2. * h * static_cast<double>(n), 0.);
+  std::vector<std::size_t> sites = sites_in({inside - around, inside + end + around}, lattice);
+  const auto nearest = [&](int axis)
+  {
+    const auto distance = [&](std::size_t place) // less than that of one as near with a smaller coordinate
+    { return std::abs(lattice.reference(place)[axis] - start[axis] - room); };
+    return std::min_element(sites.begin(), sites.end(),
+                            [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
+  };
+  const double Y = lattice.reference(*nearest(1)).y();
+  const auto is_off = [&](std::size_t place) { return std::abs(lattice.reference(place).y() - Y) > room; };
+  sites.erase(std::remove_if(sites.begin(), sites.end(), is_off), sites.end());
+  const auto first = nearest(0);
+  support::require(sites.end() - first >= static_cast<std::ptrdiff_t>(n), "it goes beyond the right end of the sheet");
+  return checked({first, first + static_cast<std::ptrdiff_t>(n)}, lattice);
+}
+
+std::vector<std::size_t> seed_slit(const TriangularLattice &lattice, const Eigen::Vector2d &lower,
+                                   const Eigen::Vector2d &upper)
+{
+  const Eigen::Vector2d room = Eigen::Vector2d::Constant(relative_room * lattice.spacing());
+  return checked(sites_in({lower - room, upper + room}, lattice), lattice);
 }
 
 } // namespace latcon::lattice

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -25,12 +25,6 @@ double kept_width(double c)
   return std::sqrt(1. - 2. * c * density / std::erf(c / std::sqrt(2.)));
 }
 
-// Coefficient of variation of a Weibull distribution of this shape.
-double weibull_width(double shape)
-{
-  return std::sqrt(std::expm1(std::lgamma(1. + 2. / shape) - 2. * std::lgamma(1. + 1. / shape)));
-}
-
 // The shape of a Weibull distribution from its coefficient of variation, which decreases with it.
 double weibull_shape(double width)
 {
@@ -38,9 +32,8 @@ double weibull_shape(double width)
   while (high - low > 1e-15 * high)
   {
     const double middle = 0.5 * (low + high);
-    if (middle <= low || middle >= high)
-      break;
-    (weibull_width(middle) > width ? low : high) = middle;
+    const double variance = std::expm1(std::lgamma(1. + 2. / middle) - 2. * std::lgamma(1. + 1. / middle));
+    (std::sqrt(variance) > width ? low : high) = middle;
   }
   return 0.5 * (low + high);
 }
@@ -49,28 +42,15 @@ double weibull_shape(double width)
 
 double Distribution::widest(Kind kind)
 {
-  switch (kind)
-  {
-  case Kind::uniform:
-    return 1. / sqrt3;
-  case Kind::normal:
-    return kept_width(cut_off) / cut_off;
-  case Kind::weibull:
-    return 1.;
-  default:
-    return 0.;
-  }
+  return kind == Kind::uniform ? 1. / sqrt3 : kind == Kind::normal ? kept_width(cut_off) / cut_off : 1.;
 }
 
-Distribution::Distribution(Kind kind, double width) : kind_(kind), width_(width)
+Distribution::Distribution(Kind kind, double width) : kind_(kind), width_(kind == Kind::none ? 0. : width)
 {
   if (kind == Kind::none)
-  {
-    width_ = 0.;
     return;
-  }
   const bool is_allowed = kind == Kind::weibull ? width <= widest(kind) : width < widest(kind);
-  require(width > 0. && is_allowed, "the width of a distribution of bonds is out of its range");
+  support::require(width > 0. && is_allowed, "the width of a distribution of bonds is out of its range");
   if (kind == Kind::weibull)
   {
     exponent_ = 1. / weibull_shape(width);
@@ -87,23 +67,19 @@ Distribution::Distribution(Kind kind, double width) : kind_(kind), width_(width)
 
 double Distribution::factor(std::uint64_t key) const
 {
-  switch (kind_)
-  {
-  case Kind::uniform:
-    return 1. + scale_ * (2. * uniform(splitmix64(key)) - 1.);
-  case Kind::normal:
-    // Box and Muller (1958); pairs beyond the cut are drawn again.
-    for (std::uint64_t stream = splitmix64(key);; stream = splitmix64(stream))
-    {
-      const double radius = std::sqrt(-2. * std::log(uniform(splitmix64(stream + 1))));
-      const double normal = radius * std::cos(2. * M_PI * uniform(splitmix64(stream + 2)));
-      if (std::abs(normal) <= cut_off)
-        return 1. + scale_ * normal;
-    }
-  case Kind::weibull:
-    return scale_ * std::pow(-std::log(uniform(splitmix64(key))), exponent_);
-  default:
+  if (kind_ == Kind::none)
     return 1.;
+  if (kind_ == Kind::uniform)
+    return 1. + scale_ * (2. * uniform(splitmix64(key)) - 1.);
+  if (kind_ == Kind::weibull)
+    return scale_ * std::pow(-std::log(uniform(splitmix64(key))), exponent_);
+  // Box and Muller (1958); pairs beyond the cut are drawn again.
+  for (std::uint64_t stream = splitmix64(key);; stream = splitmix64(stream))
+  {
+    const double radius = std::sqrt(-2. * std::log(uniform(splitmix64(stream + 1))));
+    const double normal = radius * std::cos(2. * M_PI * uniform(splitmix64(stream + 2)));
+    if (std::abs(normal) <= cut_off)
+      return 1. + scale_ * normal;
   }
 }
 

@@ -40,7 +40,7 @@ public:
   Distribution(Kind kind, double width);
 
   static constexpr double cut_off = 3.; ///< of the normal distribution, in its standard deviations before the cut
-  /// Limit of the width [-]; see the constructor.
+  /// Limit of the width [-], but for none; see the constructor.
   static double widest(Kind kind);
 
   bool is_none() const { return kind_ == Kind::none; }

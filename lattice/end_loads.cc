@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "lattice/bonds/require.h"
 #include "support/dense.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -91,9 +91,9 @@ EndLoads::EndLoads(const RowPartition &band, const Material &material, const Sta
   }
   if (left != End::absorbing && right != End::absorbing)
     return;
-  require(lattice.is_triangular(), "only ends of the triangular lattice absorb waves");
-  require(waves_run_along_x(lattice, material, F),
-          "no waves run along x in the loaded sheet, so that an end cannot absorb them");
+  support::require(lattice.is_triangular(), "only ends of the triangular lattice absorb waves");
+  support::require(waves_run_along_x(lattice, material, F),
+                   "no waves run along x in the loaded sheet, so that an end cannot absorb them");
   const support::SymmetricModes modes =
     support::symmetric_modes(material.density * tangent_along_x(lattice, material, F, true));
   const bool along = lattice.orientation() == Orientation::rows_along_crack;

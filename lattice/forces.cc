@@ -235,8 +235,7 @@ void Forces::gather_row(std::ptrdiff_t row, Scratch &scratch) const
   {
     const std::ptrdiff_t rows = lattice_.rows_across(kind);
     // From the place of the same column where a bond starts to the one where it ends.
-    const auto columns = static_cast<std::ptrdiff_t>(lattice_.shift(kind, static_cast<std::size_t>(row + rows)) -
-                                                     static_cast<std::size_t>(rows) * lattice_.stride());
+    const std::ptrdiff_t columns = lattice_.columns_across(kind, static_cast<std::size_t>(row + rows));
     const std::array<double *, 2> starting = scratch.bonds[kind].at(row), ending = scratch.bonds[kind].at(row - rows);
     for (std::size_t component = 0; component < 2; ++component)
     {

@@ -5,9 +5,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "lattice/bonds/require.h"
 #include "lattice/energy.h"
 #include "lattice/integrator.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -17,10 +17,10 @@ Fracture::Fracture(const RowPartition &band, const Material &material, std::shar
   : band_(band), lattice_(band.lattice()), material_(material), rule_(std::move(rule)), toughening_(toughening),
     breaking_stretch_(rule_->smallest_limit(1.)), toughened_stretch_(rule_->smallest_limit(toughening.factor))
 {
-  require(lattice_.images().empty(), "a periodic sheet does not break: a crack has no tip there");
-  require(toughening.factor >= 1. && toughening.distance >= 0. && toughening.retraction >= 0. &&
-            toughening.retraction < 1.,
-          "toughening needs a factor >= 1, a distance >= 0, and a fraction of retraction from 0 to below 1");
+  support::require(lattice_.images().empty(), "a periodic sheet does not break: a crack has no tip there");
+  support::require(toughening.factor >= 1. && toughening.distance >= 0. && toughening.retraction >= 0. &&
+                     toughening.retraction < 1.,
+                   "toughening needs a factor >= 1, a distance >= 0, and a fraction of retraction from 0 to below 1");
   if (toughening.retraction > 0.)
     for (std::size_t kind = 0; kind < lattice_.n_kinds(); ++kind)
       retraction_stretch_.push_back(toughening.retraction * (deformation * lattice_.bond_vector(kind)).norm() /
@@ -107,7 +107,7 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
   std::vector<std::pair<std::size_t, std::size_t>> bonds; // place, kind
   for (const std::size_t place : places)
   {
-    require(lattice_.is_site(place), "only a site can be removed");
+    support::require(lattice_.is_site(place), "only a site can be removed");
     for_each_bond_of_site(state, lattice_, place, [&](const Bond &bond) { bonds.emplace_back(bond.near, bond.kind); });
   }
   const double removed_energy = remove_bonds(state, std::move(bonds));
@@ -194,7 +194,7 @@ void Fracture::toughen_behind_tip(State &state)
   double reach = 0.; // of midpoints from near ends on the grid, along X
   for (std::size_t kind = 0; kind < lattice_.n_kinds(); ++kind)
     reach = std::max(reach, 0.5 * std::abs(lattice_.bond_vector(kind).x()));
-  reach += lattice_.scatter() * lattice_.spacing();
+  reach += lattice_.grid().scatter.amplitude * lattice_.spacing();
   constexpr double endless = std::numeric_limits<double>::infinity();
   const auto [rows, columns] = lattice_.window({toughened_to_ - reach, -endless}, {boundary + reach, endless});
   const Rows own{std::max(rows.begin, band_.rows().begin), std::min(rows.end, band_.rows().end)};

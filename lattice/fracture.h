@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "lattice/bonds/require.h"
 #include "lattice/breaking_rule.h"
 #include "lattice/forces.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -132,8 +132,8 @@ public:
     if constexpr (Archive::loads)
     {
       toughened_to_ = -std::numeric_limits<double>::infinity();
-      require(x == at && (!tip_ || (*tip_ < lattice_.n_places() && lattice_.is_site(*tip_))),
-              "`tip` is no site of the sheet, or `tip_x` not where it is");
+      support::require(x == at && (!tip_ || (*tip_ < lattice_.n_places() && lattice_.is_site(*tip_))),
+                       "`tip` is no site of the sheet, or `tip_x` not where it is");
     }
   }
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <set>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -13,7 +13,7 @@ Integrator::Integrator(const RowPartition &band, Forces &forces, double time_ste
   : band_(band), lattice_(band.lattice()), forces_(forces), sent_(band.halo_sites(true)),
     received_(band.halo_sites(false)), time_step_(time_step)
 {
-  require(time_step > 0., "time stepping needs a positive time step");
+  support::require(time_step > 0., "time stepping needs a positive time step");
 }
 
 void Integrator::find_rollers(const State &state)

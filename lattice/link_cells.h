@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <stdexcept>
 #include <unordered_map>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -29,8 +29,7 @@ public:
   /// @param reach distance up to which neighbours are wanted [m], > 0 @throws std::invalid_argument
   explicit LinkCells(double reach) : inverse_size_(1. / (room * reach))
   {
-    if (!(reach > 0.))
-      throw std::invalid_argument("link cells need a positive reach");
+    support::require(reach > 0., "link cells need a positive reach");
   }
 
   /// Removes all points.
@@ -40,15 +39,14 @@ public:
   /// was never put anywhere.
   void move(std::size_t id, const Eigen::Vector2d &from, const Eigen::Vector2d &to)
   {
-    const Cell left = cell(from), reached = cell(to);
-    if (left != nowhere)
+    if (const auto left = points_.find(cell(from)); left != points_.end())
     {
-      std::vector<Point> &others = points_[left];
+      std::vector<Point> &others = left->second;
       others.erase(std::find_if(others.begin(), others.end(), [id](const Point &point) { return point.id == id; }));
-      if (others.empty() && left != reached)
+      if (others.empty())
         points_.erase(left);
     }
-    if (reached != nowhere)
+    if (const Cell reached = cell(to); reached != nowhere)
       points_[reached].push_back({id, to});
   }
 
@@ -58,8 +56,6 @@ public:
   void for_each_near(const Eigen::Vector2d &position, Visitor &&visit) const
   {
     const Cell here = cell(position);
-    if (here == nowhere)
-      return;
     for (const Cell column : {here - next_column, here, here + next_column})
       for (const Cell near : {column - 1, column, column + 1})
         if (const auto points = points_.find(near); points != points_.end())
@@ -69,7 +65,7 @@ public:
 private:
   using Cell = std::int64_t; // column times next_column, plus row
   static constexpr Cell next_column = Cell{1} << 32;
-  static constexpr Cell nowhere = std::numeric_limits<Cell>::max();
+  static constexpr Cell nowhere = Cell{1} << 62; // neither are those around it among the cells of points
 
   /// Two points at exactly `reach` must be in cells that touch, whatever the rounding of their quotients.
   static constexpr double room = 1. + 1e-6;

@@ -9,16 +9,15 @@ namespace latcon::lattice
 RowPartition::RowPartition(const TriangularLattice &lattice, MPI_Comm communicator)
   : lattice_(&lattice), communicator_(communicator), is_relevant_(lattice.rows(), 0)
 {
-  int rank = 0, n_ranks = 1;
   if (communicator != MPI_COMM_NULL)
   {
+    int rank = 0, n_ranks = 1;
     MPI_Comm_rank(communicator, &rank);
     MPI_Comm_size(communicator, &n_ranks);
+    rank_ = static_cast<std::size_t>(rank);
+    n_ranks_ = static_cast<std::size_t>(n_ranks);
   }
-  rank_ = static_cast<std::size_t>(rank);
-  const auto n = static_cast<std::size_t>(n_ranks);
-  for (std::size_t i = 0; i <= n; ++i)
-    first_rows_.push_back(lattice.rows() * i / n);
+  own_ = {(rows().begin + lattice.reach()) * lattice.stride(), (rows().end + lattice.reach()) * lattice.stride()};
   for (const std::size_t row : known_rows())
     is_relevant_[row] = 1;
 }
@@ -27,41 +26,26 @@ std::vector<std::size_t> RowPartition::known_sites() const
 {
   std::vector<std::size_t> sites;
   for (const std::size_t row : known_rows())
-    for (std::size_t column = 0; column < lattice_->sites_in_row(row); ++column)
-      sites.push_back(lattice_->index(row, column));
+    for (const std::size_t place : lattice_->sites({row, row + 1}))
+      sites.push_back(place);
   return sites;
 }
 
 std::vector<std::size_t> RowPartition::rows_around(std::size_t rank, std::size_t above) const
 {
-  const auto begin = static_cast<std::ptrdiff_t>(first_rows_[rank]);
-  const auto end = static_cast<std::ptrdiff_t>(first_rows_[rank + 1]);
+  const auto [begin, end] = rows_of(rank);
   std::set<std::size_t> rows;
   if (begin < end)
-    for (auto number = begin - static_cast<std::ptrdiff_t>(lattice_->reach());
-         number < end + static_cast<std::ptrdiff_t>(above); ++number)
-      if (const auto row = lattice_->row(number))
+    for (std::size_t number = begin - lattice_->reach(); number != end + above; ++number) // modulo 2^64
+      if (const auto row = lattice_->row(static_cast<std::ptrdiff_t>(number)))
         rows.insert(*row);
   return {rows.begin(), rows.end()};
 }
 
-bool RowPartition::owns(std::size_t place) const
-{
-  const Rows own = rows();
-  const std::size_t row = lattice_->row_of(place); // beyond all rows where the margin is below them
-  return row >= own.begin && row < own.end;
-}
-
-std::size_t RowPartition::owner(std::size_t row) const
-{
-  return static_cast<std::size_t>(std::upper_bound(first_rows_.begin(), first_rows_.end(), row) - first_rows_.begin()) -
-         1;
-}
-
 SitesOfRanks RowPartition::halo_sites(bool own) const
 {
-  SitesOfRanks sites(n_ranks());
-  for (std::size_t rank = 0; rank < n_ranks(); ++rank)
+  SitesOfRanks sites(n_ranks_);
+  for (std::size_t rank = 0; rank < n_ranks_; ++rank)
     for (const std::size_t row : rows_around(own ? rank : rank_, lattice_->reach()))
       if (rank != rank_ && owner(row) == (own ? rank_ : rank))
         for (std::size_t column = 0; column < lattice_->columns(); ++column)

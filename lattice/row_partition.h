@@ -10,15 +10,15 @@
 #include <mpi.h>
 
 #include "lattice/triangular_lattice.h"
-#include "lattice/zero_pages.h"
+#include "support/zero_pages.h"
 
 namespace latcon::lattice
 {
 
 /// A field over the places of a lattice, one value each, margin included. Make one of zeros as Field(n): see ZeroPages.
-using Field = std::vector<double, ZeroPages<double>>;
+using Field = std::vector<double, support::ZeroPages<double>>;
 /// A small whole number per place.
-using SiteFlags = std::vector<std::uint8_t, ZeroPages<std::uint8_t>>;
+using SiteFlags = std::vector<std::uint8_t, support::ZeroPages<std::uint8_t>>;
 
 /// Places of sites, a list for each rank.
 using SitesOfRanks = std::vector<std::vector<std::size_t>>;
@@ -41,8 +41,9 @@ public:
                MPI_Comm communicator = MPI_COMM_NULL);
 
   const TriangularLattice &lattice() const { return *lattice_; }
-  Rows rows() const { return {first_rows_[rank_], first_rows_[rank_ + 1]}; } ///< that this rank moves
-  bool owns(std::size_t place) const; ///< whether a place, margin included, is in one of its rows
+  Rows rows() const { return rows_of(rank_); } ///< that this rank moves
+  /// Returns whether a place, margin of columns included, is in one of its rows.
+  bool owns(std::size_t place) const { return place >= own_.begin && place < own_.end; }
   /// Returns whether a place in a row of the sheet is in its rows or in its halo.
   bool is_relevant(std::size_t place) const { return is_relevant_[lattice_->row_of(place)] != 0; }
   /// Places of the sites in own rows and halo, row by row.
@@ -53,11 +54,11 @@ public:
   std::vector<std::size_t> rows_of_bonds() const { return rows_around(rank_, 0); }
 
   bool is_first() const { return rank_ == 0; } ///< whether this is the first rank, which gathers
-  bool is_shared() const { return n_ranks() > 1; }
-  std::size_t rank() const { return rank_; }
-  std::size_t n_ranks() const { return first_rows_.size() - 1; }
+  bool is_shared() const { return n_ranks_ > 1; }
+  std::size_t n_ranks() const { return n_ranks_; }
   MPI_Comm communicator() const { return communicator_; }
-  std::size_t owner(std::size_t row) const; ///< rank that moves a row
+  /// Rank that moves a row.
+  std::size_t owner(std::size_t row) const { return ((row + 1) * n_ranks_ - 1) / lattice_->rows(); }
   /// Places in its rows that others have in their halos, or places in its own halo, for exchange().
   SitesOfRanks halo_sites(bool own) const;
 
@@ -87,14 +88,17 @@ public:
   void gather(Vector &field, Rows rows) const;
 
 private:
-  std::size_t padded_row(std::size_t place) const { return place / lattice_->stride(); }
+  Rows rows_of(std::size_t rank) const
+  {
+    return {lattice_->rows() * rank / n_ranks_, lattice_->rows() * (rank + 1) / n_ranks_};
+  }
   /// Rows of a rank, as many below them as bonds reach, and so many above them; none if it has no rows.
   std::vector<std::size_t> rows_around(std::size_t rank, std::size_t above) const;
 
   const TriangularLattice *lattice_;
   MPI_Comm communicator_;
-  std::size_t rank_;
-  std::vector<std::size_t> first_rows_;   // of each rank, and the number of rows
+  std::size_t rank_ = 0, n_ranks_ = 1;
+  Rows own_;                              // places
   std::vector<std::uint8_t> is_relevant_; // by row
 };
 
@@ -136,16 +140,13 @@ void RowPartition::gather(Vector &field, Rows rows) const
   std::vector<int> counts, offsets;
   for (std::size_t r = 0; r < n_ranks(); ++r)
   {
-    const std::size_t begin = std::clamp(first_rows_[r], rows.begin, rows.end);
-    offsets.push_back(static_cast<int>(padded_row(lattice_->index(begin, 0))));
-    counts.push_back(static_cast<int>(std::clamp(first_rows_[r + 1], rows.begin, rows.end) - begin));
+    const auto [begin, end] = rows_of(r);
+    offsets.push_back(static_cast<int>(std::clamp(begin, rows.begin, rows.end) + lattice_->reach()));
+    counts.push_back(static_cast<int>(std::clamp(end, rows.begin, rows.end) + lattice_->reach()) - offsets.back());
   }
-  if (is_first())
-    MPI_Gatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, field.data(), counts.data(), offsets.data(), row_type, 0,
-                communicator_);
-  else
-    MPI_Gatherv(&field[static_cast<std::size_t>(offsets[rank_]) * lattice_->stride()], counts[rank_], row_type, nullptr,
-                nullptr, nullptr, row_type, 0, communicator_);
+  void *const own = &field[static_cast<std::size_t>(offsets[rank_]) * lattice_->stride()];
+  MPI_Gatherv(is_first() ? MPI_IN_PLACE : own, counts[rank_], row_type, field.data(), counts.data(), offsets.data(),
+              row_type, 0, communicator_);
   MPI_Type_free(&row_type);
 }
 

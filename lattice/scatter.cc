@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include <Eigen/SparseCore>
 
 #include "lattice/triangular_lattice.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -59,14 +59,13 @@ void maximise_entropy(const Exponents &J, Eigen::VectorXd &weights)
   soft.tail<n_common>().setZero();
   weights *= 2. * sums.sum() / weights.dot(J * sums);
   Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(size);
-  const auto gradient = [&]
-  { return Eigen::VectorXd(J.transpose() * weights + soft.cwiseProduct(multipliers) - 2. * sums); };
-  Eigen::VectorXd residual = gradient();
-  for (int step = 0; residual.norm() > tolerance * std::sqrt(static_cast<double>(size)); ++step)
+  for (int step = 0;; ++step)
   {
-    if (step == most_steps || !residual.allFinite())
-      throw std::invalid_argument(
-        "the points are too scattered for positive weights: less scatter or a finer grid is needed");
+    const Eigen::VectorXd residual = J.transpose() * weights + soft.cwiseProduct(multipliers) - 2. * sums;
+    if (residual.norm() <= tolerance * std::sqrt(static_cast<double>(size)))
+      return;
+    support::require(step < most_steps && residual.allFinite(),
+                     "the points are too scattered for positive weights: less scatter or a finer grid is needed");
     const Eigen::VectorXd direction = newton_direction(J, weights, soft, -residual), along = J * direction;
     const auto function = [&](double share)
     {
@@ -79,7 +78,6 @@ void maximise_entropy(const Exponents &J, Eigen::VectorXd &weights)
       share *= 0.5;
     weights.array() *= (share * along).array().exp();
     multipliers += share * direction;
-    residual = gradient();
   }
 }
 
@@ -90,15 +88,11 @@ ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
     bounding_weights(lattice.n_kinds()), shortest(std::numeric_limits<double>::infinity())
 {
   const double h = lattice.spacing();
-  std::vector<std::ptrdiff_t> number(lattice.n_places(), -1); // of points; negative: beyond an edge
-  std::vector<Eigen::Vector2d> points(lattice.n_places());
   const auto n = static_cast<std::ptrdiff_t>(lattice.n_sites());
+  std::vector<std::ptrdiff_t> number(lattice.n_places(), -1); // of points; negative: beyond an edge
   for (std::size_t place = 0; place < lattice.n_places(); ++place)
-  {
-    points[place] = lattice.reference(place);
     if (lattice.is_occupied(place))
       number[place] = static_cast<std::ptrdiff_t>(lattice.site_number(lattice.canonical_place(place)));
-  }
 
   for (std::size_t first = 0, end = 0; first < lattice.n_kinds(); first = end)
   {
@@ -106,7 +100,7 @@ ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
     while (end < lattice.n_kinds() && lattice.ring_radius(end) == radius && lattice.shell(end) == lattice.shell(first))
       ++end;
     std::vector<Bond> links;
-    std::vector<double> tents;
+    std::vector<double> tents, squares; // of lengths
     std::vector<Eigen::Triplet<double, std::ptrdiff_t>> exponents;
     for (std::size_t place = 0; place < lattice.n_places(); ++place)
       for (std::size_t kind = first; kind < end; ++kind)
@@ -116,7 +110,7 @@ ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
         if (far >= lattice.n_places() || (number[place] < 0 && number[far] < 0) ||
             (!lattice.images().empty() && !lattice.is_site(place)))
           continue;
-        const Eigen::Vector2d R = points[far] - points[place];
+        const Eigen::Vector2d R = lattice.reference(far) - lattice.reference(place);
         const double length = R.norm(), weight = 1. - std::abs(length - radius) / h, angle = std::atan2(R.y(), R.x());
         if (!(weight > 1e-9))
           continue;
@@ -132,6 +126,7 @@ ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
         for (const auto &[point, sense] : {std::pair(number[place], 1.), std::pair(number[far], -1.)})
           if (point >= 0)
           {
+            bonds_of_point += 1. / static_cast<double>(n);
             exponents.emplace_back(row, n_of_point * point, 1.);
             for (const int order : {1, 3})
               add_harmonic(n_of_point * point + order, order, sense * radius / length);
@@ -139,29 +134,22 @@ ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
         for (const int order : {2, 4})
           add_harmonic(n_of_point * n + order - 2, order, 1.);
         length_ratios[kind][place] = lattice.rest_length(kind) / length;
+        squares.push_back(std::pow(lattice.rest_length(kind) / length_ratios[kind][place], 2)); // as forces have it
         shortest = std::min(shortest, length);
       }
     Exponents J(static_cast<Eigen::Index>(links.size()), n_of_point * n + n_common);
     J.setFromTriplets(exponents.begin(), exponents.end());
     Eigen::VectorXd of_links = Eigen::VectorXd::Map(tents.data(), J.rows());
     maximise_entropy(J, of_links);
-
-    std::vector<double> crowding(static_cast<std::size_t>(n), 0.);
     for (std::size_t i = 0; i < links.size(); ++i)
-    {
-      const auto &[place, kind, far] = links[i];
-      const double weight = weights[kind][place] = of_links[static_cast<Eigen::Index>(i)];
-      const double length = lattice.rest_length(kind) / length_ratios[kind][place];
-      for (const std::ptrdiff_t point : {number[place], number[far]})
-        if (point >= 0)
-        {
-          crowding[static_cast<std::size_t>(point)] += 0.5 * weight / (length * length);
-          bonds_of_point += 1. / static_cast<double>(n);
-        }
-    }
+      weights[links[i].kind][links[i].near] = of_links[static_cast<Eigen::Index>(i)];
+
+    // Sums of q / |R|^2 over the half-bonds of points: columns of their sums.
+    const Eigen::VectorXd crowding =
+      J.transpose() * (0.5 * of_links.cwiseQuotient(Eigen::VectorXd::Map(squares.data(), J.rows())));
+    const double largest = crowding.head(n_of_point * n).reshaped(n_of_point, n).row(0).maxCoeff();
     for (std::size_t kind = first; kind < end; ++kind)
-      bounding_weights[kind] = *std::max_element(crowding.begin(), crowding.end()) *
-                               std::pow(lattice.rest_length(kind), 2) / static_cast<double>(end - first);
+      bounding_weights[kind] = largest * std::pow(lattice.rest_length(kind), 2) / static_cast<double>(end - first);
   }
 }
 

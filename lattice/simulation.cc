@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -32,9 +32,10 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
     for (const Field &variable : history.variables)
       fits = fits && variable.size() == lattice_.n_places() && history.stretch.size() == lattice_.n_places();
   }
-  require(fits, "the history of the bonds does not fit the lattice or the memories of the material");
-  require(state_.stiffness.empty() == (material_.disorder.stiffness.is_none() && lattice_.scattered() == nullptr),
-          "the stiffness of the bonds does not have the disorder of the material");
+  support::require(fits, "the history of the bonds does not fit the lattice or the memories of the material");
+  support::require(state_.stiffness.empty() ==
+                     (material_.disorder.stiffness.is_none() && lattice_.scattered() == nullptr),
+                   "the stiffness of the bonds does not have the disorder of the material");
   if (fracture_)
     fracture_->configure(state_, forces_);
   forces_.set_shortness_threshold(
@@ -186,7 +187,8 @@ void Simulation::cut_bonds(const std::vector<std::pair<std::size_t, std::size_t>
   if (!fracture_)
     throw std::logic_error("a sheet without fracture rules cannot be cut");
   for (const auto &[place, kind] : bonds)
-    require(lattice_.is_site(place) && kind < lattice_.n_kinds(), "only a bond that starts at a site can be cut");
+    support::require(lattice_.is_site(place) && kind < lattice_.n_kinds(),
+                     "only a bond that starts at a site can be cut");
   broken_ += fracture_->remove_bonds(state_, bonds);
   fracture_->locate_tip(state_);
   reinitialize_forces();
@@ -284,7 +286,6 @@ void Simulation::advance(double duration, double end)
 
 void Simulation::save(Snapshot &snapshot)
 {
-  snapshot.set_time(state_.time);
   Snapshot::Archive<false> saving(snapshot);
   archive(saving);
 }
@@ -317,18 +318,19 @@ const State &Simulation::gather(Rows rows)
 
 void Simulation::check_loaded(const BondStates &before, double energy) const
 {
-  require(state_.time >= 0., "`time` is negative");
-  require(parts_ >= 1 && parts_ <= most_parts && (parts_ & (parts_ - 1)) == 0,
-          "`parts` of a step are no power of two up to " + std::to_string(most_parts));
+  support::require(state_.time >= 0., "`time` is negative");
+  support::require(parts_ >= 1 && parts_ <= most_parts && (parts_ & (parts_ - 1)) == 0,
+                   "`parts` of a step are no power of two up to " + std::to_string(most_parts));
   // It was computed from the same input: only another compiler may have rounded otherwise.
-  require(std::abs(initial_energy_ - energy) <= 1e-9 * std::abs(energy), "`initial_energy` is not that of the case");
+  support::require(std::abs(initial_energy_ - energy) <= 1e-9 * std::abs(energy),
+                   "`initial_energy` is not that of the case");
   for (const std::size_t place : band_.known_sites())
     for (std::size_t kind = 0; kind < before.n_kinds(); ++kind)
-      require(before.present(place, kind) ||
-                (!state_.bonds.present(place, kind) && !state_.bonds.toughened(place, kind)),
-              "`bonds` has some that the sheet never had");
+      support::require(before.present(place, kind) ||
+                         (!state_.bonds.present(place, kind) && !state_.bonds.toughened(place, kind)),
+                       "`bonds` has some that the sheet never had");
   for (const std::uint8_t lost : state_.lost_bonds)
-    require(lost <= material_.coordination(lattice_), "`lost_bonds` are more than a site has");
+    support::require(lost <= material_.coordination(lattice_), "`lost_bonds` are more than a site has");
 }
 
 EnergyBalance Simulation::energies() const

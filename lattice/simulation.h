@@ -193,7 +193,8 @@ void Simulation::archive(Archive &archive)
       if constexpr (!Archive::loads && !is_snapshot)
         of_rows = band_.all_rows(of_rows);
       archive(name + name_of(account), of_rows);
-      require(of_rows.size() == lattice_.rows(), "`" + (name + name_of(account)) + "` is of a sheet of another size");
+      support::require(of_rows.size() == lattice_.rows(),
+                       "`" + (name + name_of(account)) + "` is of a sheet of another size");
     }
   archive("parts", parts_);
   archive("n_divided_steps", n_divided_steps_);

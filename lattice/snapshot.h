@@ -1,13 +1,12 @@
 #pragma once
 
 #include <algorithm>
-#include <cstring>
 #include <string>
 #include <type_traits>
 #include <vector>
 
-#include "lattice/bonds/require.h"
 #include "lattice/row_partition.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -26,19 +25,16 @@ void archive_rows(Archive &archive, const std::string &name, Vector &field, cons
     band.gather(field, {0, lattice.rows()});
     if (band.is_first())
       for (std::size_t row = 0; row < lattice.rows(); ++row)
-        values.insert(values.end(), &field[lattice.index(row, 0)],
-                      &field[lattice.index(row, 0)] + lattice.sites_in_row(row));
+        for (const std::size_t place : lattice.sites({row, row + 1}))
+          values.push_back(field[place]);
   }
   archive(name, values);
   if constexpr (Archive::loads)
   {
-    require(values.size() == lattice.n_sites(), "`" + name + "` is of a sheet of another size");
+    support::require(values.size() == lattice.n_sites(), "`" + name + "` is of a sheet of another size");
     for (const std::size_t row : rows)
-    {
-      const std::size_t place = lattice.index(row, 0);
-      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(lattice.site_number(place)), lattice.sites_in_row(row),
-                  &field[place]);
-    }
+      for (const std::size_t place : lattice.sites({row, row + 1}))
+        field[place] = values[lattice.site_number(place)];
   }
 }
 
@@ -47,8 +43,6 @@ class Snapshot
 {
 public:
   bool empty() const { return chunks_.empty(); } ///< whether nothing was saved
-  double time() const { return time_; }          ///< of the state saved [s]
-  void set_time(double time) { time_ = time; }
 
   /// Archive that saves to a snapshot or loads from it: the same values in the same order, without communication.
   template <bool is_loading>
@@ -83,16 +77,14 @@ public:
       auto &chunks = snapshot_.chunks_;
       if constexpr (loads)
       {
-        require(n_chunks_ < chunks.size() && chunks[n_chunks_].size() == n * sizeof(T),
-                "the snapshot is of another simulation");
-        if (n > 0)
-          std::memcpy(first, chunks[n_chunks_].data(), n * sizeof(T));
+        support::require(n_chunks_ < chunks.size() && chunks[n_chunks_].size() == n * sizeof(T),
+                         "the snapshot is of another simulation");
+        std::copy(chunks[n_chunks_].begin(), chunks[n_chunks_].end(), reinterpret_cast<char *>(first));
       }
       else
       {
         // Memory of an earlier snapshot is used again.
-        if (n_chunks_ == chunks.size())
-          chunks.emplace_back();
+        chunks.resize(std::max(chunks.size(), n_chunks_ + 1));
         const char *const bytes = reinterpret_cast<const char *>(first);
         chunks[n_chunks_].assign(bytes, bytes + n * sizeof(T));
       }
@@ -105,7 +97,6 @@ public:
   };
 
 private:
-  double time_ = 0.;
   std::vector<std::vector<char>> chunks_; // one per call of Archive::values()
 };
 

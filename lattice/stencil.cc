@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "lattice/bonds/require.h"
 #include "lattice/disorder.h"
 #include "support/dense.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -16,15 +16,6 @@ namespace
 {
 
 constexpr double round_off = 1e-9; // of lengths over h, and of angles
-
-// Harmonics of the direction of a bond. Their means over all directions are 1, 0, 0, 0, 0, which is the same as the
-// fourth moments of all directions.
-using Harmonics = Eigen::Matrix<double, 5, 1>;
-Harmonics harmonics(const Eigen::Vector2d &R)
-{
-  const double angle = std::atan2(R.y(), R.x());
-  return Harmonics{{1., std::cos(2. * angle), std::sin(2. * angle), std::cos(4. * angle), std::sin(4. * angle)}};
-}
 
 // Half-bonds of a ring whose lengths are nearer than `width` spacings to its radius, with weights that are not yet
 // corrected.
@@ -49,7 +40,8 @@ std::vector<HalfBond> half_bonds(const Grid &grid, const Ring &ring, double widt
   return found;
 }
 
-// Corrects weights q to q (1 + z / sqrt q), with the smallest sum of z^2 that gives them the means of all directions.
+// Corrects weights q to q (1 + z / sqrt q), with the smallest sum of z^2 that gives harmonics of directions their means
+// over all directions: 1, 0, 0, 0, 0, which is the same as the fourth moments of all directions.
 void correct(std::vector<HalfBond> &bonds)
 {
   Eigen::VectorXd root(bonds.size());
@@ -61,28 +53,20 @@ void correct(std::vector<HalfBond> &bonds)
   {
     bonds[i].weight /= sum;
     root[i] = std::sqrt(bonds[i].weight);
-    scaled.col(i) = root[i] * harmonics(bonds[i].vector);
+    const double angle = std::atan2(bonds[i].vector.y(), bonds[i].vector.x());
+    scaled.col(i) << 1., std::cos(2. * angle), std::sin(2. * angle), std::cos(4. * angle), std::sin(4. * angle);
+    scaled.col(i) *= root[i];
   }
   const Eigen::VectorXd missing = Eigen::VectorXd::Unit(5, 0) - scaled * root;
   if (missing.norm() < 1e-14) // three directions have these moments
     return;
   const Eigen::VectorXd z = support::shortest_least_squares(scaled, missing);
-  require((scaled * z - missing).norm() < 1e-12 && (root + z).minCoeff() > 0.,
-          "a ring has too few bonds in its arcs for isotropic fourth moments with positive weights: a finer grid or "
-          "wider arcs are needed");
+  support::require(
+    (scaled * z - missing).norm() < 1e-12 && (root + z).minCoeff() > 0.,
+    "a ring has too few bonds in its arcs for isotropic fourth moments with positive weights: a finer grid or "
+    "wider arcs are needed");
   for (std::size_t i = 0; i < bonds.size(); ++i)
     bonds[i].weight = root[i] * (root[i] + z[i]);
-}
-
-// Returns whether sums of the bonds' offsets reach all points of the grid: whether the largest common divisor of the
-// areas that two of them span is that of a cell.
-bool reach_all_points(const std::vector<HalfBond> &bonds)
-{
-  int divisor = 0;
-  for (std::size_t i = 0; i < bonds.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      divisor = std::gcd(divisor, bonds[i].columns * bonds[j].rows - bonds[j].columns * bonds[i].rows);
-  return divisor == 1;
 }
 
 } // namespace
@@ -93,9 +77,9 @@ Eigen::Vector2d Grid::from_row_frame(double along, double across) const
   return orientation == Orientation::rows_along_crack ? Eigen::Vector2d(u, v) : Eigen::Vector2d(v, u);
 }
 
-Eigen::Vector2d Scatter::displacement(std::ptrdiff_t row, std::ptrdiff_t column) const
+Eigen::Vector2d Scatter::displacement(std::size_t row, std::size_t column) const
 {
-  const std::uint64_t point = static_cast<std::uint64_t>(row) << 32u | static_cast<std::uint32_t>(column),
+  const std::uint64_t point = row << 32u | static_cast<std::uint32_t>(column),
                       key = splitmix64(splitmix64(splitmix64(seed) + 3) + point);
   return amplitude * Eigen::Vector2d(symmetric_uniform(splitmix64(key)), symmetric_uniform(splitmix64(key + 1)));
 }
@@ -120,25 +104,30 @@ std::vector<Ring> lattice_rings(double d, Orientation orientation, double half_w
   return {{d, nearest, 0, half_width}, {std::sqrt(3.) * d, turned - nearest, 1, half_width}};
 }
 
-std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings, const Scatter &scatter)
+std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings)
 {
-  require(grid.spacing > 0. && std::isfinite(grid.spacing), "the spacing of a grid must be positive");
+  const double scatter = grid.scatter.amplitude;
+  support::require(grid.spacing > 0. && std::isfinite(grid.spacing), "the spacing of a grid must be positive");
   std::vector<HalfBond> stencil;
   for (const Ring &ring : rings)
   {
-    require(ring.radius > 0. && std::isfinite(ring.radius) && ring.shell < n_shells,
-            "a ring needs a positive radius and a shell");
-    require(ring.half_width >= 0. && ring.half_width <= M_PI / 6. + round_off,
-            "the half-width of the arcs of a ring must be between 0 and 30 degrees");
+    support::require(ring.radius > 0. && std::isfinite(ring.radius) && ring.shell < n_shells,
+                     "a ring needs a positive radius and a shell");
+    support::require(ring.half_width >= 0. && ring.half_width <= M_PI / 6. + round_off,
+                     "the half-width of the arcs of a ring must be between 0 and 30 degrees");
     const Ring all_directions{ring.radius, ring.direction, ring.shell};
-    std::vector<HalfBond> bonds =
-      half_bonds(grid, scatter.amplitude > 0. ? all_directions : ring, 1. + std::sqrt(8.) * scatter.amplitude);
-    require(!bonds.empty(), "a ring has no bonds in its arcs: a finer grid or wider arcs are needed");
-    if (scatter.amplitude == 0.)
+    std::vector<HalfBond> bonds = half_bonds(grid, scatter > 0. ? all_directions : ring, 1. + std::sqrt(8.) * scatter);
+    support::require(!bonds.empty(), "a ring has no bonds in its arcs: a finer grid or wider arcs are needed");
+    if (scatter == 0.)
       correct(bonds);
     stencil.insert(stencil.end(), bonds.begin(), bonds.end());
   }
-  require(reach_all_points(stencil), "the bonds join not all points of the grid: wider arcs are needed");
+  // Sums of offsets reach all points if the areas that two of them span have that of a cell as largest common divisor.
+  int divisor = 0;
+  for (const HalfBond &a : stencil)
+    for (const HalfBond &b : stencil)
+      divisor = std::gcd(divisor, a.columns * b.rows - b.columns * a.rows);
+  support::require(divisor == 1, "the bonds join not all points of the grid: wider arcs are needed");
   return stencil;
 }
 

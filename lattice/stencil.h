@@ -27,7 +27,17 @@ inline constexpr std::array<const char *, n_shells> shell_names{{"nearest", "nex
 /// Distance of two rows of a triangular grid over its spacing.
 inline const double half_sqrt3 = std::sqrt(3.) / 2.;
 
-/// A grid of reference points without end, at column * a1 + row * a2.
+/// Random displacements of the points of a grid, independent of each other and of the number of points.
+struct Scatter
+{
+  double amplitude = 0.;  ///< largest displacement along x and along y, over the spacing [-], 0 to 0.5; 0: none
+  std::uint64_t seed = 0; ///< of the displacements, which are uniform in the square
+
+  /// Displacement of a point over the spacing [-]. @param row,column negative ones modulo 2^64
+  Eigen::Vector2d displacement(std::size_t row, std::size_t column) const;
+};
+
+/// A grid of reference points without end, at column * a1 + row * a2 before they are scattered.
 struct Grid
 {
   enum class Kind
@@ -40,6 +50,7 @@ struct Grid
   double spacing; ///< h [m], > 0
   /// Direction of its rows; x and y are exchanged where they are across the crack.
   Orientation orientation = Orientation::rows_along_crack;
+  Scatter scatter = {}; ///< of the points; none by default
 
   /// Vector of so many spacings along the rows and rows across them [m].
   Eigen::Vector2d from_row_frame(double along, double across) const;
@@ -79,16 +90,6 @@ std::vector<HalfBond> triangular_stencil(const Grid &grid);
 /// The rings that shells of the triangular lattice with spacing d [m] sample: of nearest and next-nearest neighbours.
 std::vector<Ring> lattice_rings(double d, Orientation orientation, double half_width);
 
-/// Random displacements of the points of a grid, independent of each other and of the number of points.
-struct Scatter
-{
-  double amplitude = 0.;  ///< largest displacement along x and along y, over the spacing [-], 0 to 0.5; 0: none
-  std::uint64_t seed = 0; ///< of the displacements, which are uniform in the square
-
-  /// Displacement of a point over the spacing [-].
-  Eigen::Vector2d displacement(std::ptrdiff_t row, std::ptrdiff_t column) const;
-};
-
 /// Half-bonds of rings on a grid. Those of scattered points are of all the pairs that a ring can join, in all
 /// directions; a sheet's construction gives them their weights, see ScatteredBonds.
 ///
@@ -105,6 +106,6 @@ struct Scatter
 ///
 /// On a triangular grid of the lattice's spacing, six directions give the first half-bonds of triangular_stencil(), bit
 /// for bit.
-std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings, const Scatter &scatter = {});
+std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings);
 
 } // namespace latcon::lattice

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <tuple>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -14,22 +15,25 @@ namespace
 std::size_t intervals(double extent, double pitch, bool is_even = false)
 {
   const std::size_t multiple = is_even ? 2 : 1;
-  require(extent < 1e9 * pitch, "a lattice has fewer than 1e9 rows and columns");
+  support::require(extent < 1e9 * pitch, "a lattice has fewer than 1e9 rows and columns");
   return multiple * static_cast<std::size_t>(std::lround(extent / (static_cast<double>(multiple) * pitch)));
+}
+
+// A number of rows or columns that is given modulo 2^64.
+double signed_number(std::size_t modulo)
+{
+  return static_cast<double>(static_cast<std::ptrdiff_t>(modulo));
 }
 
 // Returns whether half-bonds are those of the triangular lattice, of all shells or of the first two.
 bool has_triangular_kinds(const Grid &grid, const std::vector<HalfBond> &stencil)
 {
   const std::vector<HalfBond> triangular = triangular_stencil(grid);
+  const auto key = [](const HalfBond &b) { return std::tuple(b.columns, b.rows, b.rest_length, b.weight, b.shell); };
   return grid.kind == Grid::Kind::triangular &&
          (stencil.size() == n_bond_kinds || stencil.size() == 2 * n_kinds_per_shell) &&
          std::equal(stencil.begin(), stencil.end(), triangular.begin(),
-                    [](const HalfBond &a, const HalfBond &b)
-                    {
-                      return a.columns == b.columns && a.rows == b.rows && a.rest_length == b.rest_length &&
-                             a.weight == b.weight && a.shell == b.shell;
-                    });
+                    [key](const HalfBond &a, const HalfBond &b) { return key(a) == key(b); });
 }
 
 } // namespace
@@ -43,35 +47,36 @@ TriangularLattice::TriangularLattice(double spacing, double length, double heigh
 }
 
 TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBond> &stencil, double d, double length,
-                                     double height, Periodic periodic, const Scatter &scatter)
-  : grid_(grid), stencil_(stencil), d_(d), is_triangular_(has_triangular_kinds(grid, stencil)), periodic_(periodic),
-    scatter_(scatter)
+                                     double height, Periodic periodic)
+  : grid_(grid), stencil_(stencil), d_(d), is_triangular_(has_triangular_kinds(grid, stencil)), periodic_(periodic)
 {
   const double spacing = grid.spacing;
-  require(spacing > 0. && length > 0. && height > 0. && d > 0., "a lattice needs positive spacing, length and height");
-  require(!stencil.empty() && stencil.size() <= most_kinds, "a sheet has 1 to 127 half-bonds");
-  int columns_reach = 0;
-  for (const HalfBond &bond : stencil_)
+  support::require(spacing > 0. && length > 0. && height > 0. && d > 0.,
+                   "a lattice needs positive spacing, length and height");
+  support::require(!stencil.empty() && stencil.size() <= most_kinds, "a sheet has 1 to 127 half-bonds");
+  for (std::size_t kind = 0; kind < n_kinds(); ++kind)
   {
-    reach_ = std::max(reach_, static_cast<std::size_t>(bond.rows));
-    for (const int odd : {0, 1})
-      columns_reach = std::max(columns_reach, std::abs(bond.columns + (rows_shift() ? (bond.rows + odd) / 2 : 0)));
+    shortest_bond_ = std::min(shortest_bond_, rest_length(kind));
+    reach_ = std::max(reach_, static_cast<std::size_t>(rows_across(kind)));
+    for (const std::size_t row : {0u, 1u})
+      column_reach_ = std::max(column_reach_, static_cast<std::size_t>(std::abs(columns_across(kind, row))));
   }
-  column_reach_ = static_cast<std::size_t>(columns_reach);
   // An odd number of sites across the crack puts one on the line y = 0; rows repeat in pairs.
   const double along = rows_along_x() ? length : height, across = rows_along_x() ? height : length;
   columns_ = repeats_along() ? intervals(along, spacing) : intervals(along, spacing, !rows_along_x()) + 1;
   rows_ = intervals(across, grid.pitch() * spacing, rows_along_x() || repeats_across()) + (repeats_across() ? 0 : 1);
   // The margin of a periodic sheet is filled from the sheet once around, so it must not be wider.
-  require(columns_ >= (repeats_along() ? column_reach_ : 3) && rows_ >= (repeats_across() ? reach_ : 2),
-          "the sheet is too small for its lattice spacing: fewer than two rows or three columns");
+  support::require(columns_ >= (repeats_along() ? column_reach_ : 3) && rows_ >= (repeats_across() ? reach_ : 2),
+                   "the sheet is too small for its lattice spacing: fewer than two rows or three columns");
   const auto aligned = [](std::size_t n) { return (n + row_alignment - 1) / row_alignment * row_alignment; };
   first_column_ = aligned(column_reach_);
   stride_ = first_column_ + aligned(columns_ + column_reach_);
-  find_images();
-  if (scatter_.amplitude > 0.)
+  if (periodic_.x || periodic_.y)
+    find_images();
+  if (grid.scatter.amplitude > 0.)
   {
     scattered_ = std::make_shared<const ScatteredBonds>(*this);
+    shortest_bond_ = scattered_->shortest;
     for (std::size_t kind = 0; kind < n_kinds(); ++kind)
       stencil_[kind].weight = scattered_->bounding_weights[kind];
   }
@@ -79,38 +84,28 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
 
 void TriangularLattice::find_images()
 {
-  if (!periodic_.x && !periodic_.y)
-    return;
-  const auto beyond = static_cast<std::ptrdiff_t>(column_reach_), end = static_cast<std::ptrdiff_t>(columns_) + beyond;
   for (std::size_t place = 0; place < n_places(); ++place)
   {
     const std::size_t site = canonical_place(place);
-    const auto [row, column] = numbers(place);
-    const auto [site_row, site_column] = numbers(site);
-    // Not the missing end of an odd row.
-    if (site != place && is_site(site) && column >= -beyond && column < end)
-      images_.push_back(
-        {place, site,
-         grid_.from_row_frame(static_cast<double>(column - site_column), static_cast<double>(row - site_row))});
+    // Within reach of bonds, and not the missing end of an odd row.
+    if (site != place && is_site(site) && column_of(place) + column_reach_ < columns_ + 2 * column_reach_)
+      images_.push_back({place, site,
+                         grid_.from_row_frame(signed_number(column_of(place) - column_of(site)),
+                                              signed_number(row_of(place) - row_of(site)))});
   }
 }
 
 std::size_t TriangularLattice::canonical_place(std::size_t place) const
 {
-  const auto wrapped = [](std::ptrdiff_t number, std::size_t n)
-  { return (number + 8 * static_cast<std::ptrdiff_t>(n)) % static_cast<std::ptrdiff_t>(n); };
-  if (!periodic_.x && !periodic_.y)
-    return place;
-  const auto [row, column] = numbers(place);
-  const std::ptrdiff_t up = repeats_across() ? wrapped(row, rows_) - row : 0;
-  const std::ptrdiff_t along = repeats_along() ? wrapped(column, columns_) - column : 0;
-  return place + static_cast<std::size_t>(up) * stride() + static_cast<std::size_t>(along); // modulo 2^64
+  // Margins are narrower than eight periods.
+  return index(repeats_across() ? (row_of(place) + 8 * rows_) % rows_ : row_of(place),
+               repeats_along() ? (column_of(place) + 8 * columns_) % columns_ : column_of(place));
 }
 
 std::vector<std::size_t> TriangularLattice::sites(Rows rows, Rows columns) const
 {
   std::vector<std::size_t> places;
-  for (std::size_t row = rows.begin; row < rows.end; ++row)
+  for (std::size_t row = rows.begin; row < std::min(rows.end, rows_); ++row)
     for (std::size_t column = columns.begin; column < std::min(columns.end, sites_in_row(row)); ++column)
       places.push_back(index(row, column));
   return places;
@@ -118,30 +113,20 @@ std::vector<std::size_t> TriangularLattice::sites(Rows rows, Rows columns) const
 
 std::optional<std::size_t> TriangularLattice::row(std::ptrdiff_t number) const
 {
-  const auto n = static_cast<std::ptrdiff_t>(rows_);
-  if (repeats_across())
-    number = (number + n) % n;
-  return number >= 0 && number < n ? std::optional(static_cast<std::size_t>(number)) : std::nullopt;
-}
-
-double TriangularLattice::shortest_bond() const
-{
-  const auto is_shorter = [](const HalfBond &a, const HalfBond &b) { return a.rest_length < b.rest_length; };
-  return scattered_ ? scattered_->shortest
-                    : std::min_element(stencil_.begin(), stencil_.end(), is_shorter)->rest_length;
+  const std::size_t row = row_of(canonical_place(index(static_cast<std::size_t>(number), 0)));
+  return row < rows_ ? std::optional(row) : std::nullopt;
 }
 
 std::pair<Rows, Rows> TriangularLattice::window(const Eigen::Vector2d &lower, const Eigen::Vector2d &upper) const
 {
   const auto [along, across] = rows_along_x() ? std::pair(0, 1) : std::pair(1, 0);
   const Eigen::Vector2d first = grid_point(index(0, 0));
-  // One more at either end, since odd rows are shifted.
+  // One more at either end, since odd rows are shifted, and points scattered, by up to half a spacing.
   const auto between = [&](int axis, double pitch, std::size_t n)
   {
-    const auto clamped = [n](double number) { return static_cast<std::size_t>(std::clamp(number, 0., double(n))); };
-    const double scatter = scatter_.amplitude * grid_.spacing;
-    return Rows{clamped(std::floor((lower[axis] - first[axis] - scatter) / pitch) - 1.),
-                clamped(std::floor((upper[axis] - first[axis] + scatter) / pitch) + 2.)};
+    const auto number = [&](double X, double more)
+    { return static_cast<std::size_t>(std::clamp(std::floor((X - first[axis]) / pitch) + more, 0., double(n))); };
+    return Rows{number(lower[axis], -1.), number(upper[axis], 2.)};
   };
   return {between(across, site_area() / spacing(), rows_), between(along, spacing(), columns_)};
 }
@@ -149,21 +134,19 @@ std::pair<Rows, Rows> TriangularLattice::window(const Eigen::Vector2d &lower, co
 Eigen::Vector2d TriangularLattice::reference(std::size_t place) const
 {
   const Eigen::Vector2d X = grid_point(place);
-  if (scatter_.amplitude == 0.)
+  if (grid_.scatter.amplitude == 0.)
     return X;
-  const auto [row, column] = numbers(canonical_place(place));
-  return X + grid_.spacing * scatter_.displacement(row, column);
+  const std::size_t site = canonical_place(place);
+  return X + grid_.spacing * grid_.scatter.displacement(row_of(site), column_of(site));
 }
 
 Eigen::Vector2d TriangularLattice::grid_point(std::size_t place) const
 {
-  const auto [row, column] = numbers(place);
-  const double along = static_cast<double>(column) + (rows_shift() && row % 2 != 0 ? 0.5 : 0.);
-  const double across = static_cast<double>(row);
+  const double across = signed_number(row_of(place));
+  const double along = signed_number(column_of(place)) + (rows_shift() && row_of(place) % 2 != 0 ? 0.5 : 0.);
   // Centring before scaling keeps mirror sites at exactly opposite y.
-  if (rows_along_x())
-    return grid_.from_row_frame(along, across - 0.5 * static_cast<double>(rows_ - 1));
-  return grid_.from_row_frame(along - 0.5 * static_cast<double>(columns_ - 1), across);
+  const double middle = 0.5 * static_cast<double>((rows_along_x() ? rows_ : columns_) - 1);
+  return rows_along_x() ? grid_.from_row_frame(along, across - middle) : grid_.from_row_frame(along - middle, across);
 }
 
 } // namespace latcon::lattice

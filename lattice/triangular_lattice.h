@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -81,10 +80,9 @@ public:
   /// A sheet of a nonlocal continuum.
   /// @param stencil of the grid, by increasing shell; see ring_stencil()
   /// @param d spacing of the lattice whose shells the rings are [m], > 0
-  /// @param scatter of the points, which the stencil is for too
   /// @throws std::invalid_argument also for more half-bonds than `most_kinds`
   TriangularLattice(const Grid &grid, const std::vector<HalfBond> &stencil, double d, double length, double height,
-                    Periodic periodic = {}, const Scatter &scatter = {});
+                    Periodic periodic = {});
   static constexpr std::size_t most_kinds = 127; ///< half-bonds: those that a site has lost are counted in a byte
 
   double spacing() const { return grid_.spacing; } ///< h [m], distance of nearest sites; d of the triangular lattice
@@ -103,10 +101,9 @@ public:
   /// Number of a site, counted row by row from the lower left without gaps; what files call it.
   std::size_t site_number(std::size_t place) const
   {
-    const std::size_t row = row_of(place);
-    return row * columns_ - (rows_alternate() ? row / 2 : 0) + column_of(place);
+    return row_of(place) * columns_ - (rows_alternate() ? row_of(place) / 2 : 0) + column_of(place);
   }
-  std::size_t n_sites() const { return rows_ * columns_ - (rows_alternate() ? rows_ / 2 : 0); }
+  std::size_t n_sites() const { return site_number(index(rows_, 0)); }
   std::size_t stride() const { return stride_; }                           ///< places per row, margin included
   std::size_t n_places() const { return (rows_ + 2 * reach_) * stride(); } ///< length of every field, margin included
   static constexpr std::size_t row_alignment = 8;                          ///< in places: 64 bytes of a field
@@ -118,18 +115,18 @@ public:
   }
   /// Returns the row of this number, wrapped in a sheet that is periodic across rows; none outside of other sheets.
   std::optional<std::size_t> row(std::ptrdiff_t number) const;
+  /// Row of a place; in the margin below the sheet a negative number modulo 2^64, beyond all rows.
   std::size_t row_of(std::size_t place) const { return place / stride() - reach_; }
+  /// Column of a place, likewise in the margin to the left.
   std::size_t column_of(std::size_t place) const { return place % stride() - first_column_; }
   /// Returns whether a place, margin included, has a site that is not an image.
   bool is_site(std::size_t place) const
   {
-    const std::size_t row = row_of(place); // in the margin below and to the left numbers are beyond all others
-    return row < rows_ && column_of(place) < sites_in_row(row);
+    return row_of(place) < rows_ && column_of(place) < sites_in_row(row_of(place));
   }
+  static constexpr Rows all{0, std::numeric_limits<std::size_t>::max()}; ///< rows, or columns
   /// Places of the sites in some rows and columns, row by row.
-  std::vector<std::size_t> sites(Rows rows, Rows columns = {0, std::numeric_limits<std::size_t>::max()}) const;
-  /// Places of all sites, row by row.
-  std::vector<std::size_t> sites() const { return sites({0, rows_}); }
+  std::vector<std::size_t> sites(Rows rows = all, Rows columns = all) const;
 
   /// A place in the margin that is the image of a site one period away.
   struct Image
@@ -152,7 +149,6 @@ public:
   Eigen::Vector2d reference(std::size_t place) const;
   /// The same before points are scattered.
   Eigen::Vector2d grid_point(std::size_t place) const;
-  double scatter() const { return scatter_.amplitude; } ///< see Scatter
 
   /// Returns the bond of a kind that starts at a place; its far end need not be a site.
   Bond bond(std::size_t near, std::size_t kind) const { return {near, kind, near + shift(kind, row_of(near))}; }
@@ -167,14 +163,17 @@ public:
   bool is_triangular() const { return is_triangular_; }
   /// Rows from the start to the end of a bond of a kind, 0 to reach().
   std::ptrdiff_t rows_across(std::size_t kind) const { return stencil_[kind].rows; }
-  /// Offset from a place in `row` to the end of the bond of a kind that starts there, modulo 2^64.
-  std::size_t shift(std::size_t kind, std::size_t row) const
+  /// Columns from the start, in `row`, to the end of a bond of a kind.
+  std::ptrdiff_t columns_across(std::size_t kind, std::size_t row) const
   {
     // A bond to a row of the other parity leads half a spacing to one side, and rows of odd numbers begin there.
     const HalfBond &bond = stencil_[kind];
-    const auto rows = static_cast<std::size_t>(bond.rows);
-    const std::ptrdiff_t columns = bond.columns + (rows_shift() ? (bond.rows + static_cast<int>(row % 2)) / 2 : 0);
-    return rows * stride() + static_cast<std::size_t>(columns);
+    return bond.columns + (rows_shift() ? (bond.rows + static_cast<int>(row % 2)) / 2 : 0);
+  }
+  /// Offset from a place in `row` to the end of the bond of a kind that starts there, modulo 2^64.
+  std::size_t shift(std::size_t kind, std::size_t row) const
+  {
+    return static_cast<std::size_t>(rows_across(kind)) * stride() + static_cast<std::size_t>(columns_across(kind, row));
   }
 
   /// Reference bond vector R = X_neighbour - X_site of kind k [m]; that of the grid where points are scattered.
@@ -197,8 +196,7 @@ public:
   {
     return scattered_ ? Eigen::Vector2d(reference(bond.far) - reference(bond.near)) : bond_vector(bond.kind);
   }
-  /// Rest length of the shortest bond [m].
-  double shortest_bond() const;
+  double shortest_bond() const { return shortest_bond_; } ///< its rest length [m]
   /// D [m]: a bond of cross-section s V / D per sheet thickness, s being the area factor of its shell, has its share of
   /// the energy of the shell. The spacing d on the triangular lattice; d |R| / (3 q l) for a weight q in a ring of
   /// radius l. Where points are scattered it is that of a bound, and bonds have factors; see State::stiffness.
@@ -221,12 +219,6 @@ private:
     return grid_.from_row_frame(static_cast<double>(repeats_along() ? columns_ : columns_ - 1),
                                 static_cast<double>(repeats_across() ? rows_ : rows_ - 1));
   }
-  /// Numbers of the row and of the column of a place, in the margin those beyond the sheet.
-  std::array<std::ptrdiff_t, 2> numbers(std::size_t place) const
-  {
-    return {static_cast<std::ptrdiff_t>(place / stride()) - static_cast<std::ptrdiff_t>(reach_),
-            static_cast<std::ptrdiff_t>(place % stride()) - static_cast<std::ptrdiff_t>(first_column_)};
-  }
   void find_images();
 
   Grid grid_;
@@ -234,13 +226,13 @@ private:
   double d_;
   bool is_triangular_;
   std::size_t reach_ = 0, column_reach_ = 0;
+  double shortest_bond_ = std::numeric_limits<double>::infinity();
   std::size_t first_column_; // place of column 0 in its row
   Periodic periodic_;
   std::size_t rows_;
   std::size_t columns_;
   std::size_t stride_;
   std::vector<Image> images_;
-  Scatter scatter_;
   std::shared_ptr<const ScatteredBonds> scattered_;
 };
 

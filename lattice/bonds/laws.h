@@ -5,7 +5,7 @@
 #include <memory>
 #include <variant>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 /// @file
 /// Bond laws: energy, force and stiffness as functions of the stretch alone. What a bond adds that depends on its past
@@ -28,8 +28,8 @@ struct MooneyRivlinBond
   /// @throws std::invalid_argument unless a and b are non-negative, finite and not both 0
   MooneyRivlinBond(double a_, double b_) : a(a_), b(b_)
   {
-    require(a >= 0. && b >= 0. && a + b > 0. && a + b < std::numeric_limits<double>::infinity(),
-            "a Mooney-Rivlin bond needs constants a, b >= 0, one of them positive");
+    support::require(a >= 0. && b >= 0. && a + b > 0. && a + b < std::numeric_limits<double>::infinity(),
+                     "a Mooney-Rivlin bond needs constants a, b >= 0, one of them positive");
   }
 
   double a; ///< [Pa], >= 0
@@ -62,8 +62,8 @@ struct LinearBond
   /// @throws std::invalid_argument unless e is positive and finite
   explicit LinearBond(double modulus_) : modulus(modulus_)
   {
-    require(modulus > 0. && modulus < std::numeric_limits<double>::infinity(),
-            "a linear bond needs a positive modulus");
+    support::require(modulus > 0. && modulus < std::numeric_limits<double>::infinity(),
+                     "a linear bond needs a positive modulus");
   }
 
   double modulus; ///< e [Pa], > 0

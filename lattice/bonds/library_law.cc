@@ -5,7 +5,7 @@
 
 #include <dlfcn.h>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -49,7 +49,8 @@ LawLibrary::LawLibrary(const std::string &path)
 LibraryLaw::LibraryLaw(LawLibrary library, std::vector<double> parameters, double longest)
   : library_(std::move(library)), parameters_(std::move(parameters))
 {
-  require(parameters_.size() == library_.parameters.size(), "a law needs one value for each of its parameters");
+  support::require(parameters_.size() == library_.parameters.size(),
+                   "a law needs one value for each of its parameters");
   at_rest_ = derivatives(1.)[0];
   check(longest);
   const auto derivative = [this](std::size_t k) { return [this, k](double l) { return derivatives(l)[k]; }; };

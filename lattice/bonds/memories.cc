@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "lattice/bonds/require.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -41,13 +41,13 @@ Decay decay_over(double r)
 
 MaxwellMemory::MaxwellMemory(std::vector<Branch> branches) : branches_(std::move(branches))
 {
-  require(branches_.size() <= max_history_variables, "a Maxwell memory has at most " +
-                                                       std::to_string(max_history_variables) + " branches, not " +
-                                                       std::to_string(branches_.size()));
+  support::require(branches_.size() <= max_history_variables, "a Maxwell memory has at most " +
+                                                                std::to_string(max_history_variables) +
+                                                                " branches, not " + std::to_string(branches_.size()));
   for (const auto &[modulus, time] : branches_)
-    require(modulus > 0. && time > 0. && std::isfinite(modulus) && std::isfinite(time),
-            "a Maxwell branch needs a modulus > 0 and a relaxation time > 0, not " + std::to_string(modulus) +
-              " Pa and " + std::to_string(time) + " s");
+    support::require(modulus > 0. && time > 0. && std::isfinite(modulus) && std::isfinite(time),
+                     "a Maxwell branch needs a modulus > 0 and a relaxation time > 0, not " + std::to_string(modulus) +
+                       " Pa and " + std::to_string(time) + " s");
   set_duration(0.);
 }
 
@@ -79,25 +79,25 @@ void MaxwellMemory::set_duration(double duration)
 PlasticMemory::PlasticMemory(double E, double Y, double K)
   : modulus(E), yield_stress(Y), hardening(K), slip(1. / (E + K))
 {
-  require(E > 0. && Y > 0. && K >= 0. && std::isfinite(E + Y + K),
-          "a plastic memory needs a modulus > 0, a yield stress > 0 and a hardening >= 0, not " + std::to_string(E) +
-            " Pa, " + std::to_string(Y) + " Pa and " + std::to_string(K) + " Pa");
+  support::require(E > 0. && Y > 0. && K >= 0. && std::isfinite(E + Y + K),
+                   "a plastic memory needs a modulus > 0, a yield stress > 0 and a hardening >= 0, not " +
+                     std::to_string(E) + " Pa, " + std::to_string(Y) + " Pa and " + std::to_string(K) + " Pa");
 }
 
 CustomMemory::CustomMemory(std::shared_ptr<const CustomMemoryLaw> law) : law_(std::move(law))
 {
-  require(law_ != nullptr, "a memory needs a law");
+  support::require(law_ != nullptr, "a memory needs a law");
   const std::size_t n = law_->n_variables();
-  require(n >= 1 && n <= max_history_variables,
-          "a memory has 1 to " + std::to_string(max_history_variables) + " variables, not " + std::to_string(n));
+  support::require(n >= 1 && n <= max_history_variables, "a memory has 1 to " + std::to_string(max_history_variables) +
+                                                           " variables, not " + std::to_string(n));
   const double stiffness = law_->largest_stiffness();
-  require(stiffness >= 0. && std::isfinite(stiffness),
-          "a memory needs a finite stiffness >= 0, not " + std::to_string(stiffness) + " Pa");
+  support::require(stiffness >= 0. && std::isfinite(stiffness),
+                   "a memory needs a finite stiffness >= 0, not " + std::to_string(stiffness) + " Pa");
   std::array<double, max_history_variables> at_rest{};
   const double overstress = law_->advance(0., 1., 1., at_rest.data());
-  require(overstress == 0. && law_->stored_energy(1., at_rest.data()) == 0. &&
-            law_->dissipation(1., at_rest.data()) == 0.,
-          "a memory holds neither overstress nor energy while its variables are 0, and dissipates nothing");
+  support::require(overstress == 0. && law_->stored_energy(1., at_rest.data()) == 0. &&
+                     law_->dissipation(1., at_rest.data()) == 0.,
+                   "a memory holds neither overstress nor energy while its variables are 0, and dissipates nothing");
 }
 
 } // namespace latcon::lattice

@@ -32,7 +32,7 @@ TEST(Cutout, HoleTakesTheSitesInsideAndTheirBonds)
   {
     const TriangularLattice sheet = sheets::square(40., orientation);
     const double R = 8. * sheets::spacing;
-    const State state = with(sheet, RoundHole{R}, Eigen::Matrix2d::Identity());
+    const State state = with(sheet, {R, 0.}, Eigen::Matrix2d::Identity());
     const Eigen::Vector2d centre(0.5 * sheet.length(), 0.);
     double removed = 0.;
     for (const std::size_t place : sheet.sites())
@@ -63,7 +63,7 @@ TEST(Cutout, NotchLeavesNoBondAcrossItAndKeepsMirrorSymmetry)
   {
     const TriangularLattice sheet = sheets::square(24., orientation);
     const double length = 9. * sheets::spacing;
-    State state = with(sheet, Notch{length}, sheets::stretched(1., 1.2));
+    State state = with(sheet, {0., length}, sheets::stretched(1., 1.2));
     for_each_bond(state, sheet,
                   [&](const Bond &bond)
                   {
@@ -100,7 +100,7 @@ TEST(Cutout, NotchIsTheSameAtEveryScale)
   for (const double spacing : {1e-9, 1., 1e9})
   {
     const TriangularLattice sheet(spacing, 24. * spacing, 24. * spacing, Orientation::rows_across_crack);
-    const State state = with(sheet, Notch{9. * spacing}, Eigen::Matrix2d::Identity());
+    const State state = with(sheet, {0., 9. * spacing}, Eigen::Matrix2d::Identity());
     EXPECT_EQ(std::count(state.removed.begin(), state.removed.end(), 1), 6) << spacing;
   }
 }
@@ -124,11 +124,11 @@ TEST(Seed, LineTakesTheNearestRowFromTheNearestSite)
 {
   const TriangularLattice sheet = along();
   ASSERT_EQ(sheet.rows(), 23u);
-  EXPECT_EQ(seed_sites(sheet, SeedLine{3.1, 0., 4}), places_in_row(sheet, 11, 3, 4));  // X = 3.5, 4.5 ...
-  EXPECT_EQ(seed_sites(sheet, SeedLine{3., 0., 1}), places_in_row(sheet, 11, 3, 1));   // as near to 2.5: the larger
-  EXPECT_EQ(seed_sites(sheet, SeedLine{3.1, 0.8, 2}), places_in_row(sheet, 12, 3, 2)); // X = 3, 4
-  EXPECT_EQ(seed_sites(sheet, SeedLine{3.1, -0.5, 2}), places_in_row(sheet, 10, 3, 2));
-  EXPECT_EQ(seed_sites(sheet, SeedLine{3.1, std::sqrt(3.) / 4., 2}), places_in_row(sheet, 12, 3, 2)); // the larger
+  EXPECT_EQ(seed_line(sheet, {3.1, 0.}, 4), places_in_row(sheet, 11, 3, 4));  // X = 3.5, 4.5 ...
+  EXPECT_EQ(seed_line(sheet, {3., 0.}, 1), places_in_row(sheet, 11, 3, 1));   // as near to 2.5: the larger
+  EXPECT_EQ(seed_line(sheet, {3.1, 0.8}, 2), places_in_row(sheet, 12, 3, 2)); // X = 3, 4
+  EXPECT_EQ(seed_line(sheet, {3.1, -0.5}, 2), places_in_row(sheet, 10, 3, 2));
+  EXPECT_EQ(seed_line(sheet, {3.1, std::sqrt(3.) / 4.}, 2), places_in_row(sheet, 12, 3, 2)); // the larger
 }
 
 // Rows run along y, sqrt3 / 2 apart along x; a line along x has a site in every second one.
@@ -137,10 +137,10 @@ TEST(Seed, LineAcrossRowsTakesASiteOfEverySecondRow)
   const TriangularLattice sheet(1., 20., 20., Orientation::rows_across_crack);
   const std::size_t middle = sheet.columns() / 2;
   ASSERT_EQ(sheet.reference(sheet.index(0, middle)).y(), 0.);
-  EXPECT_EQ(seed_sites(sheet, SeedLine{3.4, 0., 3}),
+  EXPECT_EQ(seed_line(sheet, {3.4, 0.}, 3),
             (std::vector<std::size_t>{sheet.index(4, middle), sheet.index(6, middle), sheet.index(8, middle)}));
   // Half a spacing up stand the odd rows.
-  EXPECT_EQ(seed_sites(sheet, SeedLine{3.4, 0.4, 2}),
+  EXPECT_EQ(seed_line(sheet, {3.4, 0.4}, 2),
             (std::vector<std::size_t>{sheet.index(3, middle), sheet.index(5, middle)}));
 }
 
@@ -148,11 +148,11 @@ TEST(Seed, LineAcrossRowsTakesASiteOfEverySecondRow)
 TEST(Seed, SlitTakesTheSitesOfAClosedRectangle)
 {
   const TriangularLattice sheet = along();
-  EXPECT_EQ(seed_sites(sheet, SeedSlit{4., 0., 2., 1.8}),
+  EXPECT_EQ(seed_slit(sheet, {4., -0.9}, {6., 0.9}),
             (std::vector<std::size_t>{sheet.index(10, 4), sheet.index(12, 4), sheet.index(11, 4), sheet.index(10, 5),
                                       sheet.index(12, 5), sheet.index(11, 5), sheet.index(10, 6), sheet.index(12, 6)}));
-  EXPECT_EQ(seed_sites(sheet, SeedSlit{4., 0., 2., 0.}), places_in_row(sheet, 11, 4, 2));
-  EXPECT_EQ(seed_sites(sheet, SeedSlit{4., std::sqrt(3.) / 2., 2., 0.}), places_in_row(sheet, 12, 4, 3));
+  EXPECT_EQ(seed_slit(sheet, {4., 0.}, {6., 0.}), places_in_row(sheet, 11, 4, 2));
+  EXPECT_EQ(seed_slit(sheet, {4., std::sqrt(3.) / 2.}, {6., std::sqrt(3.) / 2.}), places_in_row(sheet, 12, 4, 3));
 }
 
 // In a sheet of 1e12 sites, of which no list can be made.
@@ -161,16 +161,16 @@ TEST(Seed, LooksOnlyWhereItIs)
   for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
   {
     const TriangularLattice sheet(1., 1e6, 1e6, orientation);
-    const std::vector<std::size_t> line = seed_sites(sheet, SeedLine{5e5, 0., 4});
+    const std::vector<std::size_t> line = seed_line(sheet, {5e5, 0.}, 4);
     ASSERT_EQ(line.size(), 4u);
     EXPECT_NEAR(sheet.reference(line.front()).x(), 5e5, 1.);
     EXPECT_EQ(sheet.reference(line.front()).y(), 0.);
-    const std::vector<std::size_t> slit = seed_sites(sheet, SeedSlit{5e5, 0., 10., 10.});
+    const std::vector<std::size_t> slit = seed_slit(sheet, {5e5, -5.}, {5e5 + 10., 5.});
     EXPECT_EQ(slit.size(), 115u);
     const auto X = [&sheet](std::size_t place)
     { return std::pair(sheet.reference(place).x(), sheet.reference(place).y()); };
     EXPECT_TRUE(std::is_sorted(slit.begin(), slit.end(), [&](auto a, auto b) { return X(a) < X(b); }));
-    EXPECT_THROW(seed_sites(sheet, SeedSlit{0., 0., 1e6, 1e5}), std::invalid_argument);
+    EXPECT_THROW(seed_slit(sheet, {0., -5e4}, {1e6, 5e4}), std::invalid_argument);
   }
 }
 

@@ -194,7 +194,7 @@ TEST_P(NonlocalSheet, HasFlanksThatDoNotPassEachOther)
   const std::size_t without_contact = n_turned(lattice, 1e-3 * d);
   EXPECT_GT(without_contact, 0u);
   // Single points fit into gaps between scattered ones.
-  EXPECT_LE(n_turned(lattice, 0.9 * d), lattice.scatter() > 0. ? without_contact / 10 : 0);
+  EXPECT_LE(n_turned(lattice, 0.9 * d), lattice.grid().scatter.amplitude > 0. ? without_contact / 10 : 0);
 }
 
 // Neither do sites of an unloaded flank touch, however close they are.

@@ -14,10 +14,9 @@ sheet(latcon::lattice::Grid::Kind kind, double m, double length, double height, 
 {
   using namespace latcon::lattice;
   const double d = sheets::spacing;
-  const Grid grid{kind, d / m, orientation};
+  const Grid grid{kind, d / m, orientation, {scatter, 5}};
   const std::vector<Ring> rings = lattice_rings(d, orientation, half_width * M_PI / 180.);
-  const Scatter points{scatter, 5};
-  return {grid, ring_stencil(grid, rings, points), d, length * d, height * d, {}, points};
+  return {grid, ring_stencil(grid, rings), d, length * d, height * d};
 }
 
 } // namespace nonlocal_sheets

@@ -62,7 +62,7 @@ inline std::unique_ptr<latcon::lattice::Simulation> start(const latcon::lattice:
     simulation->enable_contact(contact_like_nearest_bond(sheet, choice.material, choice.contact * d,
                                                          choice.contact_strength, choice.contact_strength));
   if (sheet.is_triangular())
-    simulation->cut(seed_sites(sheet, SeedSlit{4. * d, 0., 7.5 * d, 1.1 * d}));
+    simulation->cut(seed_slit(sheet, {4. * d, -0.55 * d}, {11.5 * d, 0.55 * d}));
   else
     simulation->cut_bonds(bonds_across(sheet, 4. * d, 12. * d, 0.1 * d));
   return simulation;

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "lattice/bonds/require.h"
 #include "lattice/site_fields.h"
+#include "support/require.h"
 
 namespace latcon::analysis
 {
@@ -99,9 +99,9 @@ public:
       for (std::size_t part = 0; part < n_parts; ++part)
       {
         const Sum &sum = sums_[part];
-        lattice::require(sum.values.cols() == 0 || sum.values.rows() == n_components[part],
+        support::require(sum.values.cols() == 0 || sum.values.rows() == n_components[part],
                          "the numbers of near-tip `values` and `weights` do not match");
-        lattice::require(sum.values.cols() == 0 || static_cast<std::size_t>(sum.values.cols()) == grid_.size(),
+        support::require(sum.values.cols() == 0 || static_cast<std::size_t>(sum.values.cols()) == grid_.size(),
                          "the near-tip sums belong to another grid");
       }
   }
@@ -122,7 +122,7 @@ private:
       archive("weights", of_points);
       const auto points = static_cast<Eigen::Index>(of_points.size());
       const Eigen::Index components = points > 0 ? static_cast<Eigen::Index>(all.size()) / points : 0;
-      lattice::require(all.size() == static_cast<std::size_t>(components * points),
+      support::require(all.size() == static_cast<std::size_t>(components * points),
                        "the numbers of near-tip `values` and `weights` do not match");
       values = Eigen::Map<const Eigen::ArrayXXd>(all.data(), components, points);
       weights = Eigen::Map<const Eigen::ArrayXd>(of_points.data(), points);
@@ -215,7 +215,7 @@ public:
     archive("n_pending", n_pending);
     if constexpr (Archive::loads)
     {
-      lattice::require(folded_.size() == n_blocks && n_pending <= path_.size(),
+      support::require(folded_.size() == n_blocks && n_pending <= path_.size(),
                        "`n_pending` exceeds the number of samples");
       pending_.assign(n_pending, {0., 0., 0, NearTipSums(grid_), {}});
     }
@@ -224,16 +224,16 @@ public:
     archive("calls_at_rest", calls_at_rest_);
     if constexpr (Archive::loads)
     {
-      lattice::require(samples() <= path_.size() && n_pending <= samples(),
+      support::require(samples() <= path_.size() && n_pending <= samples(),
                        "`samples` does not match the length of `path`");
-      lattice::require(!last_tip_ || (*last_tip_ < lattice_.n_places() && lattice_.is_site(*last_tip_)),
+      support::require(!last_tip_ || (*last_tip_ < lattice_.n_places() && lattice_.is_site(*last_tip_)),
                        "`last_tip` is not a site of the sheet");
       std::size_t folded = 0;
       for (const NearTipSums &sums : folded_)
         folded += sums.samples();
-      lattice::require(folded == samples() - n_pending, "`samples` does not match the number of samples taken");
+      support::require(folded == samples() - n_pending, "`samples` does not match the number of samples taken");
       for (const NearTipSample &sample : pending_)
-        lattice::require(sample.block < n_blocks && sample.sums.samples() == 1, "a pending sample is invalid");
+        support::require(sample.block < n_blocks && sample.sums.samples() == 1, "a pending sample is invalid");
     }
   }
 

@@ -167,7 +167,7 @@ EquivalentSheet equivalent_sheet(const lattice::TriangularLattice &lattice, cons
       ++removed;
       X.add(lattice.reference(place).x());
     }
-  if (std::holds_alternative<lattice::RoundHole>(cutout))
+  if (cutout.hole_radius > 0.)
     sheet.cut = std::sqrt(static_cast<double>(removed) * lattice.site_area() / M_PI) + recession;
   else
     // The cell of the last site ends half way to the next site on the line.

@@ -125,10 +125,8 @@ lattice::State lattice_state(const input::Case &input, const lattice::RowPartiti
   { return input.continuum.edges[id].condition == Condition::held && !input.continuum.edges[id].is_roller(); };
   lattice::State state =
     lattice::homogeneous_state(band, input.material(), input.deformation(), {held(0), held(1), held(2), held(3)});
-  if (input.hole_radius > 0.)
-    lattice::cut_out(state, band.lattice(), lattice::RoundHole{input.hole_radius});
-  if (input.notch_length > 0.)
-    lattice::cut_out(state, band.lattice(), lattice::Notch{input.notch_length});
+  if (input.has_inner_edge())
+    lattice::cut_out(state, band.lattice(), {input.hole_radius, input.notch_length});
   return state;
 }
 

@@ -31,14 +31,14 @@ void Motion::check_loaded()
   step_ = checkpoints_.found()->step;
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double done = static_cast<double>(step_), frames = static_cast<double>(n_frames());
-  lattice::require(time() == checkpoints_.found()->time, "`time` differs from that in `run`");
+  support::require(time() == checkpoints_.found()->time, "`time` differs from that in `run`");
   // Steps may have been added up one by one.
-  lattice::require(std::abs(time() - done * time_step_) <= std::max(4., done) * epsilon * time(),
+  support::require(std::abs(time() - done * time_step_) <= std::max(4., done) * epsilon * time(),
                    "`time` does not match the number of steps");
-  lattice::require(done == 0. || time() <= input_.end_time + time() / done, "`time` is after the end");
+  support::require(done == 0. || time() <= input_.end_time + time() / done, "`time` is after the end");
   // One frame at the start and one per interval, but at most one per step.
   if (input_.frame_interval > 0.)
-    lattice::require(frames >= 1. && frames <= done + 1. &&
+    support::require(frames >= 1. && frames <= done + 1. &&
                        std::abs(next_frame_ - frames * input_.frame_interval) <= frames * epsilon * next_frame_,
                      "`next_frame` does not follow the frames that there are");
 }

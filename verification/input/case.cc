@@ -160,8 +160,9 @@ std::vector<std::size_t> Case::seed(const lattice::TriangularLattice &lattice) c
 {
   const double position = seed_position * lattice.length();
   if (seed_shape == SeedShape::slit)
-    return lattice::seed_sites(lattice, lattice::SeedSlit{position, seed_offset, seed_length, seed_height});
-  return lattice::seed_sites(lattice, lattice::SeedLine{position, seed_offset, seed_sites});
+    return lattice::seed_slit(lattice, {position, seed_offset - 0.5 * seed_height},
+                              {position + seed_length, seed_offset + 0.5 * seed_height});
+  return lattice::seed_line(lattice, {position, seed_offset}, seed_sites);
 }
 
 Case::Cut Case::seed_cut(const lattice::TriangularLattice &sheet) const

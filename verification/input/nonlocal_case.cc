@@ -83,16 +83,14 @@ lattice::TriangularLattice NonlocalCase::sheet(const Case &input) const
 
 lattice::TriangularLattice NonlocalCase::new_sheet(const Case &input) const
 {
-  const lattice::Grid points{grid, input.spacing / refinement, input.orientation};
+  const lattice::Grid points{grid, input.spacing / refinement, input.orientation, {scatter, input.noise_seed}};
   std::vector<lattice::Ring> rings =
     lattice::lattice_rings(input.spacing, input.orientation, std::min(half_width, M_PI / 6.));
   rings.push_back({2. * input.spacing, rings[0].direction, 2, rings[0].half_width});
   rings.erase(std::remove_if(rings.begin(), rings.end(),
                              [&](const lattice::Ring &ring) { return !input.has_shell(ring.shell); }),
               rings.end());
-  const lattice::Scatter scattered{scatter, input.noise_seed};
-  return {points,   lattice::ring_stencil(points, rings, scattered), input.spacing, input.length, input.height, {},
-          scattered};
+  return {points, lattice::ring_stencil(points, rings), input.spacing, input.length, input.height};
 }
 
 } // namespace latcon::input

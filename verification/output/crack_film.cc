@@ -61,7 +61,7 @@ void CrackFilm::follow_record()
       pass(tip.X);
     }
   if (is_enabled_)
-    lattice::require(frames_->times() == times, "`times` of frames do not match the record of the tip");
+    support::require(frames_->times() == times, "`times` of frames do not match the record of the tip");
 }
 
 void CrackFilm::add_frame()

@@ -8,8 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lattice/bonds/require.h"
 #include "support/errors.h"
+#include "support/require.h"
 #include "verification/analysis/fragments.h"
 
 namespace latcon::output
@@ -147,8 +147,8 @@ lattice::EnergyBalance CrackRecord::checked_energies()
           << " at X = " << X.x() << " m, Y = " << X.y() << " m, with " << fastest.speed << " m/s; ";
   if (!last_valid_state_.empty())
   {
-    message << "the last frame shows the last valid state, at " << last_valid_state_.time() << " s; ";
     simulation_.restore(last_valid_state_);
+    message << "the last frame shows the last valid state, at " << simulation_.state().time << " s; ";
   }
   message << "try a smaller " << step_entry_;
   throw support::SolverError(message.str());
@@ -156,7 +156,7 @@ lattice::EnergyBalance CrackRecord::checked_energies()
 
 void CrackRecord::check_loaded() const
 {
-  using lattice::require;
+  using support::require;
   const lattice::TriangularLattice &sheet = simulation_.lattice();
   const auto is_site = [&](std::size_t place) { return place < sheet.n_places() && sheet.is_site(place); };
   require(last_tip_.has_value() == !tip_.records().empty() && (!last_tip_ || is_site(*last_tip_)),

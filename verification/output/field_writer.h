@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "lattice/bonds/require.h"
 #include "lattice/state.h"
+#include "support/require.h"
 #include "verification/analysis/near_tip_fields.h"
 
 namespace latcon::output
@@ -55,7 +55,7 @@ public:
   {
     archive("times", times_);
     if constexpr (Archive::loads)
-      lattice::require(std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>()) == times_.end() &&
+      support::require(std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>()) == times_.end() &&
                          (times_.empty() || times_.front() >= 0.),
                        "`times` of frames do not increase from 0");
   }

@@ -36,7 +36,7 @@ void TipHistory::check_loaded(const double now) const
 {
   require_increasing_times(records_, now, "tip", [](const analysis::TipRecord &tip) { return tip.t; });
   for (const analysis::TipRecord &tip : records_)
-    lattice::require(std::abs(tip.X) <= length_ + spacing_, "`tip` is outside the sheet");
+    support::require(std::abs(tip.X) <= length_ + spacing_, "`tip` is outside the sheet");
 }
 
 } // namespace latcon::output

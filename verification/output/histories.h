@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "lattice/bonds/require.h"
 #include "lattice/energy.h"
 #include "lattice/material.h"
+#include "support/require.h"
 #include "verification/analysis/crack_records.h"
 #include "verification/output/csv.h"
 #include "verification/output/energy_ledger.h"
@@ -60,7 +60,7 @@ void require_increasing_times(const History &history, double now, const std::str
   double before = 0.;
   for (const auto &element : history)
   {
-    lattice::require(time_of(element) >= before && time_of(element) <= now,
+    support::require(time_of(element) >= before && time_of(element) <= now,
                      "times of `" + name + "` do not increase up to the current time");
     before = time_of(element);
   }
@@ -151,9 +151,9 @@ public:
       archive("mechanism_energies", of_mechanisms_);
     if constexpr (Archive::loads)
     {
-      lattice::require(!rows_.empty(), "`energies` is empty");
+      support::require(!rows_.empty(), "`energies` is empty");
       require_increasing_times(rows_, now, "energies", [](const Row &row) { return row.time; });
-      lattice::require(of_mechanisms_.size() == 2 * mechanisms_.size() * rows_.size(),
+      support::require(of_mechanisms_.size() == 2 * mechanisms_.size() * rows_.size(),
                        "the number of `mechanism_energies` does not match `energies`");
     }
   }

@@ -189,11 +189,11 @@ void NearTipRecord::check_loaded() const
   {
     const std::size_t n = block.backward_speeds.size();
     samples += n;
-    lattice::require(block.vortices.size() == n && block.following_speeds.size() == n && block.asymmetry.size() <= n &&
+    support::require(block.vortices.size() == n && block.following_speeds.size() == n && block.asymmetry.size() <= n &&
                        block.wedge_angle.size() <= n,
                      "`blocks` have different numbers of samples");
   }
-  lattice::require(samples == sampler_.samples(), "the number of samples in `blocks` does not match the number taken");
+  support::require(samples == sampler_.samples(), "the number of samples in `blocks` does not match the number taken");
 }
 
 void NearTipRecord::step()

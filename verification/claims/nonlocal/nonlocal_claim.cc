@@ -109,12 +109,12 @@ public:
   void check(const NonlocalStencil &stencil, const Rows &rows)
   {
     const StencilSheet sheet(subject_, stencil.grid,
-                             planted_bonds(subject_, stencil.grid, options_, stencil.half_width, stencil.scatter),
-                             stencil.scatter, options_.planted_factors);
+                             planted_bonds(subject_, stencil.grid, options_, stencil.half_width),
+                             options_.planted_factors);
     moduli(sheet);
     homogeneous(sheet, rows);
     waves(sheet, stencil, rows);
-    if (stencil.scatter > 0.)
+    if (stencil.grid.scatter.amplitude > 0.)
     {
       const Eigen::Matrix2d F = Eigen::Vector2d(2.3, 2.8).asDiagonal();
       rows.add("force on a point at F = (2.3, 2.8) before it moves, rms over the sum of the tensions that meet there",
@@ -224,7 +224,8 @@ private:
         waves_.add((sheet.wave_stiffness(F, K) - mean).norm() /
                    (wave_bound(subject_, F, K) + longer * of_lengths + 1e-8 * mean.norm()));
       }
-    if (!subject_.is_stable() || stencil.scatter > 0.) // waves between scattered points are not longer than the sheet
+    // Waves between scattered points are not longer than the sheet.
+    if (!subject_.is_stable() || stencil.grid.scatter.amplitude > 0.)
       return;
     const Eigen::Matrix2d &F = subject_.deformation;
     for (const double degrees : stencil_wave_degrees)
@@ -322,13 +323,13 @@ private:
 } // namespace
 
 std::vector<lattice::HalfBond> planted_bonds(const bridge::Subject &subject, const lattice::Grid &grid,
-                                             const NonlocalOptions &options, double half_width, double scatter)
+                                             const NonlocalOptions &options, double half_width)
 {
   std::vector<lattice::Ring> rings =
     bridge::rings_of(subject.material, subject.spacing, subject.orientation, half_width);
   options.planted_rings(rings);
-  std::vector<lattice::HalfBond> bonds = lattice::ring_stencil(grid, rings, {scatter, 1});
-  if (scatter == 0.)
+  std::vector<lattice::HalfBond> bonds = lattice::ring_stencil(grid, rings);
+  if (grid.scatter.amplitude == 0.)
     options.planted_bonds(bonds);
   return bonds;
 }
@@ -340,8 +341,10 @@ std::vector<NonlocalStencil> fixed_stencils(double d, lattice::Orientation orien
        {std::pair(lattice::Grid::Kind::square, "square"), std::pair(lattice::Grid::Kind::triangular, "triangular")})
     for (const auto &[m, text] : {std::pair(1.5, "1.5"), std::pair(2., "2"), std::pair(3., "3")})
       list.push_back({std::string(name) + " grid, m = " + text, {kind, d / m, orientation}});
-  list.push_back({"scattered points of a square grid, m = 1.5", list[0].grid, M_PI / 6., 0.5});
-  list.push_back({"scattered points of a triangular grid, m = 2", list[4].grid, M_PI / 6., 0.5});
+  lattice::Grid square = list[0].grid, triangular = list[4].grid;
+  square.scatter = triangular.scatter = {0.5, 1};
+  list.push_back({"scattered points of a square grid, m = 1.5", square});
+  list.push_back({"scattered points of a triangular grid, m = 2", triangular});
   return list;
 }
 
@@ -367,14 +370,14 @@ ClaimOutcome check_nonlocal(const ClaimInput &input)
   const input::NonlocalCase &own = input.entries.nonlocal;
   const auto is_own = [&](const NonlocalStencil &fixed)
   {
-    return fixed.grid.kind == own.grid && fixed.half_width <= own.half_width && fixed.scatter == own.scatter &&
+    return fixed.grid.kind == own.grid && fixed.half_width <= own.half_width &&
+           fixed.grid.scatter.amplitude == own.scatter &&
            std::abs(fixed.grid.spacing * own.refinement / subject.spacing - 1.) < 1e-12;
   };
   if (std::none_of(options.stencils.begin(), options.stencils.end(), is_own))
     options.stencils.push_back({"stencil of the case",
-                                {own.grid, subject.spacing / own.refinement, subject.orientation},
-                                support::smallest_of({own.half_width, M_PI / 6.}),
-                                own.scatter});
+                                {own.grid, subject.spacing / own.refinement, subject.orientation, {own.scatter, 1}},
+                                support::smallest_of({own.half_width, M_PI / 6.})});
   options.samples = input.quick ? 10 : 100;
   options.breaking_stretch = input.entries.breaking_stretch.value_or(options.breaking_stretch);
   ClaimOutcome outcome{nonlocal_claim(subject, options), {}};

@@ -19,7 +19,6 @@ struct NonlocalStencil
   std::string name; ///< in rows: "square grid, m = 2"
   lattice::Grid grid;
   double half_width = M_PI / 6.; ///< of the arcs of its rings [rad]
-  double scatter = 0.;           ///< of its points; see lattice::Scatter
 };
 
 /// What the claim is checked for.
@@ -54,8 +53,7 @@ output::Results nonlocal_claim(const bridge::Subject &subject, const NonlocalOpt
 
 /// Returns the half-bonds of rings on a grid, with the faults that tests plant.
 std::vector<lattice::HalfBond> planted_bonds(const bridge::Subject &subject, const lattice::Grid &grid,
-                                             const NonlocalOptions &options, double half_width = M_PI / 6.,
-                                             double scatter = 0.);
+                                             const NonlocalOptions &options, double half_width = M_PI / 6.);
 
 /// Rows of the claim `nonlocal` on the orders in 1/m with which rings in all directions converge to the network and to
 /// the lattice's mean over rotations.
@@ -70,7 +68,7 @@ public:
 
   /// @param planted changes of the factors of bonds between scattered points
   StencilSheet(const bridge::Subject &subject, const lattice::Grid &grid, std::vector<lattice::HalfBond> half_bonds,
-               double scatter, Planted planted);
+               Planted planted);
 
   const std::vector<lattice::HalfBond> &half_bonds() const { return half_bonds_; }
 

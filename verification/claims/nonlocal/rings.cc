@@ -32,7 +32,13 @@ enum RingQuantity
 };
 using RingErrors = std::array<double, n_ring_quantities>;
 
-constexpr double side = 12., scattered_side = 24.; // of sheets, in spacings of the lattice
+lattice::TriangularLattice sheet_of(const bridge::Subject &subject, const lattice::Grid &grid,
+                                    const std::vector<lattice::HalfBond> &half_bonds)
+{
+  const bool is_scattered = grid.scatter.amplitude > 0.;
+  const double side = (is_scattered ? 24. : 12.) * subject.spacing;
+  return {grid, half_bonds, subject.spacing, side, side, {is_scattered, is_scattered}};
+}
 
 } // namespace
 
@@ -95,11 +101,9 @@ void ring_convergence(const bridge::Subject &subject, const NonlocalOptions &opt
 }
 
 StencilSheet::StencilSheet(const bridge::Subject &subject, const lattice::Grid &grid,
-                           std::vector<lattice::HalfBond> half_bonds, double scatter, Planted planted)
+                           std::vector<lattice::HalfBond> half_bonds, Planted planted)
   : material_(lattice::without_dashpots(subject.material)), half_bonds_(std::move(half_bonds)),
-    sheet_(grid, half_bonds_, subject.spacing, (scatter > 0. ? scattered_side : side) * subject.spacing,
-           (scatter > 0. ? scattered_side : side) * subject.spacing, {scatter > 0., scatter > 0.}, {scatter, 1}),
-    planted_(std::move(planted))
+    sheet_(sheet_of(subject, grid, half_bonds_)), planted_(std::move(planted))
 {
 }
 

@@ -124,7 +124,7 @@ CutSheet sheet_with_hole(const bridge::Subject &subject, double R, const Eigen::
   const double pitch_x = rows_along_x ? along : across, pitch_y = rows_along_x ? across : along;
   const double length = pitch_x * std::round(5. * R / pitch_x), height = pitch_y * std::round(4. * R / pitch_y);
   const double radius = roundest_radius(subject, R, length, height);
-  return {lattice::RoundHole{radius}, radius, length, height, lattice::Edges::held, F};
+  return {{radius, 0.}, radius, length, height, lattice::Edges::held, F};
 }
 
 CutSheet sheet_with_notch(const bridge::Subject &subject, double a, const Eigen::Matrix2d &F)
@@ -138,7 +138,7 @@ CutSheet sheet_with_notch(const bridge::Subject &subject, double a, const Eigen:
     if (std::abs(X.y()) < 0.1 * subject.spacing && X.x() < a + 0.1 * subject.spacing)
       inside.add(X.x());
   }
-  return {lattice::Notch{inside.largest() + 0.25 * subject.spacing}, a, 4. * a, 4. * a, {false, true, true, true}, F};
+  return {{0., inside.largest() + 0.25 * subject.spacing}, a, 4. * a, 4. * a, {false, true, true, true}, F};
 }
 
 CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet)

@@ -42,7 +42,7 @@ struct CutSheet
   lattice::Edges held; ///< the other edges are free
   Eigen::Matrix2d F;   ///< of the held edges [-]
 
-  bool is_hole() const { return std::holds_alternative<lattice::RoundHole>(cutout); }
+  bool is_hole() const { return cutout.hole_radius > 0.; }
 };
 
 /// Sheet of about 5 R by 4 R with a hole in its middle, all edges held. The middle is a site, so that the staircase of

@@ -5,7 +5,7 @@
 #include <new>
 #include <type_traits>
 
-namespace latcon::lattice
+namespace latcon::support
 {
 
 /// Allocator of zeros that take memory only where they are touched: a large vector made as `Vector(n)` is zero pages,
@@ -47,4 +47,4 @@ struct ZeroPages
   friend bool operator!=(const ZeroPages &, const ZeroPages &) { return false; }
 };
 
-} // namespace latcon::lattice
+} // namespace latcon::support

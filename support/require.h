@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace latcon::lattice
+namespace latcon::support
 {
 
 /// Refuses an argument, or a value that an archive holds, before it is used. @throws std::invalid_argument
@@ -13,4 +13,4 @@ void require(bool holds, const Text &problem)
     throw std::invalid_argument(problem);
 }
 
-} // namespace latcon::lattice
+} // namespace latcon::support
