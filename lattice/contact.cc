@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include <omp.h>
+
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -31,15 +32,12 @@ ContactLaw contact_like_nearest_bond(const TriangularLattice &lattice, const Mat
 }
 
 Contact::Contact(const RowPartition &band, const ContactLaw &law)
-  : band_(band), lattice_(band.lattice()), law_(law),
-    skin_(skin_over_distance * law.distance), own_{lattice_.index(band.rows().begin, 0),
-                                                   lattice_.index(band.rows().end, 0)},
+  : band_(band), lattice_(band.lattice()), law_(law), skin_(skin_over_distance * law.distance),
     cells_(law.distance + skin_), sent_(band.n_ranks()), received_(band.n_ranks())
 {
-  if (!(law.stiffness > 0.) || !(law.viscosity >= 0.))
-    throw std::invalid_argument("a contact needs a positive stiffness and a viscosity that is not negative");
-  if (!lattice_.images().empty())
-    throw std::invalid_argument("sites of a periodic sheet do not touch: it does not break");
+  support::require(law.stiffness > 0. && law.viscosity >= 0.,
+                   "a contact needs a positive stiffness and a viscosity that is not negative");
+  support::require(lattice_.images().empty(), "sites of a periodic sheet do not touch: it does not break");
 }
 
 void Contact::find_candidates(const State &state)
@@ -71,7 +69,8 @@ void Contact::update_lists(const State &state)
   for (const auto &[place, candidate] : candidates_)
   {
     const Eigen::Vector2d here = state.position.at(place);
-    if (owns(place) && (!candidate.is_listed || (here - candidate.listed_at).squaredNorm() > 0.25 * skin_ * skin_))
+    if (band_.owns(place) &&
+        (!candidate.is_listed || (here - candidate.listed_at).squaredNorm() > 0.25 * skin_ * skin_))
       own.push_back({place, here.x(), here.y()});
   }
   const std::vector<Listing> all = band_.all_gather(own);
@@ -103,7 +102,7 @@ void Contact::list(const State &state, std::size_t place, const Eigen::Vector2d 
 // contact only if they were farther apart than the contact distance from the start.
 bool Contact::may_touch(const State &state, std::size_t first, std::size_t second) const
 {
-  if (!owns(first) && !owns(second))
+  if (!band_.owns(first) && !band_.owns(second))
     return false;
   const auto [near, far] = std::minmax({first, second}); // bonds lead to larger places
   for (std::size_t kind = 0; kind < state.bonds.n_kinds(); ++kind)
@@ -119,9 +118,9 @@ void Contact::find_exchanged_sites()
     sites->assign(band_.n_ranks(), {});
   for (const auto &[first, candidate] : candidates_)
     for (const std::size_t second : candidate.above)
-      if (owns(first) != owns(second))
+      if (band_.owns(first) != band_.owns(second))
       {
-        const auto [mine, theirs] = owns(first) ? std::pair(first, second) : std::pair(second, first);
+        const auto [mine, theirs] = band_.owns(first) ? std::pair(first, second) : std::pair(second, first);
         const std::size_t rank = band_.owner(lattice_.row_of(theirs));
         sent_[rank].push_back(mine);
         received_[rank].push_back(theirs);
@@ -152,9 +151,9 @@ const std::vector<SiteForce> &Contact::evaluate(State &state, VectorField &veloc
     if (!(repulsion > 0.))
       return;
     const Eigen::Vector2d force = repulsion * direction;
-    if (owns(first))
+    if (band_.owns(first))
       forces.push_back({first, -force});
-    if (owns(second))
+    if (band_.owns(second))
       forces.push_back({second, force});
   };
   const std::size_t n_shares =

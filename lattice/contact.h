@@ -70,7 +70,6 @@ private:
     boost::container::flat_set<std::size_t> above;
   };
 
-  bool owns(std::size_t place) const { return place >= own_.begin && place < own_.end; }
   void update_lists(const State &state);
   void list(const State &state, std::size_t place, const Eigen::Vector2d &here);
   bool may_touch(const State &state, std::size_t first, std::size_t second) const;
@@ -80,7 +79,6 @@ private:
   const TriangularLattice &lattice_;
   ContactLaw law_;
   double skin_;
-  Rows own_;                                                      // places of the band, asked for each pair
   LinkCells cells_;                                               // of candidates, by their places
   boost::container::flat_map<std::size_t, Candidate> candidates_; // by place
   std::vector<std::vector<SiteForce>> forces_of_shares_;          // scratch

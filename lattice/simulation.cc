@@ -17,7 +17,9 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
     time_stepping_(time_stepping), forces_(band, material), fracture_(std::move(fracture)),
     powers_(of_constraint(0), std::vector<double>(lattice_.rows(), 0.)), work_(powers_)
 {
-  if (time_stepping.stages == 0)
+  if (time_stepping.make)
+    integrator_ = time_stepping.make(band, forces_);
+  else if (time_stepping.stages == 0)
     integrator_ = std::make_unique<VelocityVerlet>(band, forces_, time_stepping.step);
   else
     integrator_ = std::make_unique<RungeKuttaChebyshev>(band, forces_, time_stepping.step, time_stepping.stages);

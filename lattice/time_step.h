@@ -1,11 +1,15 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 
 #include "lattice/contact.h"
 
 namespace latcon::lattice
 {
+
+class Integrator;
 
 /// Time integrator of a motion, and its step.
 struct TimeStepping
@@ -15,6 +19,8 @@ struct TimeStepping
 
   double step;         ///< h [s], > 0
   unsigned int stages; ///< s of Runge-Kutta-Chebyshev, >= 2; 0: velocity Verlet
+  /// Makes an integrator with this step in place of velocity Verlet; null: none.
+  std::function<std::unique_ptr<Integrator>(const RowPartition &, Forces &)> make = {};
 
   unsigned int evaluations() const { return stages > 0 ? stages : 1; } ///< of all forces, in a step
 };

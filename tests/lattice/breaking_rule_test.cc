@@ -74,7 +74,7 @@ TEST(Fracture, AsksTheRuleAboutEachBond)
     return std::pair(near, next);
   };
   const Eigen::Matrix2d still = Eigen::Matrix2d::Zero();
-  for (const TimeStepping how : {TimeStepping{1e-9}, TimeStepping{1e-8, 3}})
+  for (const TimeStepping &how : {TimeStepping{1e-9}, TimeStepping{1e-8, 3}})
   {
     const auto [near, next] =
       broken(how, std::make_shared<CriticalStretch>(std::array<double, n_shells>{2., 1.4, 2.}), still);

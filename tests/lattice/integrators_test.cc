@@ -107,6 +107,47 @@ TEST_P(Integrators, ConvergeAtSecondOrderToOneMotion)
   }
 }
 
+// An integrator that no file of the library names: v' = v + h a, x' = x + h v'.
+struct SemiImplicitEuler : Integrator
+{
+  using Integrator::Integrator;
+  void step(State &state) override
+  {
+    for (const std::size_t place : band_.known_sites())
+    {
+      if (state.inverse_mass[place] > 0.)
+        state.velocity.add(place, time_step() * state.acceleration.at(place));
+      state.position.add(place, time_step() * state.velocity.at(place));
+    }
+    exchange_ghosts(state);
+    forces_.set_elapsed(time_step());
+    accelerate(state);
+    state.time += time_step();
+  }
+};
+
+TEST(OwnIntegrator, ConvergesAtItsOrderToTheMotionOfTheOthers)
+{
+  const TriangularLattice sheet = sheets::square(12);
+  const Material material = sheets::rubber_with_memory(0.);
+  const auto end = [&](std::size_t steps, bool is_own)
+  {
+    TimeStepping stepping(8e-5 / static_cast<double>(steps));
+    if (is_own)
+      stepping.make = [&](const RowPartition &band, Forces &forces)
+      { return std::make_unique<SemiImplicitEuler>(band, forces, stepping.step); };
+    State state = homogeneous_state(sheet, material, sheets::stretched(1.5, 1.4), Edges::held);
+    state.position.x[sheet.index(5, 5)] += 0.1 * sheets::spacing;
+    Simulation simulation(sheet, material, state, stepping);
+    for (std::size_t step = 0; step < steps; ++step)
+      simulation.step();
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(simulation.state().position.x.data(), sheet.n_places()));
+  };
+  const Eigen::VectorXd exact = end(1600, false);
+  const double coarse = (end(400, true) - exact).norm(), fine = (end(800, true) - exact).norm();
+  EXPECT_NEAR(std::log2(coarse / fine), 1., 0.1);
+}
+
 // Loads on free ends balance the stretched sheet in each stage, or it would not stay at rest.
 TEST(RungeKuttaChebyshev, AppliesForcesOnSitesInEachStage)
 {
