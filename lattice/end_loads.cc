@@ -26,11 +26,11 @@ Eigen::Matrix2d fast_tangent_along_x(const TriangularLattice &lattice, const Mat
 {
   Eigen::Matrix2d tangent = tangent_along_x(lattice, material, F);
   for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
-    if (const Shell *shell = material.shell(lattice, kind); shell && n_variables(shell->memory) > 0)
+    if (const Shell *shell = material.shell(lattice, kind); shell && properties(shell->memory).n_variables > 0)
     {
       const Eigen::Vector2d N = lattice.bond_vector(kind) / lattice.rest_length(kind), n = (F * N).normalized();
       tangent += cross_section(*shell, lattice, kind) * lattice.rest_length(kind) / lattice.site_area() * N.x() *
-                 N.x() * largest_stiffness(shell->memory) * n * n.transpose();
+                 N.x() * properties(shell->memory).largest_stiffness * n * n.transpose();
     }
   return tangent;
 }

@@ -25,8 +25,8 @@ Forces::Forces(const RowPartition &band, const Material &material)
   }
   for (std::size_t number = 0; number < n_shells; ++number)
     if (const Shell *shell = material.in_shell(number))
-      mechanism_gives_energy_.insert(mechanism_gives_energy_.end(), n_mechanisms(shell->memory),
-                                     dissipates_energy(shell->memory));
+      mechanism_gives_energy_.insert(mechanism_gives_energy_.end(), properties(shell->memory).n_mechanisms,
+                                     properties(shell->memory).dissipates_energy);
 }
 
 void Forces::set_elapsed(double duration)
@@ -271,7 +271,7 @@ void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, c
   const SingleBond removed = single_bond({state, vx, vy}, bond);
   sums.viscous_power -= removed.viscous_power;
   const std::size_t shell = lattice_.shell(bond.kind), first = material_.first_mechanism(shell);
-  for (std::size_t m = 0; m < n_mechanisms(material_.in_shell(shell)->memory); ++m)
+  for (std::size_t m = 0; m < properties(material_.in_shell(shell)->memory).n_mechanisms; ++m)
     sums.mechanism_power[first + m] -= removed.dissipation[m];
 }
 
@@ -300,7 +300,7 @@ Forces::SingleBond Forces::single_bond(const Motion &motion, const Bond &bond) c
   for (double &power : single.dissipation)
   {
     power = power * (section * rest_length) * factor;
-    if (!dissipates_energy(shell.memory))
+    if (!properties(shell.memory).dissipates_energy)
       single.viscous_power += power;
   }
   return single;

@@ -34,15 +34,30 @@ struct Lengths
   alignas(64) double inverse[2 * n_kinds_per_shell][block];
 };
 
-// The difference of a field between the ends of bonds. @tparam has_factors whether bonds may have a length_ratio
+// The value times the factors of bonds. @tparam has_factors whether there may be any
+template <bool has_factors>
+HWY_INLINE Lanes scaled(const double *factors, std::size_t site, Lanes value)
+{
+  if constexpr (has_factors)
+    return load_factors(factors, site) * value;
+  else
+    return value;
+}
+
+// The difference of a field between the ends of bonds.
 template <bool has_factors>
 HWY_INLINE Lanes difference(const BondsOfKind &bonds, const double *of_sites, std::size_t site, Lanes near)
 {
-  const Lanes apart = load(of_sites + site + static_cast<std::size_t>(bonds.shift)) - near;
-  if constexpr (has_factors)
-    return load_factors(bonds.length_ratio, site) * apart;
-  else
-    return apart;
+  return scaled<has_factors>(bonds.length_ratio, site,
+                             load(of_sites + site + static_cast<std::size_t>(bonds.shift)) - near);
+}
+
+// A component of the direction of bonds, from it and their inverse length.
+template <bool has_factors>
+HWY_INLINE Lanes direction(const BondsOfKind &bonds, const double *of_sites, std::size_t site, Lanes near,
+                           Lanes inverse)
+{
+  return scaled<has_factors>(bonds.length_ratio, site, difference<has_factors>(bonds, of_sites, site, near) * inverse);
 }
 
 template <std::size_t n_kinds, bool has_factors>
@@ -100,33 +115,24 @@ struct Running
 
 // Forces of the bonds of a kind.
 template <bool has_factors, class Law>
-HWY_INLINE void bonds_of_kind(const Law &law, const BondConstants &bond, const RowOfBonds &row,
-                              const BondsOfKind &bonds, std::size_t site, Lanes x, Lanes y, Lanes vx, Lanes vy,
-                              const double *length, const double *inverse_length, Running &so_far)
+HWY_INLINE void bonds_of_kind(const Law &law, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+                              std::size_t site, Lanes x, Lanes y, Lanes vx, Lanes vy, const Lengths &here,
+                              Running &so_far)
 {
+  const BondsOfKind &bonds = row.kinds[kind];
   const std::size_t far = site + static_cast<std::size_t>(bonds.shift);
-  const Lanes inverse = load(inverse_length);
-  Lanes nx = difference<has_factors>(bonds, row.x, site, x) * inverse,
-        ny = difference<has_factors>(bonds, row.y, site, y) * inverse;
-  if constexpr (has_factors)
-  {
-    nx = load_factors(bonds.length_ratio, site) * nx;
-    ny = load_factors(bonds.length_ratio, site) * ny;
-  }
+  const Lanes inverse = load(here.inverse[kind]);
+  const Lanes nx = direction<has_factors>(bonds, row.x, site, x, inverse),
+              ny = direction<has_factors>(bonds, row.y, site, y, inverse);
   const Lanes rate = (load(row.vx + far) - vx) * nx + (load(row.vy + far) - vy) * ny;
-  const Lanes stretch = stretch_of(bond, length);
+  const Lanes stretch = stretch_of(bond, here.length[kind]);
   const Lanes viscous = bond.damping * rate;
   const Lanes inverse_stretch = bond.rest_length * inverse;
-  Lanes axial = bond.cross_section * force(law, stretch, inverse_stretch) + viscous, power = viscous * rate;
-  if constexpr (has_factors)
-  {
-    const Lanes factor = load_factors(bonds.stiffness, site);
-    axial = factor * axial;
-    power = factor * power;
-  }
+  const Lanes axial =
+    scaled<has_factors>(bonds.stiffness, site, bond.cross_section * force(law, stretch, inverse_stretch) + viscous);
+  so_far.power = so_far.power + scaled<has_factors>(bonds.stiffness, site, viscous * rate);
   store(axial * nx, bonds.force[0] + site);
   store(axial * ny, bonds.force[1] + site);
-  so_far.power = so_far.power + power;
   // It is 0 for absent bonds.
   if constexpr (Law::stiffens_when_short)
     so_far.shortness = hn::Max(so_far.shortness, inverse_stretch);
@@ -145,8 +151,6 @@ void bonds_of_laws(const Law law, const SecondLaw second_law, const RowOfBonds &
   RowOfBonds row = given;
   row.kinds = kinds.data();
   const BondConstants first = kinds[0].constants, second = kinds[n_kinds - 1].constants;
-  const double *const *const ahead = row.ahead;
-  const std::size_t n_ahead = row.n_ahead;
   const double first_limit = std::min(row.breaking_stretch, row.toughened_stretch);
   const bool keeps_lengths =
     std::any_of(kinds.begin(), kinds.end(), [](const BondsOfKind &bonds) { return bonds.remembered != nullptr; });
@@ -165,8 +169,8 @@ void bonds_of_laws(const Law law, const SecondLaw second_law, const RowOfBonds &
     // Beyond the last site the first is done again, for nothing.
     find_lengths<n_kinds, has_factors>(row, site + width() < end ? site + width() : 0, lengths[1 - turn]);
     if (site % block == 0)
-      for (std::size_t i = 0; i < n_ahead; ++i)
-        hwy::Prefetch(ahead[i] + site);
+      for (std::size_t i = 0; i < row.n_ahead; ++i)
+        hwy::Prefetch(row.ahead[i] + site);
     const Lanes x = load(row.x + site), y = load(row.y + site), vx = load(row.vx + site), vy = load(row.vy + site);
     const Lengths &here = lengths[turn];
     if (HWY_UNLIKELY(keeps_lengths))
@@ -179,14 +183,12 @@ void bonds_of_laws(const Law law, const SecondLaw second_law, const RowOfBonds &
     Running so_far{sum, shortness, lanes(0.)};
     HWY_UNROLL(3)
     for (std::size_t kind = 0; kind < n_first; ++kind)
-      bonds_of_kind<has_factors>(law, first, row, kinds[kind], site, x, y, vx, vy, here.length[kind],
-                                 here.inverse[kind], so_far);
+      bonds_of_kind<has_factors>(law, first, row, kind, site, x, y, vx, vy, here, so_far);
     if constexpr (n_kinds > n_first)
     {
       HWY_UNROLL(3)
       for (std::size_t kind = n_first; kind < n_kinds; ++kind)
-        bonds_of_kind<has_factors>(second_law, second, row, kinds[kind], site, x, y, vx, vy, here.length[kind],
-                                   here.inverse[kind], so_far);
+        bonds_of_kind<has_factors>(second_law, second, row, kind, site, x, y, vx, vy, here, so_far);
     }
     sum = so_far.power;
     shortness = so_far.shortness;
@@ -206,8 +208,8 @@ template <std::size_t n_branches, class Memory>
 // cppcheck-suppress passedByValue ; copies, which no store can change
 void add_overstress(const Memory &memory, const RowOfBonds row, const BondsOfKind bonds, const RememberedRow remembered)
 {
-  const std::size_t n = n_branches > 0 ? n_branches : memory.n_variables();
-  const std::size_t n_mechanisms = n_branches > 0 ? n_branches : memory.n_mechanisms();
+  const std::size_t n = n_branches > 0 ? n_branches : memory.n_variables;
+  const std::size_t n_mechanisms = n_branches > 0 ? n_branches : memory.n_mechanisms;
   constexpr std::size_t n_sums = n_branches > 0 ? n_branches : max_history_variables;
   Lanes sums[n_sums][block];
   for (std::size_t m = 0; m < n_mechanisms; ++m)
@@ -219,9 +221,9 @@ void add_overstress(const Memory &memory, const RowOfBonds row, const BondsOfKin
   for (std::size_t site = 0; site < end; site += width())
   {
     const auto present = mask_of_bit(load_states(bonds.states + site), bonds.present);
-    const Lanes ratio = load_factors(bonds.length_ratio, site), inverse = load(bonds.lengths[1] + site);
-    const Lanes nx = ratio * (difference<true>(bonds, row.x, site, load(row.x + site)) * inverse),
-                ny = ratio * (difference<true>(bonds, row.y, site, load(row.y + site)) * inverse);
+    const Lanes inverse = load(bonds.lengths[1] + site);
+    const Lanes nx = direction<true>(bonds, row.x, site, load(row.x + site), inverse),
+                ny = direction<true>(bonds, row.y, site, load(row.y + site), inverse);
     const Lanes stretch = stretch_of(bonds.constants, bonds.lengths[0] + site);
     Lanes variables[n_sums], dissipation[n_sums];
     for (std::size_t v = 0; v < n; ++v)
@@ -269,7 +271,7 @@ void bonds_of_row(const RowOfBonds &row, RowSums &sums)
     const auto of_memory = [&](const auto &memory)
     {
       if constexpr (std::is_same_v<std::decay_t<decltype(memory)>, MaxwellMemory>)
-        switch (memory.n_variables())
+        switch (memory.n_variables)
         {
         case 1:
           return add_overstress<1>(memory, row, bonds, *bonds.remembered);
@@ -310,7 +312,7 @@ bool any_event_ahead(const RowOfBonds &row, double ahead)
                   {
                     const double l = bonds.constants.rest_length;
                     return are_events(row, bonds, site, squared_length_after(ahead, dx, dy, dvx, dvy),
-                                      [l](Lanes stretch) { return (l * stretch) * (l * stretch); });
+                                      [l](Lanes stretch) { return squared_length(stretch, l); });
                   });
 }
 
@@ -319,13 +321,10 @@ bool any_short_ahead(const RowOfBonds &row, double ahead, double stretch)
   return any_bond(row,
                   [&](const BondsOfKind &bonds, std::size_t site, Lanes dx, Lanes dy, Lanes dvx, Lanes dvy)
                   {
-                    // length + ahead min(product, 0) / length <= short length, without root or quotient.
-                    const Lanes square = dx * dx + dy * dy, product = dx * dvx + dy * dvy;
-                    const Lanes then_by_now = square + ahead * hn::Min(product, lanes(0.));
-                    const double length = stretch * bonds.constants.rest_length;
-                    const auto is_short = hn::Or(hn::Le(then_by_now, lanes(0.)),
-                                                 hn::Le(then_by_now * then_by_now, length * length * square));
-                    return hn::And(mask_of_bit(load_states(bonds.states + site), bonds.present), is_short);
+                    const Lanes length = hn::Sqrt(dx * dx + dy * dy), rate = (dx * dvx + dy * dvy) / length;
+                    const auto is_long =
+                      hn::Gt(length + ahead * hn::Min(rate, lanes(0.)), lanes(stretch * bonds.constants.rest_length));
+                    return hn::AndNot(is_long, mask_of_bit(load_states(bonds.states + site), bonds.present));
                   });
 }
 
@@ -362,35 +361,28 @@ void use_targets(std::int64_t targets)
   hwy::GetChosenTarget().Update(targets);
 }
 
-using Targets = std::vector<std::pair<std::string, std::int64_t>>;
-
 // Instruction sets that this processor has and for which the loops were compiled, the best first: from the one on that
 // the environment names.
-Targets find_targets()
+const std::vector<std::int64_t> &targets()
 {
-  const std::int64_t all = hwy::SupportedTargets() & HWY_TARGETS;
-  Targets targets;
-  std::string names;
-  for (std::int64_t left = all; left != 0; left &= left - 1) // better ones have lower bits
+  static const std::vector<std::int64_t> found = []
   {
-    targets.emplace_back(hwy::TargetName(left & -left), left & -left);
-    names += (names.empty() ? "" : ", ") + targets.back().first;
-  }
-  const char *const best = std::getenv("LATCON_INSTRUCTION_SET");
-  if (best == nullptr)
-    return targets;
-  while (!targets.empty() && targets.front().first != best)
-    targets.erase(targets.begin());
-  if (targets.empty())
-    throw std::invalid_argument("environment variable LATCON_INSTRUCTION_SET: `" + std::string(best) +
-                                "` is none of the instruction sets on this machine: " + names);
-  use_targets(all & -targets.front().second);
-  return targets;
-}
-
-const Targets &targets()
-{
-  static const Targets found = find_targets();
+    std::vector<std::int64_t> all = hwy::SupportedAndGeneratedTargets();
+    const char *const best = std::getenv("LATCON_INSTRUCTION_SET");
+    if (best == nullptr)
+      return all;
+    std::string names;
+    while (!all.empty() && hwy::TargetName(all.front()) != std::string(best))
+    {
+      names += (names.empty() ? "" : ", ") + std::string(hwy::TargetName(all.front()));
+      all.erase(all.begin());
+    }
+    if (all.empty())
+      throw std::invalid_argument("environment variable LATCON_INSTRUCTION_SET: `" + std::string(best) +
+                                  "` is none of the instruction sets on this machine: " + names);
+    use_targets(hwy::SupportedTargets() & -all.front()); // better ones have lower bits
+    return all;
+  }();
   return found;
 }
 
@@ -398,16 +390,15 @@ const Targets &targets()
 
 std::vector<std::string> instruction_sets()
 {
-  std::vector<std::string> names;
-  for (const auto &[name, target] : targets())
-    names.push_back(name);
+  std::vector<std::string> names(targets().size());
+  std::transform(targets().begin(), targets().end(), names.begin(), hwy::TargetName);
   return names;
 }
 
 void use_instruction_set(const std::string &wanted)
 {
-  for (const auto &[name, target] : targets())
-    if (name == wanted)
+  for (const std::int64_t target : targets())
+    if (hwy::TargetName(target) == wanted)
       return use_targets(target);
   throw std::invalid_argument("there is no instruction set " + wanted + " here");
 }

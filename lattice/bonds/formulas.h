@@ -9,12 +9,7 @@
 namespace latcon::lattice::formulas
 {
 
-/// Magnitude beyond a limit > 0.
-inline double excess(double value, double limit)
-{
-  const double beyond = std::abs(value) - limit;
-  return beyond > 0. ? beyond : 0.;
-}
+using std::abs;
 /// The value within a limit > 0.
 inline double clamped(double value, double limit)
 {
@@ -33,7 +28,7 @@ inline double advance(const CustomMemory &memory, std::size_t /*n*/, double befo
   *dissipation = 0.;
   if (!(now > 0.))
     return 0.;
-  const double earlier = memory.dissipates_energy() ? memory.law().dissipation(before, variables) : 0.;
+  const double earlier = memory.dissipates_energy ? memory.law().dissipation(before, variables) : 0.;
   const double overstress = memory.law().advance(memory.duration(), before, now, variables);
   *dissipation = memory.law().dissipation(now, variables) - earlier;
   return overstress;
@@ -56,7 +51,7 @@ inline double force(const BondLaw &law, double stretch)
 inline double advance(const BondMemory &memory, double before, double now, double *variables, double *dissipation)
 {
   return std::visit(
-    [&](const auto &m) { return formulas::advance(m, m.n_variables(), before, now, variables, dissipation); }, memory);
+    [&](const auto &m) { return formulas::advance(m, m.n_variables, before, now, variables, dissipation); }, memory);
 }
 
 } // namespace latcon::lattice
