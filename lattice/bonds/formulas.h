@@ -9,7 +9,12 @@
 namespace latcon::lattice::formulas
 {
 
-using std::abs;
+/// Magnitude beyond a limit > 0.
+inline double excess(double value, double limit)
+{
+  const double beyond = std::abs(value) - limit;
+  return beyond > 0. ? beyond : 0.;
+}
 /// The value within a limit > 0.
 inline double clamped(double value, double limit)
 {
