@@ -20,16 +20,6 @@ double CriticalStretch::limit(const Bond &bond) const
   return stretch_[bond.shell] * (1. + (factor_ - 1.) * (rate / (1. + rate))) * bond.toughening * bond.strength;
 }
 
-double CriticalStretch::smallest_limit(double toughening) const
-{
-  return *std::min_element(stretch_.begin(), stretch_.end()) * toughening;
-}
-
-double CriticalStretch::largest_limit(double toughening) const
-{
-  return *std::max_element(stretch_.begin(), stretch_.end()) * factor_ * toughening;
-}
-
 BondEnergy::BondEnergy(const Material &material, double energy) : material_(material), energy_(energy)
 {
   support::require(energy > 0., "the critical energy of bonds must be positive");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -52,8 +53,14 @@ public:
   explicit CriticalStretch(double stretch, double factor = 1., double time = 0.);
 
   double limit(const Bond &bond) const override;
-  double smallest_limit(double toughening) const override;
-  double largest_limit(double toughening) const override;
+  double smallest_limit(double toughening) const override
+  {
+    return *std::min_element(stretch_.begin(), stretch_.end()) * toughening;
+  }
+  double largest_limit(double toughening) const override
+  {
+    return *std::max_element(stretch_.begin(), stretch_.end()) * factor_ * toughening;
+  }
 
 private:
   std::array<double, n_shells> stretch_;

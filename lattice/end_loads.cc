@@ -56,7 +56,7 @@ Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material
       const double stretch = (F * R).norm() / l;
       const Eigen::Vector2d n = (F * R).normalized();
       const Eigen::Matrix2d along = n * n.transpose();
-      const double of_memory = is_fast ? largest_stiffness(shell->memory) : 0.;
+      const double of_memory = is_fast ? properties(shell->memory).largest_stiffness : 0.;
       const Eigen::Matrix2d h = (stiffness(shell->law, stretch) + of_memory) * along +
                                 force(shell->law, stretch) / stretch * (Eigen::Matrix2d::Identity() - along);
       tangent += cross_section(*shell, lattice, kind) * l / lattice.site_area() * (R.x() / l) * (R.x() / l) * h;

@@ -40,7 +40,7 @@ void for_each_mechanism(const State &state, const TriangularLattice &lattice, co
   const double volume =
     state.stiffness.of(place, kind) * (cross_section(shell, lattice, kind) * lattice.rest_length(kind));
   const auto variables = state.history.variables_of(place, kind);
-  for (std::size_t m = 0; m < n_mechanisms(shell.memory); ++m)
+  for (std::size_t m = 0; m < properties(shell.memory).n_mechanisms; ++m)
     add(m, volume * stored_energy(shell.memory, m, state.history.kinds[kind].stretch[place], variables.data()));
 }
 

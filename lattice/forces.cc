@@ -26,8 +26,8 @@ Forces::Forces(const RowPartition &band, const Material &material)
   }
   for (std::size_t number = 0; number < n_shells; ++number)
     if (const Shell *shell = material.in_shell(number))
-      mechanism_gives_energy_.insert(mechanism_gives_energy_.end(), n_mechanisms(shell->memory),
-                                     dissipates_energy(shell->memory));
+      mechanism_gives_energy_.insert(mechanism_gives_energy_.end(), properties(shell->memory).n_mechanisms,
+                                     properties(shell->memory).dissipates_energy);
 }
 
 void Forces::set_elapsed(double duration)

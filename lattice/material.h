@@ -56,14 +56,35 @@ struct Material
   /// Number of mechanisms by which memories store and dissipate energy: those of one shell after those of the other.
   std::size_t n_mechanisms() const { return first_mechanism(n_shells); }
   /// Number of mechanisms of the shells before one.
-  std::size_t first_mechanism(std::size_t shell) const;
+  std::size_t first_mechanism(std::size_t shell) const
+  {
+    std::size_t before = 0;
+    for (std::size_t number = 0; number < shell; ++number)
+      if (const Shell *other = in_shell(number))
+        before += properties(other->memory).n_mechanisms;
+    return before;
+  }
 
   /// Bonds of a site inside the triangular lattice: 6 for each shell.
   unsigned int coordination() const { return 6 * (1u + (next_nearest ? 1u : 0u) + (third_nearest ? 1u : 0u)); }
   /// Bonds of a site inside a sheet, the most that scattered points may have.
-  unsigned int coordination(const TriangularLattice &lattice) const;
+  unsigned int coordination(const TriangularLattice &lattice) const
+  {
+    unsigned int bonds = 0;
+    for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+      bonds += shell(lattice, kind) != nullptr ? 2 : 0;
+    return bonds;
+  }
   /// Bonds of one site, those beyond the edges included.
-  unsigned int coordination(const TriangularLattice &lattice, std::size_t place) const;
+  unsigned int coordination(const TriangularLattice &lattice, std::size_t place) const
+  {
+    unsigned int bonds = 0;
+    for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
+      if (shell(lattice, kind) != nullptr)
+        for (const Bond &bond : {lattice.bond(place, kind), lattice.bond_into(place, kind)})
+          bonds += lattice.has_bond(bond.near, kind) ? 1 : 0;
+    return bonds;
+  }
   /// Mean number of bonds of a site inside a sheet.
   double mean_coordination(const TriangularLattice &lattice) const
   {
@@ -72,10 +93,22 @@ struct Material
 };
 
 /// Returns the bonds with their dashpots, but without memories.
-Material without_memory(Material material);
+inline Material without_memory(Material material)
+{
+  for (std::size_t number = 0; number < n_shells; ++number)
+    if (Shell *shell = material.in_shell(number))
+      shell->memory = {};
+  return material;
+}
 
 /// Returns the bonds without their dashpots and memories, as they are in equilibrium.
-Material without_dashpots(Material material);
+inline Material without_dashpots(Material material)
+{
+  for (std::size_t number = 0; number < n_shells; ++number)
+    if (Shell *shell = material.in_shell(number))
+      shell->viscosity = 0.;
+  return without_memory(std::move(material));
+}
 
 /// A0 / h = s V / D [m], cross-section of a bond of a kind per sheet thickness; see TriangularLattice::section_length.
 /// It is s (sqrt3 / 2) d for all kinds of the triangular lattice (theory.md, eq. (L.4)).

@@ -24,15 +24,22 @@ namespace latcon::lattice::kernels::HWY_NAMESPACE
 
 #include "lattice/site_loops.inc"
 
-// The difference of a field between the ends of bonds. @tparam has_factors whether bonds may have a length_ratio
+// The value times the factors of bonds. @tparam has_factors whether there may be any
+template <bool has_factors>
+HWY_INLINE Lanes scaled(const double *factors, std::size_t site, Lanes value)
+{
+  if constexpr (has_factors)
+    return load_factors(factors, site) * value;
+  else
+    return value;
+}
+
+// The difference of a field between the ends of bonds.
 template <bool has_factors>
 HWY_INLINE Lanes difference(const BondsOfKind &bonds, const double *of_sites, std::size_t site, Lanes near)
 {
-  const Lanes apart = load(of_sites + site + static_cast<std::size_t>(bonds.shift)) - near;
-  if constexpr (has_factors)
-    return load_factors(bonds.length_ratio, site) * apart;
-  else
-    return apart;
+  return scaled<has_factors>(bonds.length_ratio, site,
+                             load(of_sites + site + static_cast<std::size_t>(bonds.shift)) - near);
 }
 
 HWY_INLINE Lanes stretch_of(const BondConstants &bond, Lanes length)
@@ -78,12 +85,8 @@ HWY_INLINE Lanes bonds_of_kind(const Law &law, const BondConstants &bond, const 
   const auto present = mask_of_bit(states, bonds.present);
   const Lanes distance = hn::Sqrt(dx * dx + dy * dy), length = hn::IfThenElseZero(present, distance),
               inverse = hn::IfThenElseZero(present, lanes(1.) / distance);
-  Lanes nx = dx * inverse, ny = dy * inverse;
-  if constexpr (has_factors)
-  {
-    nx = load_factors(bonds.length_ratio, site) * nx;
-    ny = load_factors(bonds.length_ratio, site) * ny;
-  }
+  const Lanes nx = scaled<has_factors>(bonds.length_ratio, site, dx * inverse),
+              ny = scaled<has_factors>(bonds.length_ratio, site, dy * inverse);
   if (HWY_UNLIKELY(bonds.remembered != nullptr))
   {
     store(length, bonds.lengths[0] + site);
@@ -93,16 +96,11 @@ HWY_INLINE Lanes bonds_of_kind(const Law &law, const BondConstants &bond, const 
   const Lanes stretch = stretch_of(bond, length);
   const Lanes viscous = bond.damping * rate;
   const Lanes inverse_stretch = bond.rest_length * inverse;
-  Lanes axial = bond.cross_section * force(law, stretch, inverse_stretch) + viscous, power = viscous * rate;
-  if constexpr (has_factors)
-  {
-    const Lanes factor = load_factors(bonds.stiffness, site);
-    axial = factor * axial;
-    power = factor * power;
-  }
+  const Lanes axial =
+    scaled<has_factors>(bonds.stiffness, site, bond.cross_section * force(law, stretch, inverse_stretch) + viscous);
+  so_far.power = so_far.power + scaled<has_factors>(bonds.stiffness, site, viscous * rate);
   store(axial * nx, bonds.force[0] + site);
   store(axial * ny, bonds.force[1] + site);
-  so_far.power = so_far.power + power;
   // It is 0 for absent bonds.
   if constexpr (Law::stiffens_when_short)
     so_far.shortness = hn::Max(so_far.shortness, inverse_stretch);
@@ -164,8 +162,8 @@ template <std::size_t n_branches, class Memory>
 // cppcheck-suppress passedByValue ; copies, which no store can change
 void add_overstress(const Memory &memory, const RowOfBonds row, const BondsOfKind bonds, const RememberedRow remembered)
 {
-  const std::size_t n = n_branches > 0 ? n_branches : memory.n_variables();
-  const std::size_t n_mechanisms = n_branches > 0 ? n_branches : memory.n_mechanisms();
+  const std::size_t n = n_branches > 0 ? n_branches : memory.n_variables;
+  const std::size_t n_mechanisms = n_branches > 0 ? n_branches : memory.n_mechanisms;
   constexpr std::size_t n_sums = n_branches > 0 ? n_branches : max_history_variables;
   Lanes sums[n_sums][block];
   for (std::size_t m = 0; m < n_mechanisms; ++m)
@@ -227,7 +225,7 @@ void bonds_of_row(const RowOfBonds &row, RowSums &sums)
     const auto of_memory = [&](const auto &memory)
     {
       if constexpr (std::is_same_v<std::decay_t<decltype(memory)>, MaxwellMemory>)
-        switch (memory.n_variables())
+        switch (memory.n_variables)
         {
         case 1:
           return add_overstress<1>(memory, row, bonds, *bonds.remembered);
@@ -268,7 +266,7 @@ bool any_event_ahead(const RowOfBonds &row, double ahead)
                   {
                     const double l = bonds.constants.rest_length;
                     return are_events(row, bonds, site, squared_length_after(ahead, dx, dy, dvx, dvy),
-                                      [l](Lanes stretch) { return (l * stretch) * (l * stretch); });
+                                      [l](Lanes stretch) { return squared_length(stretch, l); });
                   });
 }
 
@@ -277,13 +275,10 @@ bool any_short_ahead(const RowOfBonds &row, double ahead, double stretch)
   return any_bond(row,
                   [&](const BondsOfKind &bonds, std::size_t site, Lanes dx, Lanes dy, Lanes dvx, Lanes dvy)
                   {
-                    // length + ahead min(product, 0) / length <= short length, without root or quotient.
-                    const Lanes square = dx * dx + dy * dy, product = dx * dvx + dy * dvy;
-                    const Lanes then_by_now = square + ahead * hn::Min(product, lanes(0.));
-                    const double length = stretch * bonds.constants.rest_length;
-                    const auto is_short = hn::Or(hn::Le(then_by_now, lanes(0.)),
-                                                 hn::Le(then_by_now * then_by_now, length * length * square));
-                    return hn::And(mask_of_bit(load_states(bonds.states + site), bonds.present), is_short);
+                    const Lanes length = hn::Sqrt(dx * dx + dy * dy), rate = (dx * dvx + dy * dvy) / length;
+                    const auto is_long =
+                      hn::Gt(length + ahead * hn::Min(rate, lanes(0.)), lanes(stretch * bonds.constants.rest_length));
+                    return hn::AndNot(is_long, mask_of_bit(load_states(bonds.states + site), bonds.present));
                   });
 }
 
@@ -320,35 +315,28 @@ void use_targets(std::int64_t targets)
   hwy::GetChosenTarget().Update(targets);
 }
 
-using Targets = std::vector<std::pair<std::string, std::int64_t>>;
-
 // Instruction sets that this processor has and for which the loops were compiled, the best first: from the one on that
 // the environment names.
-Targets find_targets()
+const std::vector<std::int64_t> &targets()
 {
-  const std::int64_t all = hwy::SupportedTargets() & HWY_TARGETS;
-  Targets targets;
-  std::string names;
-  for (std::int64_t left = all; left != 0; left &= left - 1) // better ones have lower bits
+  static const std::vector<std::int64_t> found = []
   {
-    targets.emplace_back(hwy::TargetName(left & -left), left & -left);
-    names += (names.empty() ? "" : ", ") + targets.back().first;
-  }
-  const char *const best = std::getenv("LATCON_INSTRUCTION_SET");
-  if (best == nullptr)
-    return targets;
-  while (!targets.empty() && targets.front().first != best)
-    targets.erase(targets.begin());
-  if (targets.empty())
-    throw std::invalid_argument("environment variable LATCON_INSTRUCTION_SET: `" + std::string(best) +
-                                "` is none of the instruction sets on this machine: " + names);
-  use_targets(all & -targets.front().second);
-  return targets;
-}
-
-const Targets &targets()
-{
-  static const Targets found = find_targets();
+    std::vector<std::int64_t> all = hwy::SupportedAndGeneratedTargets();
+    const char *const best = std::getenv("LATCON_INSTRUCTION_SET");
+    if (best == nullptr)
+      return all;
+    std::string names;
+    while (!all.empty() && hwy::TargetName(all.front()) != std::string(best))
+    {
+      names += (names.empty() ? "" : ", ") + std::string(hwy::TargetName(all.front()));
+      all.erase(all.begin());
+    }
+    if (all.empty())
+      throw std::invalid_argument("environment variable LATCON_INSTRUCTION_SET: `" + std::string(best) +
+                                  "` is none of the instruction sets on this machine: " + names);
+    use_targets(hwy::SupportedTargets() & -all.front()); // better ones have lower bits
+    return all;
+  }();
   return found;
 }
 
@@ -356,16 +344,15 @@ const Targets &targets()
 
 std::vector<std::string> instruction_sets()
 {
-  std::vector<std::string> names;
-  for (const auto &[name, target] : targets())
-    names.push_back(name);
+  std::vector<std::string> names(targets().size());
+  std::transform(targets().begin(), targets().end(), names.begin(), hwy::TargetName);
   return names;
 }
 
 void use_instruction_set(const std::string &wanted)
 {
-  for (const auto &[name, target] : targets())
-    if (name == wanted)
+  for (const std::int64_t target : targets())
+    if (hwy::TargetName(target) == wanted)
       return use_targets(target);
   throw std::invalid_argument("there is no instruction set " + wanted + " here");
 }

@@ -75,7 +75,7 @@ struct RowSums
   /// Of dashpots, A0 eta (v_rel . n)^2 / l [W/m], those in memories included, as bonds_of_row() does not.
   double viscous_power = 0.;
   /// Of each mechanism of Material::n_mechanisms(): what memories dissipate [W/m], or have since their last update
-  /// [J/m]; see dissipates_energy().
+  /// [J/m]; see MemoryProperties.
   std::vector<double> mechanism_power = {};
   bool has_events = false;      ///< whether one is past its limit, or has retracted
   bool has_short_bonds = false; ///< whether one has an inverse stretch above RowOfBonds::shortness_limit

@@ -30,7 +30,7 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
   {
     const BondHistory::Kind &history = state_.history.kinds[kind];
     const Shell *shell = material_.shell(lattice_, kind);
-    fits = history.variables.size() == (shell != nullptr ? n_variables(shell->memory) : 0);
+    fits = history.variables.size() == (shell != nullptr ? properties(shell->memory).n_variables : 0);
     for (const Field &variable : history.variables)
       fits = fits && variable.size() == lattice_.n_places() && history.stretch.size() == lattice_.n_places();
   }

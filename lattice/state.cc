@@ -139,7 +139,7 @@ void relax_memory(State &state, const RowPartition &band, const Material &materi
   for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
   {
     const Shell *shell = material.shell(lattice, kind);
-    const std::size_t n = shell != nullptr ? n_variables(shell->memory) : 0;
+    const std::size_t n = shell != nullptr ? properties(shell->memory).n_variables : 0;
     state.history.kinds[kind] = {Field(n > 0 ? lattice.n_places() : 0), {}};
     for (std::size_t v = 0; v < n; ++v)
       state.history.kinds[kind].variables.emplace_back(lattice.n_places());

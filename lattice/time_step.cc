@@ -44,8 +44,8 @@ Rates bound_of_bonds(const TriangularLattice &lattice, const Material &material,
     if (const Shell *shell = material.shell(lattice, kind))
     {
       // In motions that leave memories no time to relax [Pa].
-      const double stiffness =
-        largest_stiffness(shell->law, smallest_stretch[lattice.shell(kind)]) + largest_stiffness(shell->memory);
+      const double stiffness = largest_stiffness(shell->law, smallest_stretch[lattice.shell(kind)]) +
+                               properties(shell->memory).largest_stiffness;
       // A site has two bonds of each kind, and the bound is twice the sum over its bonds.
       const double per_length =
         stiffest * (4. * cross_section(*shell, lattice, kind) / (lattice.rest_length(kind) * mass));
@@ -139,7 +139,7 @@ double largest_stretch_rate(const TriangularLattice &lattice, const Material &ma
     if (const Shell *shell = material.shell(lattice, kind))
     {
       // No overstress exceeds that of a bond that is stretched at once.
-      const double overstress = largest_stiffness(shell->memory) * breaking_stretch;
+      const double overstress = properties(shell->memory).largest_stiffness * breaking_stretch;
       site_energy += stiffest * cross_section(*shell, lattice, kind) * lattice.rest_length(kind) *
                      (energy(shell->law, breaking_stretch) + 0.5 * overstress * breaking_stretch);
       of_forces = std::max(of_forces, 0.5 * material.coordination(lattice) *

@@ -33,7 +33,7 @@ inline double advance(const CustomMemory &memory, std::size_t /*n*/, double befo
   *dissipation = 0.;
   if (!(now > 0.))
     return 0.;
-  const double earlier = memory.dissipates_energy() ? memory.law().dissipation(before, variables) : 0.;
+  const double earlier = memory.dissipates_energy ? memory.law().dissipation(before, variables) : 0.;
   const double overstress = memory.law().advance(memory.duration(), before, now, variables);
   *dissipation = memory.law().dissipation(now, variables) - earlier;
   return overstress;
@@ -56,7 +56,7 @@ inline double force(const BondLaw &law, double stretch)
 inline double advance(const BondMemory &memory, double before, double now, double *variables, double *dissipation)
 {
   return std::visit(
-    [&](const auto &m) { return formulas::advance(m, m.n_variables(), before, now, variables, dissipation); }, memory);
+    [&](const auto &m) { return formulas::advance(m, m.n_variables, before, now, variables, dissipation); }, memory);
 }
 
 } // namespace latcon::lattice

@@ -70,24 +70,25 @@ std::vector<double> grid(double shortest, double longest, double step)
 
 } // namespace
 
-void check_law(const std::vector<std::function<double(double)>> &functions, double shortest, double longest)
+void check_law(const std::vector<std::function<double(double)>> &functions, double longest)
 {
   const double stiffness = functions[2](1.);
   if (!(stiffness > 0. && std::isfinite(stiffness)))
     throw InvalidBondLaw("psi''(1) is " + text(stiffness) + " Pa; a bond at rest needs a stiffness > 0");
   if (!(std::abs(functions[1](1.)) <= 1e-12 * stiffness))
     throw InvalidBondLaw("psi'(1) is " + text(functions[1](1.)) + " Pa; a bond at rest has no force");
-  const std::vector<double> stretches = grid(shortest, longest, 0.01);
+  const std::vector<double> stretches = grid(smallest_checked_stretch, longest, 0.01);
   for (std::size_t derivative = 0; derivative < functions.size(); ++derivative)
     for (const double stretch : stretches)
+    {
       if (const double value = functions[derivative](stretch); !std::isfinite(value))
         throw InvalidBondLaw(name(derivative) + " is " + text(value) + " at stretch " + text(stretch) +
-                             "; it must be finite for all stretches of bonds, " + text(shortest) + " to " +
-                             text(longest));
-  for (std::size_t derivative = 1; derivative < functions.size(); ++derivative)
-    for (const double stretch : stretches)
-      if (stretch * (1. + 2. * difference_step) <= longest && stretch * (1. - 2. * difference_step) >= shortest)
+                             "; it must be finite for all stretches of bonds, " + text(smallest_checked_stretch) +
+                             " to " + text(longest));
+      if (derivative > 0 && stretch * (1. + 2. * difference_step) <= longest &&
+          stretch * (1. - 2. * difference_step) >= smallest_checked_stretch)
         check_slope(functions[derivative - 1], functions[derivative], derivative, stretch);
+    }
 }
 
 // Between two stretches of the grid a smooth law differs from them by (step^2 / 8) lam^2 psi'''', less than 1e-4 of
@@ -96,20 +97,18 @@ void CheckedLaw::check(double longest)
 {
   check_law({[this](double l) { return energy(l); }, [this](double l) { return force(l); },
              [this](double l) { return stiffness(l); }},
-            smallest_checked_stretch, longest);
-  stretches_ = grid(0.05, longest, 0.003);
-  for (const double stretch : stretches_)
-    largest_.push_back(bound_at(*this, stretch));
-  for (std::size_t i = largest_.size() - 1; i-- > 0;)
-    largest_[i] = std::max(largest_[i], largest_[i + 1]);
+            longest);
+  const std::vector<double> stretches = grid(0.05, longest, 0.003);
+  double largest = 0.;
+  for (auto stretch = stretches.rbegin(); stretch != stretches.rend(); ++stretch)
+    largest_[*stretch] = largest = std::max(largest, bound_at(*this, *stretch));
 }
 
 double CheckedLaw::largest_stiffness(double smallest_stretch) const noexcept
 {
-  const auto next = std::lower_bound(stretches_.begin(), stretches_.end(), smallest_stretch);
+  const auto next = largest_.lower_bound(smallest_stretch);
   const double there = bound_at(*this, smallest_stretch);
-  return next == stretches_.end() ? there
-                                  : std::max(there, largest_[static_cast<std::size_t>(next - stretches_.begin())]);
+  return next == largest_.end() ? there : std::max(there, next->second);
 }
 
 } // namespace latcon::lattice

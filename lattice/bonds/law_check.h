@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <stdexcept>
 #include <vector>
 
@@ -21,10 +22,10 @@ public:
 inline constexpr double smallest_checked_stretch = 0.3;
 
 /// Checks the functions of a law: psi, psi', psi'' [Pa] and possibly further derivatives by the stretch, in this order.
-/// From `shortest` to `longest` [-] all are finite, and each agrees with differences of the one before it; psi'(1) = 0
-/// to 1e-12 psi''(1), and psi''(1) > 0.
+/// From smallest_checked_stretch to `longest` [-] all are finite, and each agrees with differences of the one before
+/// it; psi'(1) = 0 to 1e-12 psi''(1), and psi''(1) > 0.
 /// @throws InvalidBondLaw
-void check_law(const std::vector<std::function<double(double)>> &functions, double shortest, double longest);
+void check_law(const std::vector<std::function<double(double)>> &functions, double longest);
 
 /// A law without a closed form of the bound on psi'' and psi' / lam: it is the largest value on a grid of stretches.
 class CheckedLaw : public CustomBondLaw
@@ -39,8 +40,7 @@ protected:
   void check(double longest);
 
 private:
-  std::vector<double> stretches_; // [-], increasing
-  std::vector<double> largest_;   // [Pa], from each stretch to the last
+  std::map<double, double> largest_; // [Pa], from a stretch [-] to the last
 };
 
 } // namespace latcon::lattice

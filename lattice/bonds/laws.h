@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <string>
+#include <utility>
 #include <variant>
 
 #include "support/require.h"
@@ -118,7 +121,16 @@ class CustomBond
 public:
   /// @throws std::invalid_argument without a law, or for one that is not free of energy and force (to 1e-12 of its
   /// stiffness) or not stiff at rest
-  explicit CustomBond(std::shared_ptr<const CustomBondLaw> law);
+  explicit CustomBond(std::shared_ptr<const CustomBondLaw> law) : law_(std::move(law))
+  {
+    support::require(law_ != nullptr, "a bond needs a law");
+    const double stiffness = law_->stiffness(1.), round_off = 1e-12 * stiffness;
+    support::require(stiffness > 0. && stiffness < std::numeric_limits<double>::infinity(),
+                     "a bond needs a finite stiffness > 0 at rest, not " + std::to_string(stiffness) + " Pa");
+    support::require(std::abs(law_->energy(1.)) <= round_off && std::abs(law_->force(1.)) <= round_off,
+                     "a bond holds neither energy nor force at rest, not " + std::to_string(law_->energy(1.)) +
+                       " and " + std::to_string(law_->force(1.)) + " Pa");
+  }
 
   static constexpr bool stiffens_when_short = true;
 

@@ -54,8 +54,7 @@ LibraryLaw::LibraryLaw(LawLibrary library, std::vector<double> parameters, doubl
   at_rest_ = derivatives(1.)[0];
   check(longest);
   const auto derivative = [this](std::size_t k) { return [this, k](double l) { return derivatives(l)[k]; }; };
-  check_law({derivative(0), derivative(1), derivative(2), derivative(3), derivative(4)}, smallest_checked_stretch,
-            longest);
+  check_law({derivative(0), derivative(1), derivative(2), derivative(3), derivative(4)}, longest);
 }
 
 std::array<double, 5> LibraryLaw::derivatives(double stretch) const noexcept

@@ -39,29 +39,20 @@ Decay decay_over(double r)
 
 } // namespace
 
-MaxwellMemory::MaxwellMemory(std::vector<Branch> branches) : branches_(std::move(branches))
+MaxwellMemory::MaxwellMemory(std::vector<Branch> branches)
+  : MemoryProperties{branches.size(), branches.size(), 0., false}, branches_(std::move(branches))
 {
   support::require(branches_.size() <= max_history_variables, "a Maxwell memory has at most " +
                                                                 std::to_string(max_history_variables) +
                                                                 " branches, not " + std::to_string(branches_.size()));
   for (const auto &[modulus, time] : branches_)
+  {
     support::require(modulus > 0. && time > 0. && std::isfinite(modulus) && std::isfinite(time),
                      "a Maxwell branch needs a modulus > 0 and a relaxation time > 0, not " + std::to_string(modulus) +
                        " Pa and " + std::to_string(time) + " s");
+    largest_stiffness += modulus;
+  }
   set_duration(0.);
-}
-
-double MaxwellMemory::largest_stiffness() const
-{
-  double sum = 0.;
-  for (const Branch &branch : branches_)
-    sum += branch.modulus;
-  return sum;
-}
-
-double MaxwellMemory::stored_energy(std::size_t branch, double /*stretch*/, const double *overstress) const
-{
-  return 0.5 * overstress[branch] * overstress[branch] / branches_[branch].modulus;
 }
 
 void MaxwellMemory::set_duration(double duration)
@@ -77,7 +68,7 @@ void MaxwellMemory::set_duration(double duration)
 }
 
 PlasticMemory::PlasticMemory(double E, double Y, double K)
-  : modulus(E), yield_stress(Y), hardening(K), slip(1. / (E + K))
+  : MemoryProperties{2, 1, E, true}, modulus(E), yield_stress(Y), hardening(K), slip(1. / (E + K))
 {
   support::require(E > 0. && Y > 0. && K >= 0. && std::isfinite(E + Y + K),
                    "a plastic memory needs a modulus > 0, a yield stress > 0 and a hardening >= 0, not " +
@@ -87,12 +78,13 @@ PlasticMemory::PlasticMemory(double E, double Y, double K)
 CustomMemory::CustomMemory(std::shared_ptr<const CustomMemoryLaw> law) : law_(std::move(law))
 {
   support::require(law_ != nullptr, "a memory needs a law");
-  const std::size_t n = law_->n_variables();
-  support::require(n >= 1 && n <= max_history_variables, "a memory has 1 to " + std::to_string(max_history_variables) +
-                                                           " variables, not " + std::to_string(n));
-  const double stiffness = law_->largest_stiffness();
-  support::require(stiffness >= 0. && std::isfinite(stiffness),
-                   "a memory needs a finite stiffness >= 0, not " + std::to_string(stiffness) + " Pa");
+  static_cast<MemoryProperties &>(*this) = {law_->n_variables(), 1, law_->largest_stiffness(),
+                                            law_->is_rate_independent()};
+  support::require(n_variables >= 1 && n_variables <= max_history_variables,
+                   "a memory has 1 to " + std::to_string(max_history_variables) + " variables, not " +
+                     std::to_string(n_variables));
+  support::require(largest_stiffness >= 0. && std::isfinite(largest_stiffness),
+                   "a memory needs a finite stiffness >= 0, not " + std::to_string(largest_stiffness) + " Pa");
   std::array<double, max_history_variables> at_rest{};
   const double overstress = law_->advance(0., 1., 1., at_rest.data());
   support::require(overstress == 0. && law_->stored_energy(1., at_rest.data()) == 0. &&

@@ -10,22 +10,28 @@
 /// Memories of bonds: overstresses q that depend on the past of a bond through a number of variables per bond,
 ///   sigma = psi'(lam) + eta lam' + q   (theory.md, eq. (L.27)).
 ///
-/// A memory declares its number of variables, the mechanisms by which it stores and dissipates energy, and a bound on
-/// its stiffness. `set_duration` prepares it for updates over one duration [s], >= 0, at first 0; `advance`
-/// (formulas.inc) is the formula of an update. Variables are 0 at rest and are stored by BondHistory. `advance` gives
-/// the power that each mechanism dissipates at the end of an update, or, if `dissipates_energy`, the energy that it
-/// dissipates in the update.
+/// A memory declares its MemoryProperties. `set_duration` prepares it for updates over one duration [s], >= 0, at first
+/// 0; `advance` (formulas.inc) is the formula of an update. Variables are 0 at rest and are stored by BondHistory.
 namespace latcon::lattice
 {
 
 /// Most history variables that a memory may have per bond.
 inline constexpr std::size_t max_history_variables = 16;
 
+/// Properties of a memory that no motion changes.
+struct MemoryProperties
+{
+  std::size_t n_variables;  ///< per bond, 0 for no memory
+  std::size_t n_mechanisms; ///< whose energies are recorded one by one, at most n_variables
+  double largest_stiffness; ///< bound on the axial stiffness dq/dlam that it adds in fast motion [Pa]
+  bool dissipates_energy;   ///< whether `advance` gives the energy that each mechanism dissipates, or else its power
+};
+
 /// Generalised Maxwell branches parallel to the elastic law and the dashpot of a bond (theory.md, eq. (L.27)):
 ///   q_i' = E_i lam' - q_i / tau_i,   sigma = psi'(lam) + eta lam' + sum_i q_i.
 /// The variables of a bond are its overstresses q_i [Pa]. An update is exact for a stretch that changes linearly in
 /// time (theory.md, eq. (L.28)), and energy and dissipation are those of theory.md, eq. (L.29).
-class MaxwellMemory
+class MaxwellMemory : public MemoryProperties
 {
 public:
   /// A spring E in series with a dashpot E tau.
@@ -40,16 +46,13 @@ public:
   explicit MaxwellMemory(std::vector<Branch> branches = {});
 
   const std::vector<Branch> &branches() const { return branches_; }
-  std::size_t n_variables() const { return branches_.size(); }
-  std::size_t n_mechanisms() const { return branches_.size(); }
-
-  /// Axial stiffness that the branches add to that of the law in fast motion, sum E_i [Pa].
-  double largest_stiffness() const;
 
   /// Energy in the spring of one branch per reference volume of the bond, q_i^2 / (2 E_i) [Pa].
-  double stored_energy(std::size_t branch, double stretch, const double *overstress) const;
+  double stored_energy(std::size_t branch, double /*stretch*/, const double *overstress) const
+  {
+    return 0.5 * overstress[branch] * overstress[branch] / branches_[branch].modulus;
+  }
 
-  bool dissipates_energy() const { return false; }
   void set_duration(double duration);
 
   // Coefficients of an update over h.
@@ -65,7 +68,7 @@ private:
 /// plastic stretch that does not depend on the rate (theory.md, eq. (L.41)). The variables of a bond are its overstress
 /// q [Pa] and its accumulated plastic stretch alpha [-]. An update is exact for a stretch that changes in one direction
 /// (theory.md, eq. (L.42)), over any duration.
-struct PlasticMemory
+struct PlasticMemory : MemoryProperties
 {
   /// @param E modulus of the spring [Pa], > 0
   /// @param Y yield stress [Pa] below which the slider is at rest, > 0
@@ -76,15 +79,11 @@ struct PlasticMemory
   double modulus, yield_stress, hardening; ///< E, Y, K [Pa]
   double slip;                             ///< 1 / (E + K) [1/Pa]
 
-  std::size_t n_variables() const { return 2; }
-  std::size_t n_mechanisms() const { return 1; }
-  double largest_stiffness() const { return modulus; }
   /// Energy in the spring per reference volume of the bond, q^2 / (2 E) [Pa].
   double stored_energy(std::size_t /*mechanism*/, double /*stretch*/, const double *variables) const
   {
     return 0.5 * variables[0] * variables[0] / modulus;
   }
-  bool dissipates_energy() const { return true; }
   void set_duration(double /*duration*/) {}
 };
 
@@ -124,7 +123,7 @@ public:
 };
 
 /// A bond with a user-defined memory, whose energies are those of the law as a whole.
-class CustomMemory
+class CustomMemory : public MemoryProperties
 {
 public:
   /// @throws std::invalid_argument without a law, or for one with another number of variables than allowed, without a
@@ -132,14 +131,10 @@ public:
   explicit CustomMemory(std::shared_ptr<const CustomMemoryLaw> law);
 
   const CustomMemoryLaw &law() const { return *law_; }
-  std::size_t n_variables() const { return law_->n_variables(); }
-  std::size_t n_mechanisms() const { return 1; }
-  double largest_stiffness() const { return law_->largest_stiffness(); }
   double stored_energy(std::size_t /*mechanism*/, double stretch, const double *variables) const
   {
     return law_->stored_energy(stretch, variables);
   }
-  bool dissipates_energy() const { return law_->is_rate_independent(); }
   void set_duration(double duration) { duration_ = duration; }
   double duration() const { return duration_; } ///< [s]
 
@@ -151,30 +146,14 @@ private:
 /// Memory of the bonds of one shell; none by default.
 using BondMemory = std::variant<MaxwellMemory, PlasticMemory, CustomMemory>;
 
-/// Number of variables per bond; 0: no memory.
-inline std::size_t n_variables(const BondMemory &memory)
+inline const MemoryProperties &properties(const BondMemory &memory)
 {
-  return std::visit([](const auto &m) { return m.n_variables(); }, memory);
-}
-/// Number of mechanisms whose energies are recorded one by one, at most n_variables(): branches of a MaxwellMemory.
-inline std::size_t n_mechanisms(const BondMemory &memory)
-{
-  return std::visit([](const auto &m) { return m.n_mechanisms(); }, memory);
-}
-/// Bound on dq/dlam in fast motion [Pa].
-inline double largest_stiffness(const BondMemory &memory)
-{
-  return std::visit([](const auto &m) { return m.largest_stiffness(); }, memory);
+  return std::visit([](const MemoryProperties &m) -> const MemoryProperties & { return m; }, memory);
 }
 /// Energy that one mechanism stores per reference volume of a bond [Pa].
 inline double stored_energy(const BondMemory &memory, std::size_t mechanism, double stretch, const double *variables)
 {
   return std::visit([&](const auto &m) { return m.stored_energy(mechanism, stretch, variables); }, memory);
-}
-/// Returns whether an update gives the energy that each mechanism dissipates, and not its power.
-inline bool dissipates_energy(const BondMemory &memory)
-{
-  return std::visit([](const auto &m) { return m.dissipates_energy(); }, memory);
 }
 /// Sets the duration of the updates to come [s], >= 0.
 inline void set_duration(BondMemory &memory, double duration)

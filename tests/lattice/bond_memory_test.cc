@@ -40,7 +40,7 @@ TEST(BondMemory, ClosesTheEnergyBalanceThroughFracture)
     EXPECT_GT(stored, 1e-4 * e.initial) << "too quiet to show anything";
     // Branches or the slider of nearest neighbours, and the memory of the others.
     const std::vector<MechanismEnergy> mechanisms = simulation->mechanism_energies();
-    ASSERT_EQ(mechanisms.size(), n_mechanisms(material.nearest.memory) + 1);
+    ASSERT_EQ(mechanisms.size(), properties(material.nearest.memory).n_mechanisms + 1);
     double stored_sum = 0., dissipated_sum = 0.;
     for (const MechanismEnergy &mechanism : mechanisms)
     {

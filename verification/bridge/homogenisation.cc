@@ -133,7 +133,7 @@ std::unique_ptr<continuum::FibreMemory> homogenised_memory(const lattice::Triang
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
   {
     const lattice::Shell *shell = material.shell(kind);
-    if (shell == nullptr || lattice::n_variables(shell->memory) == 0)
+    if (shell == nullptr || lattice::properties(shell->memory).n_variables == 0)
       continue;
     const auto *memory = std::get_if<lattice::MaxwellMemory>(&shell->memory);
     if (memory == nullptr)

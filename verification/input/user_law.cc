@@ -182,10 +182,6 @@ std::shared_ptr<const lattice::CustomBondLaw> UserLaw::law(bool is_library, cons
   {
     throw Problem(entry, error.what());
   }
-  catch (const std::length_error &error)
-  {
-    throw Problem(entry, std::string("its derivatives are too long: ") + error.what());
-  }
 }
 
 } // namespace latcon::input

@@ -76,7 +76,7 @@ inline std::vector<std::string> mechanism_names(const lattice::Material &materia
     if (std::holds_alternative<lattice::PlasticMemory>(bonds.memory))
       names.push_back(shell + "_plastic");
     else
-      for (std::size_t m = 1; m <= lattice::n_mechanisms(bonds.memory); ++m)
+      for (std::size_t m = 1; m <= lattice::properties(bonds.memory).n_mechanisms; ++m)
         names.push_back(shell + "_branch_" + std::to_string(m));
   };
   add("nearest", material.nearest);

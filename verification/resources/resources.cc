@@ -73,7 +73,7 @@ double bytes_of_history(const lattice::Material &material, const lattice::Triang
   double values = 0.;
   for (std::size_t kind = 0; kind < sheet.n_kinds(); ++kind)
     if (const lattice::Shell *const shell = material.shell(sheet, kind))
-      if (const std::size_t variables = lattice::n_variables(shell->memory); variables > 0)
+      if (const std::size_t variables = lattice::properties(shell->memory).n_variables; variables > 0)
         values += static_cast<double>(variables) + 1.;
   return bytes_of_variable * values;
 }

@@ -136,7 +136,7 @@ TEST(ClaimInputs, MakeTheSubjectOfTheCase)
   ASSERT_EQ(branches.size(), 2u);
   EXPECT_EQ(branches[0].modulus, 1e5 / 3.);
   EXPECT_EQ(branches[0].relaxation_time, 1e-4 / 3.);
-  EXPECT_EQ(lattice::n_variables(read.material.next_nearest->memory), 0u);
+  EXPECT_EQ(lattice::properties(read.material.next_nearest->memory).n_variables, 0u);
   EXPECT_EQ(read.theory.shear_speed, whole.theory.shear_speed);
   EXPECT_EQ(read.mooney_rivlin->ratio, whole.mooney_rivlin->ratio);
   EXPECT_EQ(read.mooney_rivlin->energy_residual, whole.mooney_rivlin->energy_residual);

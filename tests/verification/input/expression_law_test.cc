@@ -128,7 +128,7 @@ TEST(LawCheck, ComparesEachDerivativeWithDifferences)
                         [](double l) { return 20. * std::exp(20. * (l - 1.)) - 20.; },
                         [](double l) { return 400. * std::exp(20. * (l - 1.)); },
                         [](double l) { return 8000. * std::exp(20. * (l - 1.)); }};
-  EXPECT_NO_THROW(lattice::check_law(right, 0.3, 3.));
+  EXPECT_NO_THROW(lattice::check_law(right, 3.));
   for (const std::size_t wrong : {1, 2, 3})
   {
     Functions functions = right;
@@ -136,7 +136,7 @@ TEST(LawCheck, ComparesEachDerivativeWithDifferences)
     functions[wrong] = [of = right[wrong]](double l) { return of(l) * (1. + 1e-3 * (l - 1.) * (l - 1.)); };
     try
     {
-      lattice::check_law(functions, 0.3, 3.);
+      lattice::check_law(functions, 3.);
       ADD_FAILURE() << wrong;
     }
     catch (const lattice::InvalidBondLaw &error)
@@ -169,10 +169,10 @@ TEST(LawCheck, RefusesDifferencesWithoutValue)
   for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
   {
     for (const auto &[from, to] : {std::pair(0.5e-4, 1.5e-4), std::pair(1.5e-4, 2.5e-4), std::pair(0.5e-4, 2.5e-4)})
-      EXPECT_THROW(lattice::check_law(with(value, from, to), 0.3, 3.), lattice::InvalidBondLaw) << value << ' ' << from;
-    EXPECT_NO_THROW(lattice::check_law(with(value, 2.5e-4, 1e-3), 0.3, 3.)) << value;
+      EXPECT_THROW(lattice::check_law(with(value, from, to), 3.), lattice::InvalidBondLaw) << value << ' ' << from;
+    EXPECT_NO_THROW(lattice::check_law(with(value, 2.5e-4, 1e-3), 3.)) << value;
     // Beyond the last stretch a law needs no value.
-    EXPECT_NO_THROW(lattice::check_law(with(value, 1e-12, 1e-3), 0.3, checked)) << value;
+    EXPECT_NO_THROW(lattice::check_law(with(value, 1e-12, 1e-3), checked)) << value;
   }
 }
 

@@ -125,21 +125,13 @@ TEST(UserLaw, HasTheSameLargestStretchInClaims)
   EXPECT_NE(claims::claim_inputs_text(input), text);
 }
 
-// A short text can have many derivatives.
 TEST(UserLaw, RefusesExpressionsWithTooManyOperations)
 {
-  std::string product = "psi=lam", tower = "psi=lam";
-  for (int i = 101; i <= 270; ++i)
-    product += "*(lam+" + std::to_string(i) + ")";
+  std::string tower = "psi=lam";
   for (int i = 0; i < 390; ++i)
     tower += "^-lam";
-  for (const auto &[text, part] : {std::pair(product, "its derivatives are too long: more than 1000 operations"),
-                                   std::pair(tower, "it is too long: more than 1000 operations")})
-  {
-    ASSERT_LT(text.size(), 2000u);
-    const std::string found = problems({"law=expression", text});
-    EXPECT_NE(found.find(part), std::string::npos) << found;
-  }
+  const std::string found = problems({"law=expression", tower});
+  EXPECT_NE(found.find("it is too long: more than 1000 operations"), std::string::npos) << found;
 }
 
 TEST(UserLaw, SaysWhichEntryIsWrong)
