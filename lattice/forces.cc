@@ -132,16 +132,10 @@ kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row,
     bonds.remembered = nullptr;
     bonds.length_ratio = lattice_.scattered() != nullptr ? &lattice_.scattered()->length_ratios[kind][near] : nullptr;
   }
-  return {lattice_.columns(),
-          &state.position.x[near],
-          &state.position.y[near],
-          &motion.velocity.x[near],
-          &motion.velocity.y[near],
-          state.breaking_stretch,
-          state.toughened_stretch,
-          shortness_limit_,
-          kinds.data(),
-          n_kinds_};
+  const auto &[x, y] = state.position;
+  const auto &[vx, vy] = motion.velocity;
+  return {lattice_.columns(),      &x[near],         &y[near],     &vx[near], &vy[near], state.breaking_stretch,
+          state.toughened_stretch, shortness_limit_, kinds.data(), n_kinds_};
 }
 
 bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ahead) const
