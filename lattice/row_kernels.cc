@@ -157,14 +157,14 @@ void bonds_of_laws(const Law law, const SecondLaw second_law, const RowOfBonds &
 }
 
 // Adds the overstress of the bonds of a kind to their forces.
-// @tparam n_branches of a Maxwell memory, so that their variables stay in registers; 0: any number of variables
-template <std::size_t n_branches, class Memory>
+// @tparam n_known, mechanisms_known variables and mechanisms of the memory, which stay in registers; 0: any number
+template <std::size_t n_known, std::size_t mechanisms_known, class Memory>
 // cppcheck-suppress passedByValue ; copies, which no store can change
 void add_overstress(const Memory &memory, const RowOfBonds row, const BondsOfKind bonds, const RememberedRow remembered)
 {
-  const std::size_t n = n_branches > 0 ? n_branches : memory.n_variables;
-  const std::size_t n_mechanisms = n_branches > 0 ? n_branches : memory.n_mechanisms;
-  constexpr std::size_t n_sums = n_branches > 0 ? n_branches : max_history_variables;
+  const std::size_t n = n_known > 0 ? n_known : memory.n_variables;
+  const std::size_t n_mechanisms = n_known > 0 ? mechanisms_known : memory.n_mechanisms;
+  constexpr std::size_t n_sums = n_known > 0 ? n_known : max_history_variables;
   Lanes sums[n_sums][block];
   for (std::size_t m = 0; m < n_mechanisms; ++m)
     for (Lanes &sum : sums[m])
@@ -228,13 +228,15 @@ void bonds_of_row(const RowOfBonds &row, RowSums &sums)
         switch (memory.n_variables)
         {
         case 1:
-          return add_overstress<1>(memory, row, bonds, *bonds.remembered);
+          return add_overstress<1, 1>(memory, row, bonds, *bonds.remembered);
         case 2:
-          return add_overstress<2>(memory, row, bonds, *bonds.remembered);
+          return add_overstress<2, 2>(memory, row, bonds, *bonds.remembered);
         case 3:
-          return add_overstress<3>(memory, row, bonds, *bonds.remembered);
+          return add_overstress<3, 3>(memory, row, bonds, *bonds.remembered);
         }
-      add_overstress<0>(memory, row, bonds, *bonds.remembered);
+      if constexpr (std::is_same_v<std::decay_t<decltype(memory)>, PlasticMemory>)
+        return add_overstress<2, 1>(memory, row, bonds, *bonds.remembered);
+      add_overstress<0, 0>(memory, row, bonds, *bonds.remembered);
     };
     std::visit(of_memory, *bonds.remembered->memory);
   }
