@@ -131,7 +131,7 @@ bool PrescribedMotion::prescribe(State &state, const Material &material, double 
 void PrescribedMotion::add_power(const State &state, const VectorField &on_sites,
                                  const std::vector<const SiteForces *> &site_forces, std::vector<double> &of_rows) const
 {
-  if (released_ != 0 || velocity_.is_zero())
+  if (released_ != 0 || velocity_ == AffineVelocity{})
     return;
   const TriangularLattice &lattice = band_.lattice();
   const std::vector<std::size_t> &sites = constraint_.sites;

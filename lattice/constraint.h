@@ -17,7 +17,6 @@ struct AffineVelocity
   Eigen::Matrix2d gradient = Eigen::Matrix2d::Zero();    ///< L [1/s]
 
   Eigen::Vector2d at(const Eigen::Vector2d &X) const { return translation + gradient * X; }
-  bool is_zero() const { return translation.isZero(0.) && gradient.isZero(0.); }
   bool operator==(const AffineVelocity &other) const
   {
     return translation == other.translation && gradient == other.gradient;

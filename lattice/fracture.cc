@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "lattice/energy.h"
-#include "lattice/integrator.h"
 #include "support/require.h"
 
 namespace latcon::lattice

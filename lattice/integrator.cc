@@ -19,24 +19,17 @@ Integrator::Integrator(const RowPartition &band, Forces &forces, double time_ste
 void Integrator::find_rollers(const State &state)
 {
   rollers_.clear();
-  for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
-    for (std::size_t place = lattice_.index(row, 0); place < lattice_.index(row, lattice_.sites_in_row(row)); ++place)
-      for (const std::size_t axis : axes)
-        if ((state.rollers[place] >> axis & 1) != 0)
-          rollers_.push_back({place, axis, state.velocity[axis][place]});
+  for (const std::size_t place : lattice_.sites(band_.rows()))
+    for (const std::size_t axis : axes)
+      if ((state.rollers[place] >> axis & 1) != 0)
+        rollers_.push_back({place, axis, state.velocity[axis][place]});
 }
 
 void Integrator::initialise(State &state)
 {
   find_rollers(state);
-  if (VectorField &velocity = evaluated(state); &velocity != &state.velocity)
-    for_each_row(lattice_, band_.rows(),
-                 [&](std::size_t row)
-                 {
-                   for (const std::size_t axis : axes)
-                     std::copy_n(&state.velocity[axis][lattice_.index(row, 0)], lattice_.columns(),
-                                 &velocity[axis][lattice_.index(row, 0)]);
-                 });
+  for (const std::size_t place : lattice_.sites(band_.rows()))
+    evaluated(state).set(place, state.velocity.at(place));
   exchange_ghosts(state);
   accelerate(state);
 }
@@ -96,15 +89,16 @@ void Integrator::kick_sites(State &state, double duration) const
     state.velocity[roller.axis][roller.place] = roller.velocity;
 }
 
-void Integrator::update_accelerations(State &state, const std::vector<std::size_t> &places)
+void Integrator::update_accelerations(State &state, const std::vector<BrokenBond> &broken)
 {
   // Where several forces act on a site, the first of these is what bonds alone give.
   for (auto site = of_bonds_.rbegin(); site != of_bonds_.rend(); ++site)
     state.acceleration.set(site->first, site->second);
   std::set<std::size_t> rows;
-  for (const std::size_t place : places)
-    if (band_.owns(place))
-      rows.insert(lattice_.row_of(place));
+  for (const BrokenBond &bond : broken)
+    for (const std::size_t place : {bond.near, bond.far})
+      if (band_.owns(place))
+        rows.insert(lattice_.row_of(place));
   for (const std::size_t row : rows)
     forces_.evaluate_row(state, evaluated(state), row,
                          [&](std::size_t, const Forces::OfRow &force) { accelerate_row(state, row, force); });

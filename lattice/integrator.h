@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lattice/chebyshev_stages.h"
-#include "lattice/forces.h"
+#include "lattice/fracture.h"
 #include "lattice/site_forces.h"
 
 namespace latcon::lattice
@@ -51,9 +51,9 @@ public:
   /// Evaluates the added forces anew, at the last positions and velocities. Collective.
   void evaluate_site_forces(State &state);
 
-  /// Updates forces and accelerations at the end of the last step of own rows with one of `places`, which lost bonds
-  /// then, with the site forces as last evaluated.
-  void update_accelerations(State &state, const std::vector<std::size_t> &places);
+  /// Updates forces and accelerations of own rows at the ends of bonds that broke at the end of the last step, with the
+  /// site forces as last evaluated.
+  void update_accelerations(State &state, const std::vector<BrokenBond> &broken);
 
 protected:
   /// Brings what forces are evaluated at up to date in the halo and at images. Collective.

@@ -39,14 +39,15 @@ public:
   /// was never put anywhere.
   void move(std::size_t id, const Eigen::Vector2d &from, const Eigen::Vector2d &to)
   {
+    const Cell reached = cell(to);
     if (const auto left = points_.find(cell(from)); left != points_.end())
     {
       std::vector<Point> &others = left->second;
       others.erase(std::find_if(others.begin(), others.end(), [id](const Point &point) { return point.id == id; }));
-      if (others.empty())
+      if (others.empty() && left->first != reached)
         points_.erase(left);
     }
-    if (const Cell reached = cell(to); reached != nowhere)
+    if (reached != nowhere)
       points_[reached].push_back({id, to});
   }
 

@@ -90,9 +90,13 @@ ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
   const double h = lattice.spacing();
   const auto n = static_cast<std::ptrdiff_t>(lattice.n_sites());
   std::vector<std::ptrdiff_t> number(lattice.n_places(), -1); // of points; negative: beyond an edge
+  std::vector<Eigen::Vector2d> points;
   for (std::size_t place = 0; place < lattice.n_places(); ++place)
+  {
+    points.push_back(lattice.reference(place));
     if (lattice.is_occupied(place))
       number[place] = static_cast<std::ptrdiff_t>(lattice.site_number(lattice.canonical_place(place)));
+  }
 
   for (std::size_t first = 0, end = 0; first < lattice.n_kinds(); first = end)
   {
@@ -110,7 +114,7 @@ ScatteredBonds::ScatteredBonds(const TriangularLattice &lattice)
         if (far >= lattice.n_places() || (number[place] < 0 && number[far] < 0) ||
             (!lattice.images().empty() && !lattice.is_site(place)))
           continue;
-        const Eigen::Vector2d R = lattice.reference(far) - lattice.reference(place);
+        const Eigen::Vector2d R = points[far] - points[place];
         const double length = R.norm(), weight = 1. - std::abs(length - radius) / h, angle = std::atan2(R.y(), R.x());
         if (!(weight > 1e-9))
           continue;

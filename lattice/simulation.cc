@@ -270,19 +270,15 @@ void Simulation::advance(double duration, double end)
     return;
   broken_bonds_.insert(broken_bonds_.end(), broken.begin(), broken.end());
   n_broken_ += broken.size();
-  std::vector<std::size_t> ends;
   for (const BrokenBond &bond : broken)
-  {
     broken_ += bond.energy;
-    ends.insert(ends.end(), {bond.near, bond.far});
-  }
   if (contact_)
   {
     // From this instant on, as the bonds are gone from it.
     contact_->add_broken_bonds(broken);
     integrator_->evaluate_site_forces(state_);
   }
-  integrator_->update_accelerations(state_, ends);
+  integrator_->update_accelerations(state_, broken);
   update_powers(0.);
 }
 
