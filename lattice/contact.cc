@@ -158,12 +158,10 @@ const std::vector<SiteForce> &Contact::evaluate(State &state, VectorField &veloc
   };
   const std::size_t n_shares =
     candidates_.size() < min_candidates_for_threads ? 1 : static_cast<std::size_t>(omp_get_max_threads());
-  const auto n = static_cast<std::ptrdiff_t>(n_shares);
   forces_of_shares_.resize(n_shares);
 #pragma omp parallel for schedule(static) if (n_shares > 1)
-  for (std::ptrdiff_t i = 0; i < n; ++i)
+  for (std::size_t share = 0; share < n_shares; ++share)
   {
-    const auto share = static_cast<std::size_t>(i);
     std::vector<SiteForce> &forces = forces_of_shares_[share];
     forces.clear();
     const auto end = candidates_.nth(candidates_.size() * (share + 1) / n_shares);

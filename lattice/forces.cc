@@ -1,7 +1,6 @@
 #include "lattice/forces.h"
 
 #include <algorithm>
-#include <variant>
 
 #include <omp.h>
 

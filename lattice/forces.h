@@ -122,7 +122,7 @@ private:
     LastRows sums; // on the sites of the rows that bonds reach from one row
     std::vector<kernels::BondsOfKind> kinds = {};
     std::vector<kernels::RememberedRow> remembered = {}; // by kind
-    Field lengths;                            // of the bonds of a row with a memory, and their inverse
+    Field lengths;                                       // of the bonds of a row with a memory, and their inverse
   };
 
   void evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 #include "lattice/energy.h"
@@ -86,13 +87,10 @@ std::vector<BrokenBond> Fracture::lose_bonds(State &state, const std::vector<Bro
   return lost;
 }
 
-double Fracture::remove_bonds(State &state, std::vector<std::pair<std::size_t, std::size_t>> bonds)
+double Fracture::remove_bonds(State &state, const std::vector<std::pair<std::size_t, std::size_t>> &bonds)
 {
-  // Two removed sites may have a bond in common.
-  std::sort(bonds.begin(), bonds.end());
-  bonds.erase(std::unique(bonds.begin(), bonds.end()), bonds.end());
   std::vector<BrokenBond> own;
-  for (const auto &[place, kind] : bonds)
+  for (const auto &[place, kind] : std::set(bonds.begin(), bonds.end())) // two removed sites may have one in common
     if (band_.owns(place) && state.bonds.present(place, kind))
       own.push_back(broken(state, lattice_.bond(place, kind)));
   double removed_energy = 0.;
@@ -109,7 +107,7 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
     support::require(lattice_.is_site(place), "only a site can be removed");
     for_each_bond_of_site(state, lattice_, place, [&](const Bond &bond) { bonds.emplace_back(bond.near, bond.kind); });
   }
-  const double removed_energy = remove_bonds(state, std::move(bonds));
+  const double removed_energy = remove_bonds(state, bonds);
   for (const std::size_t place : places)
   {
     state.removed[place] = 1;

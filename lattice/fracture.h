@@ -97,7 +97,7 @@ public:
   /// Takes bonds out of the sheet, whatever their stretch. Those that are absent are left out. Collective, with the
   /// same list on all ranks.
   /// @param bonds place where each starts and its kind @return elastic energy that they held, per sheet thickness [J/m]
-  double remove_bonds(State &state, std::vector<std::pair<std::size_t, std::size_t>> bonds);
+  double remove_bonds(State &state, const std::vector<std::pair<std::size_t, std::size_t>> &bonds);
 
   /// Breaks every bond that is beyond its limit at the last evaluation of `forces`, or will be within `lookahead`,
   /// toughens what is to be toughened, and moves the tip. Collective.
@@ -156,10 +156,10 @@ private:
   Material material_;
   std::shared_ptr<const BreakingRule> rule_;
   Toughening toughening_;
-  double breaking_stretch_, toughened_stretch_; // smallest limits
-  std::vector<double> retraction_stretch_;      // by kind; none: not watched
-  std::optional<std::size_t> tip_;              // its place; none before a site was considered
-  double tip_Y_before_ = 0.;                    // reference Y of the tip before this step [m]
+  double breaking_stretch_, toughened_stretch_;                    // smallest limits
+  std::vector<double> retraction_stretch_;                         // by kind; none: not watched
+  std::optional<std::size_t> tip_;                                 // its place; none before a site was considered
+  double tip_Y_before_ = 0.;                                       // reference Y of the tip before this step [m]
   double toughened_to_ = -std::numeric_limits<double>::infinity(); // X [m] behind which all bonds are toughened
   std::vector<BrokenBond> broken_;
 };

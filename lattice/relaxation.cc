@@ -22,9 +22,7 @@ struct Sums
     power += other.power;
     velocity_square += other.velocity_square;
     force_square += other.force_square;
-    // A NaN is taken, and kept, since no comparison with it is true.
-    if (std::isnan(other.largest_force_square) || other.largest_force_square > largest_force_square)
-      largest_force_square = other.largest_force_square;
+    largest_force_square = std::max(largest_force_square, other.largest_force_square);
   }
 };
 
@@ -79,7 +77,7 @@ double relax(State &state, const TriangularLattice &lattice, const Material &mat
                                         const Eigen::Vector2d f = forces.on_sites().at(i), v = state.velocity.at(i);
                                         row.add({f.dot(v), v.squaredNorm(), f.squaredNorm(), f.squaredNorm()});
                                       });
-    residual = std::sqrt(sums.largest_force_square);
+    residual = std::sqrt(std::isfinite(sums.force_square) ? sums.largest_force_square : sums.force_square);
     if (residual <= tolerance)
     {
       state.velocity = VectorField(lattice.n_places());

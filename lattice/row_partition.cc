@@ -1,6 +1,5 @@
 #include "lattice/row_partition.h"
 
-#include <algorithm>
 #include <set>
 
 namespace latcon::lattice

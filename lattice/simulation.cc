@@ -83,13 +83,12 @@ int Simulation::needed_parts() const
     if (forces_.row_sums(row).has_short_bonds)
       rows.push_back(row);
   int parts = 1;
-  const auto n = static_cast<std::ptrdiff_t>(rows.size());
 #pragma omp parallel for schedule(dynamic)                                                                             \
   reduction(max                                                                                                        \
             : parts) if (rows.size() * lattice_.stride() >= min_places_for_threads)
-  for (std::ptrdiff_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < rows.size(); ++i)
   {
-    const std::size_t row = rows[static_cast<std::size_t>(i)];
+    const std::size_t row = rows[i];
     // A hair more for round-off.
     if (forces_.row_has_short_bonds_ahead(state_, velocity, row, h, (1. + 1e-9) * short_stretch))
       for_each_bond(state_, lattice_, {row, row + 1}, [&](const Bond &bond) { divide_for(bond, parts); });

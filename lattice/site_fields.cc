@@ -1,7 +1,5 @@
 #include "lattice/site_fields.h"
 
-#include <cmath>
-
 #include <Eigen/LU>
 
 #include "support/dense.h"

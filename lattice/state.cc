@@ -1,6 +1,5 @@
 #include "lattice/state.h"
 
-#include <cmath>
 #include <limits>
 
 #include <Eigen/Geometry>

@@ -215,10 +215,9 @@ double stretch_rate(const State &state, const TriangularLattice &lattice, const 
 template <class RowOperation>
 void for_each_row(const TriangularLattice &lattice, Rows rows, const RowOperation &operation)
 {
-  const auto end = static_cast<std::ptrdiff_t>(rows.end);
 #pragma omp parallel for schedule(static) if ((rows.end - rows.begin) * lattice.stride() >= min_places_for_threads)
-  for (auto row = static_cast<std::ptrdiff_t>(rows.begin); row < end; ++row)
-    operation(static_cast<std::size_t>(row));
+  for (std::size_t row = rows.begin; row < rows.end; ++row)
+    operation(row);
 }
 
 /// Calls visit(bond) for every bond present that starts in a row of `rows`, row by row.

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
-#include <string>
-#include <utility>
 
 #include "lattice/disorder.h"
 #include "support/dense.h"
