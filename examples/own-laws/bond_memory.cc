@@ -98,10 +98,10 @@ int main()
   for (const int finer : {1, 2})
   {
     lattice::Simulation ringing(sheet, material, loaded, h / finer);
-    lattice::Field vx(sheet.n_places(), 0.), vy(sheet.n_places(), 0.);
-    for (std::size_t i = 0; i < vy.size(); ++i)
-      vy[i] = 5. * std::sin(6. * sheet.reference(i).x() / sheet.length());
-    ringing.set_velocities(vx, vy);
+    lattice::VectorField velocity(sheet.n_places());
+    for (std::size_t i = 0; i < sheet.n_places(); ++i)
+      velocity.y[i] = 5. * std::sin(6. * sheet.reference(i).x() / sheet.length());
+    ringing.set_velocities(velocity);
     const double kinetic = ringing.energies().kinetic;
     for (int step = 0; step < 400 * finer; ++step)
       ringing.step();
