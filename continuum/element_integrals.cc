@@ -13,7 +13,6 @@
 
 #include <Epetra_MultiVector.h>
 
-#include <algorithm>
 #include <array>
 
 using namespace dealii;

@@ -2,6 +2,7 @@
 
 #include "continuum/lifted_shapes.h"
 #include "continuum/vector_kernels.h"
+#include "support/require.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/partitioner.h>
@@ -198,7 +199,7 @@ void SinglePrecisionMatrix::add(const Index row, const Index n_columns, const In
       block = begin;
     while (block != end && *block < column / 2)
       ++block;
-    AssertThrow(block != end && *block == column / 2, ExcInternalError());
+    support::require(block != end && *block == column / 2, "a matrix has no place for an entry");
     float &entry = values_[4 * (block - columns_.data()) + 2 * (at % 2) + column % 2];
     const double exact = entry + factor * values[k];
     entry = static_cast<float>(exact);
@@ -216,7 +217,7 @@ void SinglePrecisionMatrix::set(const Entry &entry, const bool adds)
   const auto begin = columns_.begin() + first_block_[row / 2];
   const auto end = columns_.begin() + first_block_[row / 2 + 1];
   const auto found = std::lower_bound(begin, end, column / 2);
-  AssertThrow(found != end && *found == column / 2, ExcInternalError());
+  support::require(found != end && *found == column / 2, "a matrix has no place for an entry");
   float &stored = values_[4 * (found - columns_.begin()) + 2 * (row % 2) + column % 2];
   const double exact = stored + (adds ? entry.value : 0.);
   stored = static_cast<float>(adds ? exact : entry.value);

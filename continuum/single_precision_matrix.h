@@ -5,7 +5,6 @@
 #include <deal.II/base/subscriptor.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
-#include <map>
 #include <vector>
 
 namespace latcon::continuum
