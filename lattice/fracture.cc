@@ -122,6 +122,7 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
 const std::vector<BrokenBond> &Fracture::apply(State &state, const Forces &forces,
                                                const VectorField &evaluated_velocity, double lookahead, int *number)
 {
+  support::require(lookahead >= 0., "breaking looks ahead in time, not back");
   if (state.breaking_stretch != breaking_stretch_ || state.toughened_stretch != toughened_stretch_ ||
       state.strength.empty() != material_.disorder.strength.is_none())
     throw std::logic_error("the breaking stretches of a state are set by configure() before bonds break");

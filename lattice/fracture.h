@@ -105,7 +105,7 @@ public:
   /// makes bonds break at the end of the step that is nearest to the moment, neither late nor early in the mean
   /// @param number in: of this rank, out: the largest over all ranks; see RowPartition::all_gather
   /// @return the bonds of the whole sheet that broke now, in the order of storage
-  /// @throws std::logic_error for a state that configure() has not set
+  /// @throws std::logic_error for a state that configure() has not set; std::invalid_argument for a negative lookahead
   const std::vector<BrokenBond> &apply(State &state, const Forces &forces, const VectorField &evaluated_velocity,
                                        double lookahead = 0., int *number = nullptr);
 

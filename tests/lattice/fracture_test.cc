@@ -369,6 +369,8 @@ TEST(Fracture, RefusesRulesOutOfRange)
   const TriangularLattice periodic(1., 10., 10., Orientation::rows_along_crack, {true, false});
   EXPECT_THROW(Fracture(periodic, sheets::rubber(), 3., Toughening{}, Eigen::Matrix2d::Identity()),
                std::invalid_argument);
+  TenSites sheet(Toughening{});
+  EXPECT_THROW(sheet.fracture.apply(sheet.state, sheet.forces, sheet.state.velocity, -1.), std::invalid_argument);
   EXPECT_THROW(TenSites(Toughening{}, 0.), std::invalid_argument);
   EXPECT_THROW(TenSites(Toughening{2., 0., -1.}), std::invalid_argument);
   EXPECT_THROW(TenSites(Toughening{0.5, 0., 1.}), std::invalid_argument);
