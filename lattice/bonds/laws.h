@@ -1,4 +1,5 @@
-#pragma once
+#ifndef LATCON_LATTICE_BONDS_LAWS_H
+#define LATCON_LATTICE_BONDS_LAWS_H
 
 #include <cmath>
 #include <cstddef>
@@ -15,9 +16,9 @@
 /// is its memory (memories.h).
 ///
 /// A bond of rest length l and cross-section A0 stores A0 l psi(lam), lam = |x_j - x_i| / l > 0 being its stretch, and
-/// pulls with the axial force A0 psi'(lam), tension positive. A law gives psi, psi' and psi'' in Pa: a class here its
-/// constants, energy, stiffness and limits, formulas.inc its force for any type of number. `stiffens_when_short` is
-/// whether short bonds may require divided time steps; not those of laws as stiff at any stretch.
+/// pulls with the axial force A0 psi'(lam), tension positive. A law gives psi, psi' and psi'' in Pa: its class its
+/// constants, energy, stiffness and limits, its formula (last in this file) its force. `stiffens_when_short` is whether
+/// short bonds may require divided time steps; not those of laws as stiff at any stretch.
 namespace latcon::lattice
 {
 
@@ -169,3 +170,21 @@ inline bool stiffens_when_short(const BondLaw &law)
 }
 
 } // namespace latcon::lattice
+
+#endif
+#ifdef LATCON_BOND_FORMULAS // see formulas.inc
+
+// psi'(lam) [Pa], axial force per reference cross-section, tension positive. @param inverse 1 / lam
+template <class Number>
+inline Number force(const MooneyRivlinBond &law, Number stretch, Number inverse)
+{
+  const Number inverse_square = inverse * inverse;
+  return law.a * (stretch - inverse_square) + law.b * (1. - inverse_square * inverse);
+}
+template <class Number>
+inline Number force(const LinearBond &law, Number stretch, Number /*inverse*/)
+{
+  return law.modulus * (stretch - 1.);
+}
+
+#endif

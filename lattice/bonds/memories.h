@@ -1,4 +1,5 @@
-#pragma once
+#ifndef LATCON_LATTICE_BONDS_MEMORIES_H
+#define LATCON_LATTICE_BONDS_MEMORIES_H
 
 #include <array>
 #include <cstddef>
@@ -11,7 +12,7 @@
 ///   sigma = psi'(lam) + eta lam' + q   (theory.md, eq. (L.27)).
 ///
 /// A memory declares its MemoryProperties. `set_duration` prepares it for updates over one duration [s], >= 0, at first
-/// 0; `advance` (formulas.inc) is the formula of an update. Variables are 0 at rest and are stored by BondHistory.
+/// 0; `advance` (last in this file) is the formula of an update. Variables are 0 at rest and are stored by BondHistory.
 namespace latcon::lattice
 {
 
@@ -163,3 +164,43 @@ inline void set_duration(BondMemory &memory, double duration)
 }
 
 } // namespace latcon::lattice
+
+#endif
+#ifdef LATCON_BOND_FORMULAS // see formulas.inc
+
+// Updates the n variables of the memory of a bond while its stretch changes from `before` to `now`.
+// @param dissipation of each mechanism per reference volume of the bond: the power at the end [Pa/s], or the energy
+// meanwhile [Pa] if it `dissipates_energy`
+// @return overstress q at the end [Pa]
+
+// The power is q_i^2 / (E_i tau_i), of the dashpot of each branch.
+template <class Number>
+inline Number advance(const MaxwellMemory &memory, std::size_t n, Number before, Number now, Number *overstress,
+                      Number *dissipation)
+{
+  const Number change = now - before;
+  Number sum{};
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    overstress[i] = memory.decay[i] * overstress[i] + memory.gain[i] * change;
+    sum = i == 0 ? overstress[0] : sum + overstress[i];
+    dissipation[i] = memory.fluency[i] * (overstress[i] * overstress[i]);
+  }
+  return sum;
+}
+// The energy is that of the slider, eq. (L.43). Beyond the yield stress q is that of the new alpha to the bit, so that
+// nothing slips further while the stretch stays.
+template <class Number>
+inline Number advance(const PlasticMemory &memory, std::size_t /*n*/, Number before, Number now, Number *variables,
+                      Number *dissipation)
+{
+  const Number trial = variables[0] + memory.modulus * (now - before);
+  const Number yield = memory.yield_stress + memory.hardening * variables[1];
+  const Number slipped = memory.slip * excess(trial, yield);
+  dissipation[0] = slipped * (yield + (0.5 * memory.hardening) * slipped);
+  variables[1] = variables[1] + slipped;
+  variables[0] = clamped(trial, memory.yield_stress + memory.hardening * variables[1]);
+  return variables[0];
+}
+
+#endif
