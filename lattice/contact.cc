@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <omp.h>
-
 #include "support/require.h"
 
 namespace latcon::lattice
@@ -15,9 +13,6 @@ namespace
 // Skin over the contact distance. The number of candidate pairs grows with its square, the time between rebuilds in
 // proportion.
 constexpr double skin_over_distance = 1.;
-
-// Candidates below which one thread is faster.
-constexpr std::size_t min_candidates_for_threads = 512;
 
 } // namespace
 
@@ -137,41 +132,28 @@ const std::vector<SiteForce> &Contact::evaluate(State &state, VectorField &veloc
 {
   update_lists(state);
   band_.exchange(sent_, received_, {&state.position.x, &state.position.y, &velocity.x, &velocity.y});
-  const auto add_pair = [&](std::size_t first, std::size_t second, std::vector<SiteForce> &forces)
-  {
-    const Eigen::Vector2d between = state.position.difference(first, second);
-    const double square = between.squaredNorm();
-    // Sites in one place have no line between them to act along.
-    if (!(square < law_.distance * law_.distance) || square == 0.)
-      return;
-    const double r = std::sqrt(square);
-    const Eigen::Vector2d direction = between / r;
-    const double approach = -direction.dot(velocity.difference(first, second));
-    const double repulsion = law_.stiffness * (law_.distance - r) + law_.viscosity * approach;
-    if (!(repulsion > 0.))
-      return;
-    const Eigen::Vector2d force = repulsion * direction;
-    if (band_.owns(first))
-      forces.push_back({first, -force});
-    if (band_.owns(second))
-      forces.push_back({second, force});
-  };
-  const std::size_t n_shares =
-    candidates_.size() < min_candidates_for_threads ? 1 : static_cast<std::size_t>(omp_get_max_threads());
-  forces_of_shares_.resize(n_shares);
-#pragma omp parallel for schedule(static) if (n_shares > 1)
-  for (std::size_t share = 0; share < n_shares; ++share)
-  {
-    std::vector<SiteForce> &forces = forces_of_shares_[share];
-    forces.clear();
-    const auto end = candidates_.nth(candidates_.size() * (share + 1) / n_shares);
-    for (auto first = candidates_.nth(candidates_.size() * share / n_shares); first != end; ++first)
-      for (const std::size_t second : first->second.above)
-        add_pair(first->first, second, forces);
-  }
   forces_.clear();
-  for (const std::vector<SiteForce> &of_share : forces_of_shares_) // the order of pairs, however many shares
-    forces_.insert(forces_.end(), of_share.begin(), of_share.end());
+  // By one thread: waking others would take longer.
+  for (const auto &[first, candidate] : candidates_)
+    for (const std::size_t second : candidate.above)
+    {
+      const Eigen::Vector2d between = state.position.difference(first, second);
+      const double square = between.squaredNorm();
+      // Sites in one place have no line between them to act along.
+      if (!(square < law_.distance * law_.distance) || square == 0.)
+        continue;
+      const double r = std::sqrt(square);
+      const Eigen::Vector2d direction = between / r;
+      const double approach = -direction.dot(velocity.difference(first, second));
+      const double repulsion = law_.stiffness * (law_.distance - r) + law_.viscosity * approach;
+      if (!(repulsion > 0.))
+        continue;
+      const Eigen::Vector2d force = repulsion * direction;
+      if (band_.owns(first))
+        forces_.push_back({first, -force});
+      if (band_.owns(second))
+        forces_.push_back({second, force});
+    }
   return forces_;
 }
 

@@ -81,7 +81,6 @@ private:
   double skin_;
   LinkCells cells_;                                               // of candidates, by their places
   boost::container::flat_map<std::size_t, Candidate> candidates_; // by place
-  std::vector<std::vector<SiteForce>> forces_of_shares_;          // scratch
   SitesOfRanks sent_, received_;
   std::size_t n_listings_ = 0;
 };

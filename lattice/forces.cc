@@ -4,6 +4,8 @@
 
 #include <omp.h>
 
+#include "support/require.h"
+
 namespace latcon::lattice
 {
 
@@ -37,15 +39,16 @@ void Forces::set_elapsed(double duration)
 }
 
 void Forces::evaluate(const State &state, const VectorField &velocity, const RowFunction &post_force,
-                      BondHistory *history)
+                      BondHistory *history, double lookahead)
 {
+  support::require(lookahead >= 0., "breaking looks ahead in time, not back");
+  lookahead_ = lookahead;
   const Rows own = band_.rows();
   const bool threads = (own.end - own.begin) * lattice_.stride() >= min_places_for_threads;
   const std::size_t n_scratch = threads ? static_cast<std::size_t>(omp_get_max_threads()) : 1;
   while (scratch_.size() < n_scratch)
     scratch_.emplace_back(lattice_, n_kinds_);
-  if (state.history.empty())
-    history = nullptr;
+  const Motion motion{state, velocity, state.history.empty() ? nullptr : history, lookahead};
 #pragma omp parallel if (threads)
   {
     const auto first = static_cast<std::ptrdiff_t>(own.begin);
@@ -53,19 +56,19 @@ void Forces::evaluate(const State &state, const VectorField &velocity, const Row
     const std::ptrdiff_t n = omp_get_num_threads(), i = omp_get_thread_num();
     const std::ptrdiff_t begin = first + rows * i / n, end = first + rows * (i + 1) / n;
     Scratch &scratch = scratch_[static_cast<std::size_t>(i)];
-    evaluate_rows({state, velocity, history}, begin, end, scratch, post_force);
-    if (history != nullptr)
+    evaluate_rows(motion, begin, end, scratch, post_force);
+    if (motion.history != nullptr)
     {
       // The rows whose bonds the thread above computed too, and those below the band.
 #pragma omp barrier
       for (std::ptrdiff_t row = std::max(begin, end - reach_); row < end; ++row)
-        bonds_of_row({state, velocity, history}, static_cast<std::size_t>(row), row, row, scratch);
+        bonds_of_row(motion, static_cast<std::size_t>(row), row, row, scratch);
       for (std::ptrdiff_t below = first - reach_; i == 0 && below < first; ++below)
         if (const auto row = lattice_.row(below); row && (*row < own.begin || *row >= own.end))
-          bonds_of_row({state, velocity, history}, *row, below, below, scratch);
+          bonds_of_row(motion, *row, below, below, scratch);
     }
   }
-  if (history != nullptr)
+  if (motion.history != nullptr)
     set_elapsed(0.);
 }
 
@@ -74,7 +77,7 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
 {
   if (begin == end)
     return;
-  const Motion motion{updating.state, updating.velocity};
+  const Motion motion{updating.state, updating.velocity, nullptr, updating.lookahead};
   scratch.sums.clear();
   for (std::ptrdiff_t row = begin - reach_; row < begin; ++row)
     if (const auto from = lattice_.row(row))
@@ -135,12 +138,6 @@ kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row,
   const auto &[vx, vy] = motion.velocity;
   return {lattice_.columns(),      &x[near],         &y[near],     &vx[near], &vy[near], state.breaking_stretch,
           state.toughened_stretch, shortness_limit_, kinds.data(), n_kinds_};
-}
-
-bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ahead) const
-{
-  std::vector<kernels::BondsOfKind> kinds;
-  return kernels::loops().any_event_ahead(row_of_bonds({state, state.velocity}, row, kinds), ahead);
 }
 
 bool Forces::row_has_short_bonds_ahead(const State &state, const VectorField &velocity, std::size_t row, double ahead,
@@ -215,6 +212,12 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
                                row >= begin ? scratch.sums.at(row)[component] : nullptr,
                                scratch.sums.at(row + rows)[component] + to);
   }
+  if (motion.lookahead > 0.)
+  {
+    bonds.kinds = kinds.data();
+    bonds.n_kinds = n_kinds_;
+    sums.has_events = kernels::loops().any_event_ahead(bonds, motion.lookahead);
+  }
   for (std::size_t m = 0; m < sums.mechanism_power.size(); ++m)
     if (!mechanism_gives_energy_[m])
       sums.viscous_power += sums.mechanism_power[m];
@@ -250,7 +253,7 @@ void Forces::evaluate_row(const State &state, const VectorField &velocity, std::
                           const RowFunction &post_force)
 {
   const auto number = static_cast<std::ptrdiff_t>(row);
-  evaluate_rows({state, velocity}, number, number + 1, scratch_.front(), post_force);
+  evaluate_rows({state, velocity, nullptr, lookahead_}, number, number + 1, scratch_.front(), post_force);
 }
 
 } // namespace latcon::lattice

@@ -46,8 +46,11 @@ public:
   /// of images included. Forces at held sites are those the bonds exert on them.
   /// @param post_force called once per row, in any order, by several threads; may be empty
   /// @param history that of the state, to be updated to its positions; nullptr: none
+  /// @param lookahead [s], >= 0: bonds whose ends will be too far apart after they have moved for so long at these
+  /// velocities, which must be known in the halo then, count as past their limit; 0: those that are past it
+  /// @throws std::invalid_argument for a negative lookahead
   void evaluate(const State &state, const VectorField &velocity, const RowFunction &post_force,
-                BondHistory *history = nullptr);
+                BondHistory *history = nullptr, double lookahead = 0.);
   /// Evaluates the forces into on_sites().
   void evaluate(const State &state, const VectorField &velocity);
   /// Computes the forces on the sites of one row of the band anew, and the sums over its bonds, at the positions and
@@ -60,12 +63,9 @@ public:
 
   /// Sums over the bonds that start in a row of the band, as of the last evaluation.
   const kernels::RowSums &row_sums(std::size_t row) const { return row_sums_[row]; }
+  double lookahead() const { return lookahead_; } ///< of the last evaluation [s]
   /// Returns whether RowSums::mechanism_power is an energy, which is no part of the viscous power.
   bool gives_energy(std::size_t mechanism) const { return mechanism_gives_energy_[mechanism]; }
-
-  /// Returns whether one of the bonds that start in a row of the band will be past its limit, or will have retracted,
-  /// after its ends have moved for `ahead` [s] at the velocities of the state.
-  bool row_has_events_ahead(const State &state, std::size_t row, double ahead) const;
 
   /// Returns whether one of the short bonds that start in a row of the band has at most a stretch of `stretch` [-], or
   /// will have it in `ahead` [s] at its rate now, with the velocities [m/s] of the last evaluation.
@@ -103,6 +103,7 @@ private:
     const State &state;
     const VectorField &velocity;
     BondHistory *history = nullptr; // updated
+    double lookahead = 0.;
   };
 
   /// Scratch arrays of a thread.
@@ -144,6 +145,7 @@ private:
   std::vector<double> retraction_stretch_;        // by kind; none: not watched
   double shortness_limit_ = std::numeric_limits<double>::infinity();
   bool columns_repeat_; // periodic along the rows
+  double lookahead_ = 0.;
 
   std::vector<Scratch> scratch_; // one a thread
   VectorField on_sites_;

@@ -58,7 +58,7 @@ Fracture::Event Fracture::event(const State &state, const Bond &bond, const Vect
     return among(stretch(state, lattice_, bond), shortest, longest);
   const double l = lattice_.rest_length(kind);
   const Eigen::Vector2d r = ratio * state.position.difference(near, far),
-                        v = ratio * state.velocity.difference(near, far);
+                        v = ratio * evaluated_velocity.difference(near, far);
   return among(formulas::squared_length_after(lookahead, r.x(), r.y(), v.x(), v.y()),
                formulas::squared_length(shortest, l), formulas::squared_length(longest, l));
 }
@@ -120,35 +120,23 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
 }
 
 const std::vector<BrokenBond> &Fracture::apply(State &state, const Forces &forces,
-                                               const VectorField &evaluated_velocity, double lookahead, int *number)
+                                               const VectorField &evaluated_velocity, int *number)
 {
-  support::require(lookahead >= 0., "breaking looks ahead in time, not back");
   if (state.breaking_stretch != breaking_stretch_ || state.toughened_stretch != toughened_stretch_ ||
       state.strength.empty() != material_.disorder.strength.is_none())
     throw std::logic_error("the breaking stretches of a state are set by configure() before bonds break");
-  std::vector<std::vector<BrokenBond>> of_rows(lattice_.rows());
-  const auto find = [&](std::size_t row)
-  {
-    if (!(lookahead > 0. ? forces.row_has_events_ahead(state, row, lookahead) : forces.row_sums(row).has_events))
-      return;
-    for_each_bond(state, lattice_, {row, row + 1},
-                  [&](const Bond &bond)
-                  {
-                    const Event now = event(state, bond, evaluated_velocity, lookahead);
-                    if (now == Event::broken)
-                      of_rows[row].push_back(broken(state, bond));
-                    else if (now == Event::retracted)
-                      state.bonds.toughen(bond.near, bond.kind);
-                  });
-  };
-  if (lookahead > 0.)
-    for_each_row(lattice_, band_.rows(), find);
-  else // rows are flagged already: not worth waking threads
-    for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
-      find(row);
   std::vector<BrokenBond> own;
-  for (const std::vector<BrokenBond> &of_row : of_rows)
-    own.insert(own.end(), of_row.begin(), of_row.end());
+  for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
+    if (forces.row_sums(row).has_events)
+      for_each_bond(state, lattice_, {row, row + 1},
+                    [&](const Bond &bond)
+                    {
+                      const Event now = event(state, bond, evaluated_velocity, forces.lookahead());
+                      if (now == Event::broken)
+                        own.push_back(broken(state, bond));
+                      else if (now == Event::retracted)
+                        state.bonds.toughen(bond.near, bond.kind);
+                    });
   broken_ = lose_bonds(state, own, number);
 
   const std::optional<std::size_t> previous_tip = tip_;

@@ -99,15 +99,14 @@ public:
   /// @param bonds place where each starts and its kind @return elastic energy that they held, per sheet thickness [J/m]
   double remove_bonds(State &state, const std::vector<std::pair<std::size_t, std::size_t>> &bonds);
 
-  /// Breaks every bond that is beyond its limit at the last evaluation of `forces`, or will be within `lookahead`,
-  /// toughens what is to be toughened, and moves the tip. Collective.
-  /// @param lookahead [s], >= 0, at the velocities of the state, which must be known in the halo then. Half a time step
-  /// makes bonds break at the end of the step that is nearest to the moment, neither late nor early in the mean
+  /// Breaks every bond that is past its limit at the last evaluation of `forces`, with its lookahead, toughens what is
+  /// to be toughened, and moves the tip. Collective.
+  /// @param evaluated_velocity those of that evaluation [m/s]
   /// @param number in: of this rank, out: the largest over all ranks; see RowPartition::all_gather
   /// @return the bonds of the whole sheet that broke now, in the order of storage
-  /// @throws std::logic_error for a state that configure() has not set; std::invalid_argument for a negative lookahead
+  /// @throws std::logic_error for a state that configure() has not set
   const std::vector<BrokenBond> &apply(State &state, const Forces &forces, const VectorField &evaluated_velocity,
-                                       double lookahead = 0., int *number = nullptr);
+                                       int *number = nullptr);
 
   /// Finds the tip among all sites and toughens behind it; for a state that was cut or loaded from outside.
   void locate_tip(State &state);

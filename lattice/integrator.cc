@@ -53,10 +53,10 @@ void Integrator::accelerate_row(State &state, std::size_t row, const Forces::OfR
                    &state.acceleration[axis][begin], std::multiplies());
 }
 
-void Integrator::accelerate(State &state)
+void Integrator::accelerate(State &state, double lookahead)
 {
   const auto after = [&](std::size_t row, const Forces::OfRow &force) { accelerate_row(state, row, force); };
-  forces_.evaluate(state, evaluated(state), std::ref(after), &state.history);
+  forces_.evaluate(state, evaluated(state), std::ref(after), &state.history, lookahead);
   evaluate_site_forces(state);
   accelerate_sites(state);
 }

@@ -58,7 +58,9 @@ protected:
   /// Brings what forces are evaluated at up to date in the halo and at images. Collective.
   void exchange_ghosts(State &state);
   /// Computes the accelerations by all forces at the present positions and velocities. Updates the memory of bonds.
-  void accelerate(State &state);
+  /// @param lookahead of breaking [s], see Forces::evaluate. Half of a long step makes bonds break at the end of the
+  /// step that is nearest to the moment, neither late nor early in the mean
+  void accelerate(State &state, double lookahead = 0.);
   /// Adds the accelerations by site forces to those of a state; along a roller's fixed component there is none.
   void accelerate_sites(State &state);
   /// Adds to the velocities what site forces change of them in `duration` [s].

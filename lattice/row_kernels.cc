@@ -241,34 +241,49 @@ void bonds_of_row(const RowOfBonds &row, RowSums &sums)
   }
 }
 
-// Whether test(bonds of a kind, first site, vectors between the ends of bonds, their rates) holds for a bond of a row.
+// Whether test(bonds, first site, vectors between the ends of bonds, their rates) holds for a bond of a kind.
+template <bool has_factors, class Test>
+// cppcheck-suppress passedByValue ; copies, which stay in registers
+HWY_INLINE bool any_of_kind(const RowOfBonds row, const BondsOfKind bonds, const Test &test)
+{
+  auto found = hn::FirstN(D(), 0);
+  const auto between_ends = [&](const double *of_sites, std::size_t site)
+  { return difference<has_factors>(bonds, of_sites, site, load(of_sites + site)); };
+  for (std::size_t site = 0; site < row.n; site += width())
+    found = hn::Or(found, test(bonds, site, between_ends(row.x, site), between_ends(row.y, site),
+                               between_ends(row.vx, site), between_ends(row.vy, site)));
+  return !hn::AllFalse(D(), found);
+}
+
+// The same for all bonds of a row.
 template <class Test>
 HWY_INLINE bool any_bond(const RowOfBonds &row, const Test &test)
 {
-  auto found = hn::FirstN(D(), 0);
-  for (std::size_t site = 0; site < row.n; site += width())
-  {
-    const Lanes x = load(row.x + site), y = load(row.y + site), vx = load(row.vx + site), vy = load(row.vy + site);
-    for (std::size_t kind = 0; kind < row.n_kinds; ++kind)
-    {
-      const BondsOfKind &bonds = row.kinds[kind];
-      found = hn::Or(found,
-                     test(bonds, site, difference<true>(bonds, row.x, site, x), difference<true>(bonds, row.y, site, y),
-                          difference<true>(bonds, row.vx, site, vx), difference<true>(bonds, row.vy, site, vy)));
-    }
-  }
-  return !hn::AllFalse(D(), found);
+  return std::any_of(row.kinds, row.kinds + row.n_kinds,
+                     [&](const BondsOfKind &bonds) {
+                       return bonds.length_ratio != nullptr ? any_of_kind<true>(row, bonds, test)
+                                                            : any_of_kind<false>(row, bonds, test);
+                     });
 }
 
 bool any_event_ahead(const RowOfBonds &row, double ahead)
 {
-  return any_bond(row,
-                  [&](const BondsOfKind &bonds, std::size_t site, Lanes dx, Lanes dy, Lanes dvx, Lanes dvy)
-                  {
-                    const double l = bonds.constants.rest_length;
-                    return are_events(row, bonds, site, squared_length_after(ahead, dx, dy, dvx, dvy),
-                                      [l](Lanes stretch) { return squared_length(stretch, l); });
-                  });
+  // Few bonds are near a limit that all have, a hair less for round-off, so whose it is can be asked then.
+  const double first_limit = (1. - 1e-12) * std::min(row.breaking_stretch, row.toughened_stretch);
+  const auto is_near = [&](const BondsOfKind &bonds, std::size_t site, Lanes dx, Lanes dy, Lanes dvx, Lanes dvy)
+  {
+    return hn::And(hn::Gt(squared_length_after(ahead, dx, dy, dvx, dvy),
+                          lanes(squared_length(first_limit, bonds.constants.rest_length))),
+                   mask_of_bit(load_states(bonds.states + site), bonds.present));
+  };
+  const auto is_event = [&](const BondsOfKind &bonds, std::size_t site, Lanes dx, Lanes dy, Lanes dvx, Lanes dvy)
+  {
+    const double l = bonds.constants.rest_length;
+    return are_events(row, bonds, site, squared_length_after(ahead, dx, dy, dvx, dvy),
+                      [l](Lanes stretch) { return squared_length(stretch, l); });
+  };
+  const bool asks_each = row.kinds[0].strength != nullptr || row.kinds[0].retraction_stretch > 0.;
+  return (asks_each || any_bond(row, is_near)) && any_bond(row, is_event);
 }
 
 bool any_short_ahead(const RowOfBonds &row, double ahead, double stretch)

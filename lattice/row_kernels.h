@@ -76,7 +76,7 @@ struct RowSums
   /// Of each mechanism of Material::n_mechanisms(): what memories dissipate [W/m], or have since their last update
   /// [J/m]; see MemoryProperties.
   std::vector<double> mechanism_power = {};
-  bool has_events = false;      ///< whether one is past its limit, or has retracted
+  bool has_events = false;      ///< whether one is past its limit, or has retracted; see Forces::evaluate
   bool has_short_bonds = false; ///< whether one has an inverse stretch above RowOfBonds::shortness_limit
 };
 

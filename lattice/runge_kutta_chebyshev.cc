@@ -56,7 +56,7 @@ void RungeKuttaChebyshev::step(State &state)
     exchange_ghosts(state);
   }
   forces_.set_elapsed(h);
-  accelerate(state);
+  accelerate(state, 0.5 * h);
   state.time += h;
 }
 

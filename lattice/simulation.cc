@@ -261,10 +261,8 @@ void Simulation::advance(double duration, double end)
     return;
   }
 
-  // Long steps would break bonds late; those of velocity Verlet are so short that they need not look ahead.
-  const double lookahead = time_stepping_.stages > 0 ? 0.5 * duration : 0.;
   const std::vector<BrokenBond> &broken =
-    fracture_->apply(state_, forces_, integrator_->evaluated_velocity(state_), lookahead, &parts_);
+    fracture_->apply(state_, forces_, integrator_->evaluated_velocity(state_), &parts_);
   if (broken.empty())
     return;
   broken_bonds_.insert(broken_bonds_.end(), broken.begin(), broken.end());
