@@ -15,9 +15,9 @@ constexpr double interval = 0.1;
 // Number of choices of which one tries the slower number again.
 constexpr std::size_t choices_per_trial = 16;
 
-// Share of a core below which all threads together wait for cores. One thread of an idle machine gets nearly all of
-// one.
-constexpr double share_of_core = 0.9;
+// Share of their cores below which threads wait for cores. Those of an idle machine get nearly all, since they wait for
+// each other busily.
+constexpr double share_of_cores = 0.7;
 
 template <clockid_t clock>
 double seconds()
@@ -55,7 +55,7 @@ void DynamicThreads::begin_step()
 
 void DynamicThreads::choose(double wall_time, double processor_time)
 {
-  if (!is_single_ && processor_time >= share_of_core * wall_time)
+  if (!is_single_ && processor_time >= share_of_cores * n_threads_ * wall_time)
   {
     time_per_step_ = {};
     n_choices_ = 0;

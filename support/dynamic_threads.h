@@ -10,7 +10,7 @@ namespace latcon::support
 /// Number of OpenMP threads of a loop whose steps contain many barriers: all, or one while other programs occupy the
 /// cores. Each barrier then waits for the thread that gets a core last, and several threads may be slower than one.
 ///
-/// While all threads together get less time than one core has, the time per step is measured on all threads and on
+/// While the threads get less than 0.7 of the time of as many cores, the time per step is measured on all of them and on
 /// one, and the faster number is used. The other one is tried now and then, and all are used again when cores are free.
 /// Only for loops whose results do not depend on the number of threads.
 class DynamicThreads

@@ -40,8 +40,8 @@ double steps_per_second(DynamicThreads &threads, const Machine &machine, double 
   return steps / (wall - begin);
 }
 
-constexpr Machine idle{{0.006, 1.6}, {0.01, 1.}}, slower_on_all{{0.06, 0.35}, {0.04, 0.25}},
-  slower_on_one{{0.03, 0.5}, {0.05, 0.3}};
+constexpr Machine idle{{0.006, 3.2}, {0.01, 1.}}, slower_on_all{{0.06, 2.4}, {0.04, 0.25}},
+  slower_on_one{{0.03, 2.4}, {0.05, 0.3}};
 
 class DynamicThreadsTest : public testing::Test
 {

@@ -6,6 +6,18 @@
 namespace latcon::input
 {
 
+enum class BreakingCase::Rule : int
+{
+  critical_stretch,
+  rate_stretch,
+  bond_energy
+};
+
+bool BreakingCase::needs_energy() const
+{
+  return rule == Rule::bond_energy;
+}
+
 void BreakingCase::declare(Parameters &p)
 {
   p.add(
@@ -42,7 +54,7 @@ void BreakingCase::check(const Case &input, Parameters &p) const
                               : "only rate-stretch has a rate factor; omit it",
             {"Fracture/rule"});
   for (std::size_t shell = 0; shell < lattice::n_shells; ++shell)
-    if (rule == Rule::bond_energy && input.has_shell(shell) && input.shell(shell).has_user_law())
+    if (needs_energy() && input.has_shell(shell) && input.shell(shell).has_user_law())
       p.error("Fracture/rule",
               "bond-energy needs the energy of bonds at any stretch, which user-defined laws do not have; give "
               "critical-stretch",

@@ -36,14 +36,9 @@ struct Case;
 /// Entries of a case for the rule by which bonds break, besides lam_f.
 struct BreakingCase
 {
-  enum class Rule
-  {
-    critical_stretch,
-    rate_stretch,
-    bond_energy
-  };
+  enum class Rule : int; // the list of rules: breaking_case.cc
 
-  Rule rule = Rule::critical_stretch;
+  Rule rule = {}; ///< by default the first
   std::vector<double> shell_factors = {}; ///< of lam_f, by shell; empty: all 1
   double rate_factor = 1.;                ///< of lam_f at high rates [-]
   double rate_time = 1e-4;                ///< tau [s]
@@ -52,6 +47,8 @@ struct BreakingCase
   void check(const Case &input, Parameters &parameters) const;
   /// Largest limit of a bond that has not toughened over lam_f, for rules that do not ask for the law of the bonds.
   double largest_factor() const;
+  /// Returns whether the rule asks for the energy of bonds.
+  bool needs_energy() const;
   /// The rule. @param input with a breaking stretch; bond-energy needs its material
   std::shared_ptr<const lattice::BreakingRule> make(const Case &input) const;
 };

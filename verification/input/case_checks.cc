@@ -69,7 +69,7 @@ void check_cutout(const Case &input, Parameters &p)
 // Reports a breaking stretch at which the loading alone would break bonds.
 void check_breaking_stretch(const Case &input, Parameters &p, const lattice::TriangularLattice &sheet)
 {
-  if (input.breaking.rule == BreakingCase::Rule::bond_energy && !p.good())
+  if (input.breaking.needs_energy() && !p.good())
     return; // bonds may have no energy
   const std::shared_ptr<const lattice::BreakingRule> rule = input.breaking_rule();
   double longest = 0., over_limit = 0.;

@@ -39,8 +39,7 @@ void NonlocalCase::check(const Case &input, Parameters &p) const
   refuse_scatter(input.left_end == Case::End::free, "Fracture/left end", "held");
   refuse_scatter(input.right_end == Case::End::free, "Fracture/right end", "held");
   refuse_scatter(input.toughening == Case::Toughening::retraction, "Fracture/toughening", "behind-tip or none");
-  refuse_scatter(input.breaking.rule == BreakingCase::Rule::bond_energy, "Fracture/rule",
-                 "critical-stretch or rate-stretch");
+  refuse_scatter(input.breaking.needs_energy(), "Fracture/rule", "critical-stretch or rate-stretch");
   if (input.has_sheet())
     try
     {
