@@ -74,7 +74,7 @@ public:
   Fracture(const RowPartition &band, const Material &material, std::shared_ptr<const BreakingRule> rule,
            Toughening toughening, const Eigen::Matrix2d &deformation);
   /// All bonds break beyond lam_f > 0. @throws std::invalid_argument for any other
-  Fracture(const RowPartition &band, const Material &material, double breaking_stretch, Toughening toughening,
+  Fracture(const RowPartition &band, const Material &material, double breaking_stretch, const Toughening &toughening,
            const Eigen::Matrix2d &deformation)
     : Fracture(band, material, std::make_shared<CriticalStretch>(breaking_stretch), toughening, deformation)
   {

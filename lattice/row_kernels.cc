@@ -199,6 +199,7 @@ void add_overstress(const Memory &memory, const RowOfBonds row, const BondsOfKin
     }
   }
   for (std::size_t m = 0; m < n_mechanisms; ++m)
+    // cppcheck-suppress unreadVariable ; it is the caller's
     remembered.dissipation[m] += volume * add(0., sums[m]);
 }
 

@@ -39,8 +39,10 @@ Block<n> pow(const Block<n> &a, double exponent)
 template <class T>
 struct Dual
 {
+  // cppcheck-suppress uninitMemberVar ; thousands are assigned before they are read
   Dual() = default;
   Dual(T value_, T slope_) : value(value_), slope(slope_) {}
+  // cppcheck-suppress useInitializationList ; a number that makes an array would be its size
   Dual(double constant) { value = constant, slope = 0.; }
 
   friend Dual operator+(const Dual &a, const Dual &b) { return {a.value + b.value, a.slope + b.slope}; }

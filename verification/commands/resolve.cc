@@ -101,7 +101,7 @@ private:
     add_cost(input, reply);
     for (const std::uint64_t seed : seeds)
     {
-      input.noise_seed = seed;
+      input.noise_seed = seed; // cppcheck-suppress unreadVariable ; `parameters` refer to it
       reply["sha256"].push_back(input::sha256(parameters.lines()));
     }
     return reply;

@@ -31,7 +31,7 @@ const Elements &load()
   if (entry == nullptr)
     throw support::OutputError(file, "it is not the module of this program");
   started = entry().start();
-  return entry();
+  return entry(); // cppcheck-suppress returnTempReference ; it gives a reference
 }
 
 } // namespace

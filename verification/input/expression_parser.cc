@@ -176,6 +176,7 @@ support::Expression parse_expression(const std::string &text, const std::string 
                                      const std::map<std::string, double> &values, std::set<std::string> *used)
 {
   support::Expression expression;
+  // cppcheck-suppress danglingLifetime ; read while the text is parsed
   recorded = &expression;
   try
   {

@@ -28,11 +28,11 @@ constexpr std::size_t comment_width = 74;
 // Comment on an entry in a resolved case: what it means, its unit, what is allowed.
 std::string comment_on(const Declaration &entry)
 {
-  const bool required = entry.presence == Presence::required;
+  std::string allowed = entry.rule;
+  if (entry.presence == Presence::required)
+    allowed += allowed.empty() ? "required" : "; required";
   return entry.documentation + (entry.unit.empty() ? "" : " [" + entry.unit + "]") +
-         (required || !entry.rule.empty()
-            ? " (" + entry.rule + (required && !entry.rule.empty() ? "; " : "") + (required ? "required" : "") + ")"
-            : "");
+         (allowed.empty() ? "" : " (" + allowed + ")");
 }
 
 } // namespace

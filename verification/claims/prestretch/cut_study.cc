@@ -42,13 +42,13 @@ Eigen::Vector2d reactions(const lattice::TriangularLattice &sheet, const lattice
   return reaction;
 }
 
-// Returns the radius, within half a spacing of R, for which the missing bonds, weighted by the energy that they would
-// have in tension along the rim, have the smallest sixth moment about the middle.
-double roundest_radius(const bridge::Subject &subject, double R, double length, double height)
+// Returns the radius, within half a spacing of `radius`, for which the missing bonds, weighted by the energy that they
+// would have in tension along the rim, have the smallest sixth moment about the middle.
+double roundest_radius(const bridge::Subject &subject, double radius, double length, double height)
 {
   constexpr std::size_t n_radii = 21;
   const double d = subject.spacing;
-  const double first = R - 0.487 * d; // no site is at such a distance
+  const double first = radius - 0.487 * d; // no site is at such a distance
   const lattice::TriangularLattice lattice(d, length, height, subject.orientation);
   const lattice::State whole =
     lattice::homogeneous_state(lattice, subject.material, Eigen::Matrix2d::Identity(), lattice::Edges::held);

@@ -183,7 +183,7 @@ TrappingWindow trapping_window(const CrackStrip &strip, std::size_t columns)
   const std::vector<Bond> bonds = patch(rows, columns);
   const auto is_held = [&](std::size_t row) { return row == 0 || row == rows - 1; };
   const auto crosses_crack = [&](const Bond &bond) { return bond.row == n && bond.far_row == n + 1; };
-  const auto unknown = [&](std::size_t row, std::size_t column) // first of the two of a free site
+  const auto first_unknown = [&](std::size_t row, std::size_t column) // first of the two of a free site
   { return static_cast<Eigen::Index>(2 * ((row - 1) * columns + column)); };
   const auto n_unknowns = static_cast<Eigen::Index>(4 * n * columns);
   const std::size_t first_whole = columns;                // of halves(): the middle of the row
@@ -200,11 +200,11 @@ TrappingWindow trapping_window(const CrackStrip &strip, std::size_t columns)
     {
       if (is_held(row))
         return;
-      const Eigen::Index i = unknown(row, column);
+      const Eigen::Index i = first_unknown(row, column);
       if (!is_held(other_row))
         for (Eigen::Index a = 0; a < 2; ++a)
           for (Eigen::Index b = 0; b < 2; ++b)
-            entries.emplace_back(i + a, unknown(other_row, other_column) + b, sign * stiffness(a, b));
+            entries.emplace_back(i + a, first_unknown(other_row, other_column) + b, sign * stiffness(a, b));
       else if (other_row != 0)
         load.segment<2>(i) -= sign * stiffness.col(1) * top;
     };
@@ -225,7 +225,7 @@ TrappingWindow trapping_window(const CrackStrip &strip, std::size_t columns)
     if (crosses_crack(bond) && bond.halves() <= first_whole && bond.halves() + 1 >= first_whole)
     {
       const Eigen::Vector2d opening =
-        u.segment<2>(unknown(bond.far_row, bond.far_column)) - u.segment<2>(unknown(bond.row, bond.column));
+        u.segment<2>(first_unknown(bond.far_row, bond.far_column)) - u.segment<2>(first_unknown(bond.row, bond.column));
       (bond.halves() == first_whole ? next : last) = bond.direction.dot(opening);
     }
   // Bonds of the strip ahead are elongated by sin 60 degrees for each unit of height; at Griffith's threshold by
