@@ -48,7 +48,7 @@ void Forces::evaluate(const State &state, const VectorField &velocity, const Row
   const std::size_t n_scratch = threads ? static_cast<std::size_t>(omp_get_max_threads()) : 1;
   while (scratch_.size() < n_scratch)
     scratch_.emplace_back(lattice_, n_kinds_);
-  const Motion motion{state, velocity, state.history.empty() ? nullptr : history, lookahead};
+  const Motion motion{state, velocity, state.history.empty() ? nullptr : history};
 #pragma omp parallel if (threads)
   {
     const auto first = static_cast<std::ptrdiff_t>(own.begin);
@@ -77,7 +77,7 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
 {
   if (begin == end)
     return;
-  const Motion motion{updating.state, updating.velocity, nullptr, updating.lookahead};
+  const Motion motion{updating.state, updating.velocity};
   scratch.sums.clear();
   for (std::ptrdiff_t row = begin - reach_; row < begin; ++row)
     if (const auto from = lattice_.row(row))
@@ -90,6 +90,9 @@ void Forces::evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::pt
     const auto index = static_cast<std::size_t>(row);
     const Motion &of_row = row < end - reach_ ? updating : motion;
     row_sums_[index] = bonds_of_row(of_row, index, row, begin, scratch);
+    if (lookahead_ > 0.)
+      row_sums_[index].has_events =
+        kernels::loops().any_event_ahead(row_of_bonds(motion, index, scratch.kinds), lookahead_);
     const OfRow on_sites = scratch.sums.at(row);
     // What bonds across a periodic edge do to images of sites is done to the sites.
     const auto columns = static_cast<std::ptrdiff_t>(lattice_.columns());
@@ -212,12 +215,6 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
                                row >= begin ? scratch.sums.at(row)[component] : nullptr,
                                scratch.sums.at(row + rows)[component] + to);
   }
-  if (motion.lookahead > 0.)
-  {
-    bonds.kinds = kinds.data();
-    bonds.n_kinds = n_kinds_;
-    sums.has_events = kernels::loops().any_event_ahead(bonds, motion.lookahead);
-  }
   for (std::size_t m = 0; m < sums.mechanism_power.size(); ++m)
     if (!mechanism_gives_energy_[m])
       sums.viscous_power += sums.mechanism_power[m];
@@ -253,7 +250,7 @@ void Forces::evaluate_row(const State &state, const VectorField &velocity, std::
                           const RowFunction &post_force)
 {
   const auto number = static_cast<std::ptrdiff_t>(row);
-  evaluate_rows({state, velocity, nullptr, lookahead_}, number, number + 1, scratch_.front(), post_force);
+  evaluate_rows({state, velocity}, number, number + 1, scratch_.front(), post_force);
 }
 
 } // namespace latcon::lattice

@@ -103,7 +103,6 @@ private:
     const State &state;
     const VectorField &velocity;
     BondHistory *history = nullptr; // updated
-    double lookahead = 0.;
   };
 
   /// Scratch arrays of a thread.
