@@ -1,6 +1,6 @@
 // The program for tests. With arguments it is latcon. Without, it runs latcon in children made by fork (forked.py):
 // what takes half a second to start, MPI, the module with the finite elements, Python and its packages, starts once.
-// Where such a child, or a child of it, would replace itself by Python, it runs the Python of the server.
+// Where such a child, or a child of it, would replace itself by Python or by latcon, it runs those of the server.
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
 
@@ -60,9 +60,11 @@ extern "C"
   }
 
   // Runs latcon in this process, which ends with it.
-  void run_latcon(char *argv[])
+  void run_latcon(char *argv[], bool handles_signals)
   {
     is_child = true;
+    if (handles_signals)
+      commands::install_signal_handlers();
     int argc = 0;
     while (argv[argc] != nullptr)
       ++argc;

@@ -61,10 +61,15 @@ def serve():
                 for number, name in enumerate((os.devnull, f"{output}/stdout", f"{output}/stderr")):
                     os.dup2(os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC if number else os.O_RDONLY), number)
                 os.chdir(folder)
-                ctypes.PyDLL(None).run_latcon((ctypes.c_char_p * (len(words) + 2))(b"latcon", *map(os.fsencode, words)))
+                run_program([b"latcon", *map(os.fsencode, words)])
             finally:
                 os._exit(99)
         print(outcome(child, limit), flush=True)
+
+
+def run_program(words, handles_signals=False):
+    """Runs latcon in this process, which ends with it."""
+    ctypes.PyDLL(None).run_latcon((ctypes.c_char_p * (len(words) + 1))(*words), handles_signals)
 
 
 def prepare(words):
@@ -94,16 +99,19 @@ def outcome(child, limit):
 
 
 def replace_process(path, words, variables):
-    """Does what execve does for `python3 -sP -m MODULE ...` and `python3 -sP SCRIPT ...`; returns for other programs."""
-    if not os.path.samefile(path, sys.executable) or words[1] != b"-sP":
+    """Does what execve does for latcon itself, `python3 -sP -m MODULE ...` and `python3 -sP SCRIPT ...`; returns for other programs."""
+    is_program = os.path.samefile(path, "/proc/self/exe")
+    if not is_program and (not os.path.samefile(path, sys.executable) or words[1] != b"-sP"):
         return
-    words, code = list(map(os.fsdecode, words[2:])), 1
     for file in map(int, os.listdir("/proc/self/fd")):
         with contextlib.suppress(OSError):
             if not os.get_inheritable(file):
                 os.close(file)
     os.environb.clear()
     os.environb.update(variable.split(b"=", 1) for variable in variables)
+    if is_program:
+        run_program(words, handles_signals=True)
+    words, code = list(map(os.fsdecode, words[2:])), 1
     for number in signal.valid_signals() - {signal.SIGKILL, signal.SIGSTOP}:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)

@@ -103,6 +103,7 @@ void install_signal_handlers()
     throw std::system_error(errno, std::generic_category(), "sem_init");
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  is_disregarded = false; // where the process has ended another program before
   std::thread(wait_for_signals).detach();
   for (const int signal : ending_signals)
   {
