@@ -16,13 +16,14 @@ namespace latcon::support
 
 MpiSession::MpiSession()
 {
-  // A process that is alone needs few of Open MPI's modules, and none of hwloc's, which look for displays.
+  // A process that is alone needs few of Open MPI's modules, and none of hwloc's, which look for displays and devices.
   std::vector<const char *> own;
   if (!is_started_by_launcher())
     for (const auto &[name, value] :
          {std::pair("OMPI_MCA_ess_singleton_isolated", "1"), std::pair("OMPI_MCA_orte_create_session_dirs", "0"),
           std::pair("OMPI_MCA_pml", "ob1"), std::pair("OMPI_MCA_btl", "self"),
-          std::pair("OMPI_MCA_coll", "basic,self,libnbc"), std::pair("HWLOC_PLUGINS_PATH", "")})
+          std::pair("OMPI_MCA_coll", "basic,self,libnbc"), std::pair("HWLOC_PLUGINS_PATH", ""),
+          std::pair("HWLOC_COMPONENTS", "-linuxio")})
       if (std::getenv(name) == nullptr) // values set by the user stay
       {
         setenv(name, value, 1);

@@ -213,12 +213,16 @@ def fit_onset(points: Sequence[tuple[float, SampleMean]]) -> OnsetFit | None:
     y = np.array([sample.mean for sample in samples])
     weight = np.array([float(sample.n) for sample in samples])
 
-    def prefactor(exponent: float, u: float) -> float:
-        power = (x + math.exp(u))**exponent
-        return float((weight * power * y).sum() / (weight * power * power).sum())
+    # Of exponents and u [...], single ones or arrays.
+    def powers(exponent: Any, u: Any) -> Any:
+        return (x + np.vectorize(math.exp)(u)[..., np.newaxis])**np.asarray(exponent)[..., np.newaxis]
 
-    def squares(exponent: float, u: float) -> float:
-        return float((weight * (y - prefactor(exponent, u) * (x + math.exp(u))**exponent)**2).sum())
+    def prefactor(power: Any) -> Any:
+        return (weight * power * y).sum(-1) / (weight * power * power).sum(-1)
+
+    def squares(exponent: Any, u: Any) -> Any:
+        power = powers(exponent, u)
+        return (weight * (y - prefactor(power)[..., np.newaxis] * power)**2).sum(-1)
 
     def over_onset(exponent: float) -> tuple[float, float]:
         return _minimum(lambda u: squares(exponent, u), _MIN_U, _MAX_U, 120)
@@ -229,7 +233,7 @@ def fit_onset(points: Sequence[tuple[float, SampleMean]]) -> OnsetFit | None:
     def of_onset(u: float) -> float:
         return _minimum(lambda exponent: squares(exponent, u), MIN_EXPONENT, MAX_EXPONENT, 60)[1]
 
-    exponent, smallest = _minimum(of_exponent, MIN_EXPONENT, MAX_EXPONENT, 60)
+    exponent, smallest = _minimum(np.vectorize(of_exponent), MIN_EXPONENT, MAX_EXPONENT, 60)
     u = over_onset(exponent)[0]
     freedom_of_fit = len(p) - 3
     mean_square = smallest / freedom_of_fit
@@ -243,14 +247,16 @@ def fit_onset(points: Sequence[tuple[float, SampleMean]]) -> OnsetFit | None:
     return OnsetFit(
         (exponent, _crossing(of_exponent, level, exponent, MIN_EXPONENT), _crossing(of_exponent, level, exponent, MAX_EXPONENT)),
         (onset(u), onset(_crossing(of_onset, level, u, _MAX_U)), onset(_crossing(of_onset, level, u, _MIN_U))),
-        prefactor(exponent, u) / extent**exponent, float(fdtrc(freedom_of_fit, freedom, mean_square / variance)))
+        float(prefactor(powers(exponent, u))) / extent**exponent, float(fdtrc(freedom_of_fit, freedom, mean_square / variance)))
 
 
-def _minimum(function: Callable[[float], float], low: float, high: float, n_steps: int) -> tuple[float, float]:
-    """Returns place and value of the minimum: a scan, then Brent's method about its smallest value."""
+def _minimum(function: Callable[[Any], Any], low: float, high: float, n_steps: int) -> tuple[float, float]:
+    """Returns place and value of the minimum of a function of arrays: a scan, then Brent's method about its smallest value."""
     from scipy.optimize import minimize_scalar
     step = (high - low) / n_steps
-    value, at = min((function(low + i * step), low + i * step) for i in range(n_steps + 1))
+    scan = low + step * np.arange(n_steps + 1)
+    values = function(scan)
+    value, at = float(values.min()), float(scan[values.argmin()])
     found = minimize_scalar(function, bounds=(max(low, at - step), min(high, at + step)), method="bounded",
                             options={"xatol": 1e-8})
     return (float(found.x), float(found.fun)) if found.fun < value else (at, value)
