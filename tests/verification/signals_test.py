@@ -103,6 +103,7 @@ def is_ended_as_it_reads(start, pipe, *arguments):
         return True
 
     assert wait_for(is_read, process)
+    time.sleep(0.1)  # a signal just before Python reads would wait for the end of the file
     is_ended(process)
     os.close(writers[0])
 

@@ -116,7 +116,7 @@ def test_a_claim_that_is_named_judges_something_or_fails(out):
     assert "running-crack: rows that are judged: not computed: this case has none" in run.stdout
 
 
-@pytest.mark.skipif(not FULL, reason="takes half a minute")
+@pytest.mark.skipif(not FULL, reason="long")
 def test_frames_of_the_running_crack_can_be_compared(out, tmp_path):
     """Frames of both sides have the same time and coordinates: the velocities differ most at the tip."""
     latcon("verify", "running-crack", "--quick", "--output-dir", out)
