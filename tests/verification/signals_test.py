@@ -73,6 +73,14 @@ def test_dry_run(tmp_path, start):
     is_ended_as_it_begins(start, "study", study, "--dry-run")
 
 
+def test_a_signal_that_came_before_python_ends_it(tmp_path, start):
+    def interrupt():
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        os.kill(os.getpid(), signal.SIGINT)
+
+    ends(start("study", tmp_path / "study.json", preexec_fn=interrupt))
+
+
 def test_report_ends_with_its_script(start, out):
     latcon("fracture", *TINY, "--set", "Time/end=0.01 ms", "--skip-verification", "--no-report", "--output-dir", out)
     process = start("report", out, start_new_session=True)

@@ -36,8 +36,9 @@ def run(command: str, options: Mapping[str, Any]) -> int:
     """Runs a command and returns its exit code; run.json, log and messages agree with it."""
     printed = Printed(options["quiet"])
     program = None
+    signals = Signals()
     try:
-        signals = Signals()
+        signals.unblock()
         program = Program(options)
         if command in ("study", "batch"):
             options = {**options, "output_dir": options["output_dir"] or default_folder(options["study"], bool(options["sweeps"]))}

@@ -47,7 +47,10 @@ class Signals:
         for number in _ENDING_SIGNALS:
             if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:
                 signal.signal(number, self._receive)
-        signal.pthread_sigmask(signal.SIG_SETMASK, ())  # blocked since before the interpreter started
+
+    def unblock(self) -> None:
+        """Receives signals, which are blocked since before the interpreter started."""
+        signal.pthread_sigmask(signal.SIG_SETMASK, ())
 
     def resume(self) -> None:
         """Ends the deferral."""
