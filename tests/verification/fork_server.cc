@@ -4,6 +4,7 @@
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -100,9 +101,11 @@ int sched_yield() noexcept
   return is_rank ? nanosleep(&duration, nullptr) : 0;
 }
 
-// A fork cannot end MPI, as latcon does before it becomes Python.
+// A fork cannot end MPI, as latcon does before it becomes Python. LATCON_INTERRUPT: a signal comes meanwhile.
 int MPI_Finalize()
 {
+  if (std::getenv("LATCON_INTERRUPT") != nullptr)
+    std::raise(SIGINT);
   return is_child ? MPI_SUCCESS : PMPI_Finalize();
 }
 }

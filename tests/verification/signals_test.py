@@ -73,12 +73,15 @@ def test_dry_run(tmp_path, start):
     is_ended_as_it_begins(start, "study", study, "--dry-run")
 
 
-def test_a_signal_that_came_before_python_ends_it(tmp_path, start):
-    def interrupt():
-        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        os.kill(os.getpid(), signal.SIGINT)
+def interrupt():
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    os.kill(os.getpid(), signal.SIGINT)
 
-    ends(start("study", tmp_path / "study.json", preexec_fn=interrupt))
+
+@pytest.mark.parametrize("how", [{"preexec_fn": interrupt}, {"env": os.environ | {"LATCON_INTERRUPT": "1"}}],
+                         ids=["since before the program", "while MPI ends"])
+def test_a_signal_that_comes_before_python_ends_it(tmp_path, start, how):
+    ends(start("study", tmp_path / "study.json", **how))
 
 
 def test_report_ends_with_its_script(start, out):

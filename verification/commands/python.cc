@@ -127,9 +127,7 @@ support::ExitCode continue_in_python(const input::Options &options, const std::s
   std::cout << std::flush;
   disregard_signals();
   MPI_Finalize();
-  sigset_t all; // until Python handles them
-  sigfillset(&all);
-  sigprocmask(SIG_BLOCK, &all, nullptr);
+  pass_signals_on();
   execve(python.c_str(), arguments.data(), variables.data());
   std::cerr << "latcon: cannot start " << python << std::endl;
   std::_Exit(static_cast<int>(support::ExitCode::output_failed));

@@ -52,6 +52,15 @@ void say(const std::string &text)
   [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
 }
 
+// Blocks all signals in this thread. @return those that were blocked before
+sigset_t block_signals()
+{
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_BLOCK, &all, &before);
+  return before;
+}
+
 [[noreturn]] void end_process()
 {
   constexpr int status = static_cast<int>(support::ExitCode::interrupted);
@@ -104,7 +113,10 @@ void install_signal_handlers()
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   is_disregarded = false; // where the process has ended another program before
+  // The main thread alone receives signals, so that pass_signals_on() keeps them all.
+  const sigset_t before = block_signals();
   std::thread(wait_for_signals).detach();
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
   for (const int signal : ending_signals)
   {
     struct sigaction action = {};
@@ -158,6 +170,13 @@ void disregard_signals()
   is_disregarded = true;
   final_action = nullptr;
   deferral_ended.notify_one();
+}
+
+void pass_signals_on()
+{
+  block_signals();
+  if (const int signal = pending)
+    raise(signal);
 }
 
 } // namespace latcon::commands

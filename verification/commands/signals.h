@@ -42,6 +42,10 @@ void on_interruption(std::function<void()> action);
 /// From here on signals have no effect: the exit code is decided. Does not return while a signal ends the process.
 void disregard_signals();
 
+/// After disregard_signals() and before another program takes the place of this one: blocks signals in this thread,
+/// until that program handles them, also one that was disregarded.
+void pass_signals_on();
+
 /// Time steps of a lattice between two calls of any_rank_interrupted(): less than some milliseconds, or a few steps of
 /// a large sheet.
 inline constexpr std::size_t steps_between_signals = 16;
