@@ -121,10 +121,10 @@ INSTANTIATE_TEST_SUITE_P(
             {},
             11},
     // Rows that bonds of rings reach, of ranks that do not all have as many.
-    Variant{Orientation::rows_along_crack, 24., Toughening{3., 0., behind}, 1.2, EndLoads::End::held,
-            sheets::disordered_rubber(), 30., 75, 0.},
-    Variant{Orientation::rows_along_crack, 24., Toughening{3., 0., behind}, 1.2, EndLoads::End::held,
-            sheets::disordered_rubber(), 30., 75, 0.5}));
+    Variant{Orientation::rows_along_crack, 18., Toughening{3., 0., behind}, 1.2, EndLoads::End::held,
+            sheets::disordered_rubber(), 22., 75, 0.},
+    Variant{Orientation::rows_along_crack, 18., Toughening{3., 0., behind}, 1.2, EndLoads::End::held,
+            sheets::disordered_rubber(), 22., 75, 0.5}));
 
 // A snapshot, which is local to each rank, included.
 TEST_P(SharedCrack, HasTheBitsOfOneRank)
