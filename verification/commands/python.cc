@@ -1,6 +1,5 @@
 // Commands above one simulation are Python (python/latcon): this program replaces itself by the interpreter.
 #include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
