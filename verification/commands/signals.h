@@ -14,7 +14,7 @@ void occupy_closed_streams();
 /// From here on SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM and SIGXCPU end the process with
 /// ExitCode::interrupted, at once or after the deferral that is under way. A SIGHUP that is ignored when the program
 /// starts (`nohup`) stays ignored. SIGPIPE and SIGXFSZ are ignored, so that writing fails instead. Starts a thread that
-/// waits for signals. To be called once.
+/// waits until the main thread has received one. To be called once by each program that the process runs.
 void install_signal_handlers();
 
 /// While one exists, a signal does not end the process: the phase polls any_rank_interrupted() and ends by itself, with
