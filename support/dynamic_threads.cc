@@ -1,5 +1,6 @@
 #include "support/dynamic_threads.h"
 
+#include <algorithm>
 #include <ctime>
 
 #include <omp.h>
@@ -36,7 +37,7 @@ DynamicThreads::DynamicThreads(int n_threads)
 
 DynamicThreads::DynamicThreads(int n_threads, Clocks clocks) : n_threads_(n_threads), clocks_(clocks) {}
 
-void DynamicThreads::begin_step()
+void DynamicThreads::begin_step(int n_others)
 {
   if (n_threads_ == 1)
     return;
@@ -45,12 +46,12 @@ void DynamicThreads::begin_step()
     const double processor = clocks_.processor();
     if (n_steps_ > 0)
       choose(now - wall_, processor - processor_);
-    omp_set_num_threads(is_single_ ? 1 : n_threads_);
     wall_ = now;
     processor_ = processor;
     n_steps_ = 0;
   }
   ++n_steps_;
+  omp_set_num_threads(is_single_ ? 1 : std::max(1, n_threads_ - n_others));
 }
 
 void DynamicThreads::choose(double wall_time, double processor_time)

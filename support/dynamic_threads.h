@@ -28,7 +28,8 @@ public:
   DynamicThreads(int n_threads, Clocks clocks);
 
   /// Sets the number of threads of the parallel regions that the calling thread starts. To be called before each step.
-  void begin_step();
+  /// @param n_others threads of the process that work beside them, and get cores of their own
+  void begin_step(int n_others);
 
 private:
   void choose(double wall_time, double processor_time);

@@ -36,6 +36,12 @@ void TaskThread::wait_until_pending(std::size_t at_most)
     std::rethrow_exception(std::exchange(error_, nullptr));
 }
 
+bool TaskThread::is_busy()
+{
+  const std::lock_guard lock(mutex_);
+  return !pending_.empty();
+}
+
 void TaskThread::perform_tasks()
 {
   std::unique_lock lock(mutex_);

@@ -38,6 +38,9 @@ public:
   /// Rethrows the exception of a task, without waiting for those that are pending.
   void check() { wait_until_pending(max_pending); }
 
+  /// Returns whether a task is being performed, or about to be.
+  bool is_busy();
+
 private:
   void perform_tasks();
   void wait_until_pending(std::size_t at_most);

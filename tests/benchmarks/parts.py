@@ -118,10 +118,10 @@ def sizes(plan):
     return {"rows": rows}
 
 
-def latcon(plan, command, case, folder, *arguments, ranks=1, cache=None):
-    """Runs latcon on a case. @return its run.json"""
+def latcon(plan, command, case, folder, *arguments, ranks=1, **variables):
+    """Runs latcon on a case with environment variables. @return its run.json"""
     words = [plan.program("latcon"), command, case, "--quiet", "--output-dir", folder, *arguments]
-    run(words if ranks == 1 else on_ranks(ranks, words), environment=cache and dict(ENVIRONMENT, XDG_CACHE_HOME=str(cache)))
+    run(words if ranks == 1 else on_ranks(ranks, words), environment={**ENVIRONMENT, **variables})
     return json.loads((folder / "run.json").read_text(encoding="utf-8"))
 
 
@@ -157,7 +157,8 @@ def crack(plan):
         words, n_ranks, threads = runs[name]
         shutil.rmtree(folder / "cache", ignore_errors=True)  # cached verdicts would be reused
         start = time.perf_counter()
-        info = latcon(plan, "fracture", case, folder / "run", *words, "--threads", threads, ranks=n_ranks, cache=folder / "cache")
+        info = latcon(plan, "fracture", case, folder / "run", *words, *(["--threads", 1] if threads == 1 else []), ranks=n_ranks,
+                      XDG_CACHE_HOME=str(folder / "cache"), OMP_NUM_THREADS=str(threads))  # which is a default number
         return {"seconds": time.perf_counter() - start, "phases": info["wall_time_s"],
                 "end_time": json.loads((folder / "run" / "crack.json").read_text(encoding="utf-8"))["end_time"]}
 

@@ -1,6 +1,7 @@
 #include "support/dynamic_threads.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <omp.h>
 
@@ -32,7 +33,7 @@ double steps_per_second(DynamicThreads &threads, const Machine &machine, double 
   double steps = 0.;
   for (; wall < begin + duration; ++steps)
   {
-    threads.begin_step();
+    threads.begin_step(0);
     const Load &load = omp_get_max_threads() > 1 ? machine.all : machine.single;
     wall += load.step;
     processor += load.share * load.step;
@@ -68,6 +69,15 @@ TEST_F(DynamicThreadsTest, AreAllUsedAgainOnceCoresAreFree)
   steps_per_second(threads_, slower_on_all, 50.);
   steps_per_second(threads_, idle, 3.);
   EXPECT_NEAR(steps_per_second(threads_, idle, 50.), 1. / idle.all.step, 1e-6);
+}
+
+TEST_F(DynamicThreadsTest, LeaveACoreToEachOther)
+{
+  for (const auto &[others, expected] : {std::pair(1, 3), {0, 4}, {4, 1}})
+  {
+    threads_.begin_step(others);
+    EXPECT_EQ(omp_get_max_threads(), expected);
+  }
 }
 
 TEST_F(DynamicThreadsTest, AreLeftAloneIfThereIsOne)

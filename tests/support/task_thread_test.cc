@@ -52,6 +52,7 @@ TEST(TaskThread, ReturnsWhileATaskIsPerformedAndWaitsBeyondTheBound)
   for (std::size_t pending = 1; pending < TaskThread::max_pending; ++pending)
     thread.add([] {});
   thread.check();
+  EXPECT_TRUE(thread.is_busy());
   std::atomic<bool> added{false};
   std::future<void> more = std::async(std::launch::async,
                                       [&]
@@ -64,6 +65,7 @@ TEST(TaskThread, ReturnsWhileATaskIsPerformedAndWaitsBeyondTheBound)
   gate.opened.set_value();
   more.get();
   thread.wait();
+  EXPECT_FALSE(thread.is_busy());
 }
 
 TEST(TaskThread, RethrowsOnceAndDiscardsWhatWasAddedBefore)

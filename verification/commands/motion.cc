@@ -129,7 +129,7 @@ LatticeMotion::LatticeMotion(const input::Case &input, lattice::Simulation &simu
 void LatticeMotion::advance()
 {
   writing_.check();
-  threads_.begin_step();
+  threads_.begin_step(writing_.is_busy() ? 1 : 0);
   after_step(simulation_.step());
 }
 
