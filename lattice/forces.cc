@@ -1,6 +1,8 @@
 #include "lattice/forces.h"
 
 #include <algorithm>
+#include <cmath>
+#include <future>
 
 #include <omp.h>
 
@@ -39,7 +41,7 @@ void Forces::set_elapsed(double duration)
 }
 
 void Forces::evaluate(const State &state, const VectorField &velocity, const RowFunction &post_force,
-                      BondHistory *history, double lookahead)
+                      BondHistory *history, double lookahead, const std::function<void()> &beside)
 {
   support::require(lookahead >= 0., "breaking looks ahead in time, not back");
   lookahead_ = lookahead;
@@ -49,14 +51,27 @@ void Forces::evaluate(const State &state, const VectorField &velocity, const Row
   while (scratch_.size() < n_scratch)
     scratch_.emplace_back(lattice_, n_kinds_);
   const Motion motion{state, velocity, state.history.empty() ? nullptr : history};
+  const auto first = static_cast<std::ptrdiff_t>(own.begin), rows = static_cast<std::ptrdiff_t>(own.end) - first;
+  // The others find the bonds of the rows below theirs too, most of the work on these.
+  const std::ptrdiff_t fewer = std::lround(fewer_rows_ - 0.7 * static_cast<double>(reach_)), least = rows > 0 ? 1 : 0;
+  std::packaged_task<void()> task_beside(beside ? beside : [] {}); // keeps an exception, which cannot leave a thread
+  if (band_.is_shared()) // rows may read the positions that are received in it
+    task_beside();
 #pragma omp parallel if (threads)
   {
-    const auto first = static_cast<std::ptrdiff_t>(own.begin);
-    const std::ptrdiff_t rows = static_cast<std::ptrdiff_t>(own.end) - first;
     const std::ptrdiff_t n = omp_get_num_threads(), i = omp_get_thread_num();
-    const std::ptrdiff_t begin = first + rows * i / n, end = first + rows * (i + 1) / n;
+    const auto bound = [&](std::ptrdiff_t thread)
+    { return first + (thread == 0 ? 0 : std::clamp((rows + fewer) * thread / n - fewer, least, rows)); };
+    const std::ptrdiff_t begin = bound(i), end = bound(i + 1);
     Scratch &scratch = scratch_[static_cast<std::size_t>(i)];
+    const double start = omp_get_wtime();
+    if (i == 0 && !band_.is_shared())
+      task_beside();
+    const double start_of_rows = omp_get_wtime();
     evaluate_rows(motion, begin, end, scratch, post_force);
+    if (i == 0 && n > 1)
+      fewer_rows_ = 0.5 * (fewer_rows_ + std::min(double(rows), double(end - begin) * (start_of_rows - start) /
+                                                                  (omp_get_wtime() - start_of_rows)));
     if (motion.history != nullptr)
     {
       // The rows whose bonds the thread above computed too, and those below the band.
@@ -68,6 +83,7 @@ void Forces::evaluate(const State &state, const VectorField &velocity, const Row
           bonds_of_row(motion, *row, below, below, scratch);
     }
   }
+  task_beside.get_future().get();
   if (motion.history != nullptr)
     set_elapsed(0.);
 }
@@ -182,8 +198,7 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   std::vector<kernels::BondsOfKind> &kinds = scratch.kinds;
   kernels::RowOfBonds bonds = row_of_bonds(motion, from, kinds);
   scratch.remembered.resize(n_kinds_);
-  kernels::RowSums sums;
-  sums.mechanism_power.assign(mechanism_gives_energy_.size(), 0.);
+  kernels::RowSums sums{0., std::vector<double>(mechanism_gives_energy_.size())};
   for (std::size_t first = 0; first < n_kinds_; first += bonds.n_kinds)
   {
     // The first two shells of the lattice at once.

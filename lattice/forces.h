@@ -48,9 +48,10 @@ public:
   /// @param history that of the state, to be updated to its positions; nullptr: none
   /// @param lookahead [s], >= 0: bonds whose ends will be too far apart after they have moved for so long at these
   /// velocities, which must be known in the halo then, count as past their limit; 0: those that are past it
+  /// @param beside called once by the calling thread, while others are at the rows; may be empty, and may throw
   /// @throws std::invalid_argument for a negative lookahead
   void evaluate(const State &state, const VectorField &velocity, const RowFunction &post_force,
-                BondHistory *history = nullptr, double lookahead = 0.);
+                BondHistory *history = nullptr, double lookahead = 0., const std::function<void()> &beside = {});
   /// Evaluates the forces into on_sites().
   void evaluate(const State &state, const VectorField &velocity);
   /// Computes the forces on the sites of one row of the band anew, and the sums over its bonds, at the positions and
@@ -145,6 +146,7 @@ private:
   double shortness_limit_ = std::numeric_limits<double>::infinity();
   bool columns_repeat_; // periodic along the rows
   double lookahead_ = 0.;
+  double fewer_rows_ = 0.; // than other threads the first one evaluated in the time of what it did beside
 
   std::vector<Scratch> scratch_; // one a thread
   VectorField on_sites_;

@@ -56,9 +56,13 @@ void Integrator::accelerate_row(State &state, std::size_t row, const Forces::OfR
 void Integrator::accelerate(State &state, double lookahead)
 {
   const auto after = [&](std::size_t row, const Forces::OfRow &force) { accelerate_row(state, row, force); };
-  forces_.evaluate(state, evaluated(state), std::ref(after), &state.history, lookahead);
-  evaluate_site_forces(state);
+  evaluate(state, std::ref(after), &state.history, lookahead);
   accelerate_sites(state);
+}
+
+void Integrator::evaluate(State &state, const Forces::RowFunction &post_force, BondHistory *history, double lookahead)
+{
+  forces_.evaluate(state, evaluated(state), post_force, history, lookahead, [&] { evaluate_site_forces(state); });
 }
 
 void Integrator::evaluate_site_forces(State &state)

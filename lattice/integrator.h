@@ -57,6 +57,9 @@ public:
 protected:
   /// Brings what forces are evaluated at up to date in the halo and at images. Collective.
   void exchange_ghosts(State &state);
+  /// Evaluates the forces of bonds, see Forces::evaluate, and the added ones, at the same positions and velocities.
+  void evaluate(State &state, const Forces::RowFunction &post_force, BondHistory *history = nullptr,
+                double lookahead = 0.);
   /// Computes the accelerations by all forces at the present positions and velocities. Updates the memory of bonds.
   /// @param lookahead of breaking [s], see Forces::evaluate. Half of a long step makes bonds break at the end of the
   /// step that is nearest to the moment, neither late nor early in the mean

@@ -48,8 +48,7 @@ void RungeKuttaChebyshev::step(State &state)
                                     &previous_.velocity[axis][i]);
     };
     forces_.set_elapsed(stage.elapsed * h);
-    forces_.evaluate(state, state.velocity, std::ref(next));
-    evaluate_site_forces(state);
+    evaluate(state, std::ref(next));
     std::swap(state.position, previous_.position);
     std::swap(state.velocity, previous_.velocity);
     kick_sites(state, h * stage.now);

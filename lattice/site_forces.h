@@ -21,9 +21,10 @@ class SiteForces
 public:
   virtual ~SiteForces() = default;
 
-  /// Computes the forces at the positions of the state and the given velocities [m/s], in an order that depends on the
-  /// state alone. A site may occur more than once. Collective: positions and velocities of sites in rows that this rank
-  /// does not know are received where the forces depend on them.
+  /// Computes the forces at the positions of the state and these velocities [m/s], in an order that depends on the
+  /// state alone, whose own velocities, accelerations and history may be changing. A site may occur more than once.
+  /// Collective: positions and velocities of sites in rows that this rank does not know are received where forces
+  /// depend on them.
   virtual const std::vector<SiteForce> &evaluate(State &state, VectorField &velocity) = 0;
 
   /// Forces of the last evaluation.

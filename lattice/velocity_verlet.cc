@@ -31,8 +31,7 @@ void VelocityVerlet::step(State &state)
   forces_.set_elapsed(time_step());
   for_each_row(lattice_, band_.rows(), drift);
   exchange_ghosts(state);
-  forces_.evaluate(state, predicted_velocity_, std::ref(kick), &state.history);
-  evaluate_site_forces(state);
+  evaluate(state, std::ref(kick), &state.history);
   accelerate_sites(state);
   kick_sites(state, 0.5 * time_step());
   update_images(state, band_);

@@ -1,9 +1,16 @@
 // Forces of all kinds of sheets against a plain implementation, with all instruction sets.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <random>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include <omp.h>
 
 #include <gtest/gtest.h>
 
@@ -265,6 +272,46 @@ TEST(Forces, BitsDoNotDependOnTheInstructionSet)
     }
   }
   kernels::use_instruction_set(sets.front());
+}
+
+// What the first thread does beside the rows decides how many of them it evaluates.
+TEST(Forces, BitsDoNotDependOnWhatIsDoneBeside)
+{
+  const Subject subject{sheets::rubber_with_branches(), Orientation::rows_along_crack, {false, true}, 300.};
+  const TriangularLattice sheet = sheet_of(subject, 30.);
+  ASSERT_GT(sheet.n_places(), 2 * min_places_for_threads);
+  const State state = random_state(sheet, subject.material, 5);
+  const int threads_before = omp_get_max_threads();
+  std::optional<State> expected;
+  for (const auto &[threads, duration] : {std::pair(1, 0), {2, 0}, {2, 50}, {2, 2000}, {3, 50}, {3, 2000}, {40, 50}})
+  {
+    omp_set_num_threads(threads);
+    Forces forces(sheet, subject.material);
+    const auto sleep = [caller = std::this_thread::get_id(), duration = duration]
+    {
+      EXPECT_EQ(std::this_thread::get_id(), caller);
+      std::this_thread::sleep_for(std::chrono::microseconds(duration));
+    };
+    for (int time = 0; time < 5; ++time)
+    {
+      State moved = state;
+      forces.set_elapsed(1e-6);
+      forces.evaluate(
+        state, state.velocity,
+        [&](std::size_t row, const Forces::OfRow &force)
+        { std::copy_n(force[0], sheet.columns(), &moved.acceleration.x[sheet.index(row, 0)]); },
+        &moved.history, 0., sleep);
+      const auto fail = [] { throw std::domain_error("beside"); };
+      EXPECT_THROW(forces.evaluate(state, state.velocity, {}, nullptr, 0., fail), std::domain_error);
+      if (!expected)
+        expected = moved;
+      ASSERT_TRUE(same_bits(moved.acceleration.x, expected->acceleration.x)) << threads << ' ' << duration;
+      for (std::size_t kind = 0; kind < sheet.n_kinds(); ++kind)
+        for (std::size_t v = 0; v < moved.history.kinds[kind].variables.size(); ++v)
+          ASSERT_TRUE(same_bits(moved.history.kinds[kind].variables[v], expected->history.kinds[kind].variables[v]));
+    }
+  }
+  omp_set_num_threads(threads_before);
 }
 
 // Some time after an update of memories, bonds taken out one by one, in whatever order, leave the power of a sheet that
