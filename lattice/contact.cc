@@ -72,8 +72,6 @@ void Contact::update_lists(const State &state)
   for (const auto &[place, x, y] : all)
     list(state, place, {x, y});
   n_listings_ += all.size();
-  if (band_.is_shared() && !all.empty())
-    find_exchanged_sites();
 }
 
 void Contact::list(const State &state, std::size_t place, const Eigen::Vector2d &here)
@@ -87,9 +85,11 @@ void Contact::list(const State &state, std::size_t place, const Eigen::Vector2d 
   cells_.for_each_near(here,
                        [&](const LinkCells::Point &other)
                        {
-                         if (other.id != place && (other.position - here).squaredNorm() <= reach * reach &&
-                             may_touch(state, place, other.id))
-                           candidates_[std::min(place, other.id)].above.insert(std::max(place, other.id));
+                         if (other.id == place || (other.position - here).squaredNorm() > reach * reach ||
+                             !may_touch(state, place, other.id))
+                           return;
+                         candidates_[std::min(place, other.id)].above.insert(std::max(place, other.id));
+                         exchange(place, other.id);
                        });
 }
 
@@ -106,26 +106,15 @@ bool Contact::may_touch(const State &state, std::size_t first, std::size_t secon
   return lattice_.is_triangular() || (lattice_.reference(second) - lattice_.reference(first)).norm() >= law_.distance;
 }
 
-// Sites of the pairs that this rank and another one list.
-void Contact::find_exchanged_sites()
+// Exchanges the sites of a pair from now on if another rank, which lists it too, has one of them.
+void Contact::exchange(std::size_t first, std::size_t second)
 {
-  for (SitesOfRanks *sites : {&sent_, &received_})
-    sites->assign(band_.n_ranks(), {});
-  for (const auto &[first, candidate] : candidates_)
-    for (const std::size_t second : candidate.above)
-      if (band_.owns(first) != band_.owns(second))
-      {
-        const auto [mine, theirs] = band_.owns(first) ? std::pair(first, second) : std::pair(second, first);
-        const std::size_t rank = band_.owner(lattice_.row_of(theirs));
-        sent_[rank].push_back(mine);
-        received_[rank].push_back(theirs);
-      }
-  for (SitesOfRanks *sites : {&sent_, &received_})
-    for (std::vector<std::size_t> &of_rank : *sites)
-    {
-      std::sort(of_rank.begin(), of_rank.end());
-      of_rank.erase(std::unique(of_rank.begin(), of_rank.end()), of_rank.end());
-    }
+  if (band_.owns(first) == band_.owns(second))
+    return;
+  const auto [mine, theirs] = band_.owns(first) ? std::pair(first, second) : std::pair(second, first);
+  const std::size_t rank = band_.owner(lattice_.row_of(theirs));
+  sent_[rank].insert(mine);
+  received_[rank].insert(theirs);
 }
 
 const std::vector<SiteForce> &Contact::evaluate(State &state, VectorField &velocity)

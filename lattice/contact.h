@@ -40,7 +40,7 @@ ContactLaw contact_like_nearest_bond(const TriangularLattice &lattice, const Mat
 ///
 /// Ranks that share a sheet all follow where all candidates were listed, which their owners tell the others. Each rank
 /// lists the pairs that have a site in its rows and computes the forces on these. Positions and velocities between
-/// listings go only to the ranks that list a pair with them.
+/// listings go only to the ranks that have listed a pair with them.
 class Contact : public SiteForces
 {
 public:
@@ -73,7 +73,7 @@ private:
   void update_lists(const State &state);
   void list(const State &state, std::size_t place, const Eigen::Vector2d &here);
   bool may_touch(const State &state, std::size_t first, std::size_t second) const;
-  void find_exchanged_sites();
+  void exchange(std::size_t first, std::size_t second);
 
   RowPartition band_;
   const TriangularLattice &lattice_;

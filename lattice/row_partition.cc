@@ -48,7 +48,7 @@ SitesOfRanks RowPartition::halo_sites(bool own) const
     for (const std::size_t row : rows_around(own ? rank : rank_, lattice_->reach()))
       if (rank != rank_ && owner(row) == (own ? rank_ : rank))
         for (std::size_t column = 0; column < lattice_->columns(); ++column)
-          sites[rank].push_back(lattice_->index(row, column));
+          sites[rank].insert(lattice_->index(row, column));
   return sites;
 }
 

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <boost/container/flat_set.hpp>
 #include <mpi.h>
 
 #include "lattice/triangular_lattice.h"
@@ -20,8 +21,8 @@ using Field = std::vector<double, support::ZeroPages<double>>;
 /// A small whole number per place.
 using SiteFlags = std::vector<std::uint8_t, support::ZeroPages<std::uint8_t>>;
 
-/// Places of sites, a list for each rank.
-using SitesOfRanks = std::vector<std::vector<std::size_t>>;
+/// Places of sites for each rank.
+using SitesOfRanks = std::vector<boost::container::flat_set<std::size_t>>;
 
 /// The rows of a sheet that one process moves, as one of the ranks that share the sheet or alone.
 ///
@@ -80,7 +81,7 @@ public:
   std::vector<T> all_gather(const std::vector<T> &own, int *number = nullptr) const;
 
   /// Sends the values of `fields` at own sites and receives those at sites of other ranks. Collective among ranks that
-  /// exchange sites. @param sent,received of two ranks the same sites in the same order
+  /// exchange sites. @param sent,received of two ranks the same sites
   void exchange(const SitesOfRanks &sent, const SitesOfRanks &received, const std::vector<Field *> &fields) const;
 
   /// Gives the first rank the values in `rows`, margin of columns included. Collective.
