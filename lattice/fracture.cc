@@ -42,25 +42,29 @@ double Fracture::limit(const State &state, const Bond &bond, double rate) const
                        state.strength.of(near, kind), state.stiffness.of(near, kind), rate});
 }
 
-// With the expressions of the loops over a row: one that they do not flag has no event.
+// With the expressions of the loops over a row: one that they do not flag has no event. Few bonds are past the smallest
+// limit, so that the rule is asked about these alone.
 Fracture::Event Fracture::event(const State &state, const Bond &bond, const VectorField &evaluated_velocity,
                                 double lookahead) const
 {
   const auto [near, kind, far] = bond;
-  const double ratio = lattice_.length_ratio(near, kind);
-  const double longest = limit(state, bond, stretch_rate(state, lattice_, bond, evaluated_velocity));
-  const double shortest =
-    retraction_stretch_.empty() || state.bonds.toughened(near, kind) ? 0. : retraction_stretch_[kind];
-  const auto among = [](double value, double from, double to) {
-    return value > to ? Event::broken : value < from ? Event::retracted : Event::none;
+  const bool toughened = state.bonds.toughened(near, kind);
+  const double shortest = retraction_stretch_.empty() || toughened ? 0. : retraction_stretch_[kind],
+               smallest = (toughened ? toughened_stretch_ : breaking_stretch_) * state.strength.of(near, kind);
+  const auto among = [&](double value, const auto &of_stretch)
+  {
+    if (value > of_stretch(smallest) &&
+        value > of_stretch(limit(state, bond, stretch_rate(state, lattice_, bond, evaluated_velocity))))
+      return Event::broken;
+    return value < of_stretch(shortest) ? Event::retracted : Event::none;
   };
   if (!(lookahead > 0.))
-    return among(stretch(state, lattice_, bond), shortest, longest);
-  const double l = lattice_.rest_length(kind);
+    return among(stretch(state, lattice_, bond), [](double stretch) { return stretch; });
+  const double l = lattice_.rest_length(kind), ratio = lattice_.length_ratio(near, kind);
   const Eigen::Vector2d r = ratio * state.position.difference(near, far),
                         v = ratio * evaluated_velocity.difference(near, far);
   return among(formulas::squared_length_after(lookahead, r.x(), r.y(), v.x(), v.y()),
-               formulas::squared_length(shortest, l), formulas::squared_length(longest, l));
+               [l](double stretch) { return formulas::squared_length(stretch, l); });
 }
 
 BrokenBond Fracture::broken(const State &state, const Bond &bond) const
