@@ -102,14 +102,13 @@ void NearTipSums::add(const NearTipSums &other, bool mirrored)
       continue;
     make_room(part);
     const Values signs = mirrored ? mirror_signs(part) : Values::Ones(n_components[part]);
-    for (int j = -grid_.half_height; j <= grid_.half_height; ++j)
-      for (int i = -grid_.behind; i <= grid_.ahead; ++i)
-      {
-        const auto point = static_cast<Eigen::Index>(grid_.point(i, j));
-        const auto image = static_cast<Eigen::Index>(grid_.point(i, mirrored ? -j : j));
-        sums_[part].values.col(point) += signs * from.values.col(image);
-        sums_[part].weights[point] += from.weights[image];
-      }
+    const Eigen::Index columns = grid_.columns(), rows = grid_.rows(); // of points, see NearTipGrid::point
+    for (Eigen::Index row = 0; row < rows; ++row)
+    {
+      const Eigen::Index to = row * columns, image = (mirrored ? rows - 1 - row : row) * columns;
+      sums_[part].values.middleCols(to, columns) += from.values.middleCols(image, columns).colwise() * signs;
+      sums_[part].weights.segment(to, columns) += from.weights.segment(image, columns);
+    }
   }
 }
 
@@ -150,7 +149,7 @@ NearTipField NearTipSums::mean() const
 NearTipSampler::NearTipSampler(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                const NearTipOptions &options)
   : lattice_(lattice), material_(material), options_(options), grid_(make_grid(lattice, options)),
-    gradient_fit_(lattice), plain_(grid_), folded_(n_blocks, NearTipSums(grid_))
+    gradient_fits_(2, lattice::StrainGradientFit(lattice)), plain_(grid_), folded_(n_blocks, NearTipSums(grid_))
 {
   if (!(options.X_end >= options.X_begin))
     throw std::invalid_argument("the sampled interval of the tip must have X_end > X_begin");
@@ -217,8 +216,7 @@ NearTipSample NearTipSampler::look(const lattice::State &state, const Axis &axis
                        part > 0. ? static_cast<std::size_t>(std::min(part * n_blocks, n_blocks - 1.)) : 0,
                        NearTipSums(grid_),
                        {}};
-  sample.sums.add_sample();
-  const auto look_at = [&](std::size_t place)
+  const auto look_at = [&](std::size_t place, NearTipSample &half, lattice::StrainGradientFit &gradient_fit)
   {
     const Eigen::Vector2d reference = lattice_.reference(place), offset = reference - axis.reference;
     // Half a pitch beyond the grid: sites there count half at the rim.
@@ -239,18 +237,27 @@ NearTipSample NearTipSampler::look(const lattice::State &state, const Axis &axis
       values[NearTipSums::tensors].resize(12);
       values[NearTipSums::tensors] << site.deformation_gradient.reshaped<Eigen::RowMajor>(),
         site.first_piola_stress.reshaped<Eigen::RowMajor>(), site.cauchy_stress.reshaped<Eigen::RowMajor>();
-      if (const std::optional<lattice::StrainGradient> G = gradient_fit_.at(state, place))
+      if (const std::optional<lattice::StrainGradient> G = gradient_fit.at(state, place))
       {
         values[NearTipSums::gradients].resize(6);
         values[NearTipSums::gradients] << G->x(0, 0), G->x(0, 1), G->x(1, 1), G->y(0, 0), G->y(0, 1), G->y(1, 1);
       }
     }
     const auto twice = [](double length, double pitch) { return static_cast<int>(std::lround(2. * length / pitch)); };
-    sample.sums.add_site(twice(offset.x(), grid_.pitch_X), twice(offset.y(), grid_.pitch_Y), values);
-    sample.sites.emplace_back(position - axis.current);
+    half.sums.add_site(twice(offset.x(), grid_.pitch_X), twice(offset.y(), grid_.pitch_Y), values);
+    half.sites.emplace_back(position - axis.current);
   };
-  for (const std::size_t place : lattice_.sites(rows_around(tip), around(tip, false)))
-    look_at(place);
+  // Always two halves: sums have the same bits for any number of threads.
+  const auto [begin, end] = rows_around(tip);
+  const std::array<std::size_t, 3> bounds{begin, begin + (end - begin) / 2, end};
+  NearTipSample upper = sample;
+#pragma omp parallel for
+  for (std::size_t half = 0; half < 2; ++half)
+    for (const std::size_t place : lattice_.sites({bounds[half], bounds[half + 1]}, around(tip, false)))
+      look_at(place, half == 0 ? sample : upper, gradient_fits_[half]);
+  sample.sums.add(upper.sums, false);
+  sample.sites.insert(sample.sites.end(), upper.sites.begin(), upper.sites.end());
+  sample.sums.add_sample();
   return sample;
 }
 

@@ -252,8 +252,8 @@ private:
   lattice::Material material_;
   NearTipOptions options_;
   NearTipGrid grid_;
-  lattice::StrainGradientFit gradient_fit_;
-  std::vector<Eigen::Vector2d> path_; // of the tip at all calls, reference [m]
+  std::vector<lattice::StrainGradientFit> gradient_fits_; // one for each half of a window
+  std::vector<Eigen::Vector2d> path_;                     // of the tip at all calls, reference [m]
   NearTipSums plain_;
   std::vector<NearTipSums> folded_;   // sums per block
   std::deque<NearTipSample> pending_; // not folded yet
