@@ -111,11 +111,8 @@ bool PrescribedMotion::prescribe(State &state, const Material &material, double 
     free_if_released(state, material);
     const double half_mass = 0.5 * site_mass(material, lattice);
     for (const std::size_t place : constraint_.sites)
-    {
-      if (!band_.owns(place) || state.removed[place] != 0)
-        continue;
-      work[lattice.row_of(place)] += half_mass * prescribed(constraint_, state.velocity.at(place)).squaredNorm();
-    }
+      if (band_.owns(place) && state.removed[place] == 0)
+        work[lattice.row_of(place)] += half_mass * prescribed(constraint_, state.velocity.at(place)).squaredNorm();
     return true;
   }
   const AffineVelocity velocity = constraint_.motion ? constraint_.motion(from, to) : AffineVelocity{};

@@ -97,6 +97,8 @@ void TriangularLattice::find_images()
 
 std::size_t TriangularLattice::canonical_place(std::size_t place) const
 {
+  if (!repeats_across() && !repeats_along())
+    return place;
   // Margins are narrower than eight periods.
   return index(repeats_across() ? (row_of(place) + 8 * rows_) % rows_ : row_of(place),
                repeats_along() ? (column_of(place) + 8 * columns_) % columns_ : column_of(place));
