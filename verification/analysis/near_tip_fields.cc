@@ -112,9 +112,8 @@ void NearTipSums::add(const NearTipSums &other, bool mirrored)
   }
 }
 
-NearTipField NearTipSums::mean() const
+void NearTipSums::mean(NearTipField &field) const
 {
-  NearTipField field(grid_);
   field.samples = samples_;
   for (std::size_t point = 0; point < grid_.size(); ++point)
   {
@@ -122,28 +121,22 @@ NearTipField NearTipSums::mean() const
     const auto mean = [&](Part part) -> Values
     {
       const Sum &sum = sums_[part];
-      return sum.weights.size() > 0 && sum.weights[p] > 0. ? Values(sum.values.col(p) / sum.weights[p]) : Values();
+      if (sum.weights.size() > 0 && sum.weights[p] > 0.)
+        return sum.values.col(p) / sum.weights[p];
+      return Values::Constant(n_components[part], std::numeric_limits<double>::quiet_NaN());
     };
-    if (const Values means = mean(motion); means.size() > 0)
-    {
-      field.occupancy[point] = sums_[motion].weights[p] / static_cast<double>(samples_);
-      field.velocity[point] = means.segment<2>(0);
-      field.displacement[point] = means.segment<2>(2);
-      field.excess_displacement[point] = means.segment<2>(4);
-    }
-    if (const Values means = mean(tensors); means.size() > 0)
-    {
-      field.deformation_gradient[point] = Eigen::Map<const RowMajor>(means.data());
-      field.first_piola_stress[point] = Eigen::Map<const RowMajor>(means.data() + 4);
-      field.cauchy_stress[point] = Eigen::Map<const RowMajor>(means.data() + 8);
-    }
-    if (const Values means = mean(gradients); means.size() > 0)
-    {
-      field.strain_gradient_x[point] << means[0], means[1], means[1], means[2];
-      field.strain_gradient_y[point] << means[3], means[4], means[4], means[5];
-    }
+    const Values of_motion = mean(motion), of_tensors = mean(tensors), G = mean(gradients);
+    field.occupancy[point] =
+      sums_[motion].weights.size() > 0 ? sums_[motion].weights[p] / static_cast<double>(samples_) : 0.;
+    field.velocity[point] = of_motion.segment<2>(0);
+    field.displacement[point] = of_motion.segment<2>(2);
+    field.excess_displacement[point] = of_motion.segment<2>(4);
+    field.deformation_gradient[point] = Eigen::Map<const RowMajor>(of_tensors.data());
+    field.first_piola_stress[point] = Eigen::Map<const RowMajor>(of_tensors.data() + 4);
+    field.cauchy_stress[point] = Eigen::Map<const RowMajor>(of_tensors.data() + 8);
+    field.strain_gradient_x[point] << G[0], G[1], G[1], G[2];
+    field.strain_gradient_y[point] << G[3], G[4], G[4], G[5];
   }
-  return field;
 }
 
 NearTipSampler::NearTipSampler(const lattice::TriangularLattice &lattice, const lattice::Material &material,
