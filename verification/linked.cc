@@ -6,7 +6,7 @@ namespace latcon::elements
 
 const Elements &elements()
 {
-  return latcon_elements();
+  return *latcon_elements();
 }
 
 void finish() {}

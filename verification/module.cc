@@ -16,9 +16,9 @@ std::shared_ptr<void> start()
 } // namespace
 } // namespace latcon::elements
 
-extern "C" const latcon::elements::Elements &latcon_elements()
+extern "C" const latcon::elements::Elements *latcon_elements()
 {
   using namespace latcon;
   static const elements::Elements table{claims::run_claims, commands::run_continuum, elements::start};
-  return table;
+  return &table;
 }

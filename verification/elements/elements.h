@@ -31,4 +31,4 @@ void finish();
 } // namespace latcon::elements
 
 /// Entry point of the module.
-extern "C" const latcon::elements::Elements &latcon_elements();
+extern "C" const latcon::elements::Elements *latcon_elements();

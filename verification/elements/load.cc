@@ -26,12 +26,12 @@ const Elements &load()
   void *const module = dlopen(file.c_str(), RTLD_LAZY | RTLD_GLOBAL);
   if (module == nullptr)
     throw support::OutputError(file, std::string("the module with the finite elements cannot be loaded: ") + dlerror());
-  using Entry = const Elements &(*)();
+  using Entry = const Elements *(*)();
   const auto entry = reinterpret_cast<Entry>(dlsym(module, "latcon_elements"));
   if (entry == nullptr)
     throw support::OutputError(file, "it is not the module of this program");
-  started = entry().start();
-  return entry(); // cppcheck-suppress returnTempReference ; it gives a reference
+  started = entry()->start();
+  return *entry();
 }
 
 } // namespace
