@@ -112,8 +112,9 @@ void NearTipSums::add(const NearTipSums &other, bool mirrored)
   }
 }
 
-void NearTipSums::mean(NearTipField &field) const
+NearTipField NearTipSums::mean() const
 {
+  NearTipField field(grid_);
   field.samples = samples_;
   for (std::size_t point = 0; point < grid_.size(); ++point)
   {
@@ -137,6 +138,7 @@ void NearTipSums::mean(NearTipField &field) const
     field.strain_gradient_x[point] << G[0], G[1], G[1], G[2];
     field.strain_gradient_y[point] << G[3], G[4], G[4], G[5];
   }
+  return field;
 }
 
 NearTipSampler::NearTipSampler(const lattice::TriangularLattice &lattice, const lattice::Material &material,

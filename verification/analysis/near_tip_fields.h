@@ -85,13 +85,7 @@ public:
   void add_sample() { ++samples_; }
   void add(const NearTipSums &other, bool mirrored);
   std::size_t samples() const { return samples_; }
-  void mean(NearTipField &field) const; ///< into a field over the same grid
-  NearTipField mean() const
-  {
-    NearTipField field(grid_);
-    mean(field);
-    return field;
-  }
+  NearTipField mean() const;
 
   /// Saves or loads the sums over the same grid; see Simulation. @throws std::invalid_argument if the grid differs
   template <class Archive>

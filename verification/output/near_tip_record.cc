@@ -178,8 +178,7 @@ NearTipRecord::NearTipRecord(const input::Case &input, lattice::Simulation &simu
     far_opening_stress_(stress_of_loaded_sheet(input)(1, 1)), wave_speeds_(wave_speeds_along_crack(input)),
     X_begin_(seed_tip_X + sampled_from * (input.stop_position * simulation.lattice().length() - seed_tip_X)),
     X_end_(seed_tip_X + sampled_to * (input.stop_position * simulation.lattice().length() - seed_tip_X)),
-    sampler_(simulation.lattice(), simulation.material(), sampler_options(input, X_begin_, X_end_)),
-    of_sample_(sampler_.grid())
+    sampler_(simulation.lattice(), simulation.material(), sampler_options(input, X_begin_, X_end_))
 {
 }
 
@@ -217,8 +216,7 @@ void NearTipRecord::step()
     return;
   const double d = simulation_.lattice().lattice_spacing();
   Block &block = blocks_[sample->block];
-  const analysis::NearTipField &field = of_sample_;
-  sample->sums.mean(of_sample_);
+  const analysis::NearTipField field = sample->sums.mean();
   if (const auto asymmetry = analysis::velocity_asymmetry(field))
     block.asymmetry.push_back(*asymmetry);
   block.backward_speeds.push_back(analysis::backward_speeds(field));

@@ -81,7 +81,6 @@ private:
   std::array<double, 2> wave_speeds_; // longitudinal and shear, of long waves along x in the loaded sheet [m/s]
   double X_begin_, X_end_;
   analysis::NearTipSampler sampler_;
-  analysis::NearTipField of_sample_; // kept: to get its memory from the system takes longer than a sample
   std::array<Block, analysis::NearTipSampler::n_blocks> blocks_;
 };
 
