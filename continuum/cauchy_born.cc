@@ -8,7 +8,7 @@ namespace latcon::continuum
 {
 CauchyBorn::CauchyBorn(std::vector<FibreFamily> families) : families_(std::move(families))
 {
-  require<InvalidMaterial>(!families_.empty(), "a fibre network needs at least one family");
+  require(!families_.empty(), "a fibre network needs at least one family");
   for (const FibreFamily &family : families_)
     check(family);
 }

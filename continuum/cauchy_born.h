@@ -14,7 +14,7 @@ namespace latcon::continuum
 class CauchyBorn : public Material
 {
 public:
-  /// Creates the law from one or more families. Throws InvalidMaterial if there is no family, a direction is not a unit
+  /// Creates the law from one or more families. Throws InvalidInput if there is no family, a direction is not a unit
   /// vector to 1e-12, a weight is not positive, or a potential has no positive stiffness at l = 1.
   explicit CauchyBorn(std::vector<FibreFamily> families);
 

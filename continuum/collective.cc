@@ -1,6 +1,7 @@
 #include "continuum/collective.h"
 
 #include "continuum/errors.h"
+#include "support/errors.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -28,7 +29,8 @@ struct Severity
   static void rethrow(int kind, const std::string &message) { ((--kind == 0 ? throw Failures(message) : void()), ...); }
 };
 // A retry with a smaller step can recover from a non-physical state, but not from the others.
-using Kinds = Severity<NonPhysicalState, InvalidInput, LinearSolverFailed, OutputFailed, std::runtime_error>;
+using Kinds =
+  Severity<NonPhysicalState, InvalidInput, support::InputError, LinearSolverFailed, OutputFailed, std::runtime_error>;
 } // namespace
 
 DeferredException::DeferredException(const std::function<void()> &work)

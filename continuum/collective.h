@@ -21,7 +21,8 @@ public:
 
   /// Throws the same exception on every rank if the work failed on any rank, with the message of the lowest rank that
   /// has the most severe failure. Types that are preserved, most severe first: std::runtime_error (any type not listed
-  /// here becomes one), OutputFailed, LinearSolverFailed, InvalidInput, NonPhysicalState. Collective.
+  /// here becomes one), OutputFailed, LinearSolverFailed, support::InputError, InvalidInput, NonPhysicalState.
+  /// Collective.
   void rethrow_collectively(MPI_Comm communicator) const;
 
 private:

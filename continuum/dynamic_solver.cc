@@ -53,11 +53,6 @@ DynamicSolver::DynamicSolver(const Sheet::Mesh &mesh, const Constitution &consti
     sheet_.add_mass(inertia_.density, 0., sheet_.conformity_constraints(), plain_mass_);
   }
 
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const auto &cell : sheet_.mesh().active_cell_iterators() | IteratorFilters::LocallyOwnedCell())
-    smallest = std::min(smallest, cell->minimum_vertex_distance());
-  smallest_cell_ = dealii::Utilities::MPI::min(smallest, sheet_.communicator());
-
   state_.displacement = state_.velocity = state_.acceleration = sheet_.make_ghosted();
   elastic_diagonal_ = sheet_.make_owned();
   effective_diagonal_ = sheet_.make_owned();

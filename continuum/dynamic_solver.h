@@ -212,7 +212,6 @@ private:
   std::unique_ptr<LinearSolver> linear_solver_;
   Vector lift_;                                         // prescribed displacement, zero elsewhere
   Vector loads_;                                        // nodal dead loads
-  double smallest_cell_ = 0.;                           // extent [m]
   Sheet::Matrix full_mass_;                             // condensed by the conformity constraints alone: for forces
   Sheet::Matrix plain_mass_;                            // full_mass_ without micro-inertia
   Vector elastic_diagonal_;                             // of the elastic tangent last assembled

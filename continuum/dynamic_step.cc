@@ -187,13 +187,7 @@ Assembler DynamicSolver::assembler(const Vector &v)
 // Returns the round-off of the residual, eq. (C.45) [N/m].
 double DynamicSolver::round_off(const Residual &state, const Vector &u) const
 {
-  const auto square = [&](const types::global_dof_index i)
-  {
-    // F = I + Grad u has a rounding error of epsilon even for small u, as in a wave of small amplitude.
-    const double of_strain = elastic_diagonal_(i) * smallest_cell_;
-    return std::pow(state.magnitude(i), 2) + std::pow(effective_diagonal_(i) * u(i), 2) + of_strain * of_strain;
-  };
-  return residual_round_off * norm_over_free(sheet_, square);
+  return residual_round_off(sheet_, state.magnitude, u, effective_diagonal_, elastic_diagonal_);
 }
 
 // Updates the energies of a state; v is its velocity.
@@ -239,7 +233,7 @@ void DynamicSolver::update_ledger(const Step &step, const Vector &u, const Vecto
 // Solves a step for the displacement `u` at its end. Returns the reason of failure, empty on success.
 std::string DynamicSolver::attempt(const Step &step, Vector &u)
 {
-  const unsigned int number = n_steps_ + 1;
+  const unsigned int number = report_.load_steps.size() + 1;
   try
   {
     // Predictors of the free unknowns: constant acceleration (share 1), and no motion.
@@ -331,7 +325,8 @@ std::string DynamicSolver::advance(const double duration, const double end)
     {
       failure = refusal.what();
     }
-  report_.load_steps.push_back({static_cast<unsigned int>(n_steps_ + 1), 1., failure.empty(), failure});
+  report_.load_steps.push_back(
+    {static_cast<unsigned int>(report_.load_steps.size() + 1), 1., failure.empty(), failure});
   if (failure.empty())
   {
     state_ = std::move(next);

@@ -13,26 +13,18 @@ public:
   using std::domain_error::domain_error;
 };
 
-/// Material constants outside their valid range.
-class InvalidMaterial : public std::invalid_argument
-{
-public:
-  using std::invalid_argument::invalid_argument;
-};
-
-/// Invalid arguments: sizes, boundaries, settings, points outside the sheet.
+/// Invalid arguments: material constants, sizes, boundaries, settings, points outside the sheet.
 class InvalidInput : public std::invalid_argument
 {
 public:
   using std::invalid_argument::invalid_argument;
 };
 
-/// Throws an exception with the text `rule` unless it `holds`.
-template <class Failure = InvalidInput>
-void require(const bool holds, const std::string &rule)
+/// Throws InvalidInput with the text `rule` unless it `holds`.
+inline void require(const bool holds, const std::string &rule)
 {
   if (!holds)
-    throw Failure(rule);
+    throw InvalidInput(rule);
 }
 
 /// Linear system that could not be solved to its tolerance.

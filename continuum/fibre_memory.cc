@@ -39,14 +39,14 @@ double mean_squared_rise(const double x)
 FibreMemory::FibreMemory(std::vector<MaxwellFibres> families, const double gradient_length)
   : families_(std::move(families)), gradient_length_(gradient_length)
 {
-  require<InvalidMaterial>(!families_.empty(), "fibre memory needs at least one family");
+  require(!families_.empty(), "fibre memory needs at least one family");
   for (const MaxwellFibres &fibres : families_)
   {
     check_fibre(fibres.direction, fibres.weight, "Maxwell branches");
-    require<InvalidMaterial>(!fibres.branches.empty(), "a family of Maxwell branches needs at least one branch");
+    require(!fibres.branches.empty(), "a family of Maxwell branches needs at least one branch");
     for (const auto &[modulus, time] : fibres.branches)
-      require<InvalidMaterial>(modulus > 0. && time > 0. && std::isfinite(modulus) && std::isfinite(time),
-                               "the modulus and the relaxation time of a Maxwell branch must be positive and finite");
+      require(modulus > 0. && time > 0. && std::isfinite(modulus) && std::isfinite(time),
+              "the modulus and the relaxation time of a Maxwell branch must be positive and finite");
     add(stretch_measure(fibres.direction, fibres.weight), fibres);
   }
   if (gradient_length == 0.)

@@ -38,7 +38,7 @@ class FibreMemory
 {
 public:
   /// Creates the law, with the gradient part of the micro-inertia length `gradient_length` l_d [m] unless that is 0.
-  /// Throws InvalidMaterial if there is no family or one without branch, if a direction is not a unit vector to 1e-12,
+  /// Throws InvalidInput if there is no family or one without branch, if a direction is not a unit vector to 1e-12,
   /// or weights, moduli and relaxation times not positive and finite, and as gradient_measures() does.
   explicit FibreMemory(std::vector<MaxwellFibres> families, double gradient_length = 0.);
 

@@ -1,6 +1,7 @@
 #include "continuum/fibre_strain.h"
 
 #include "continuum/errors.h"
+#include "support/full_precision.h"
 
 #include <deal.II/base/symmetric_tensor.h>
 
@@ -36,11 +37,11 @@ std::array<StrainMeasure, 2> gradient_measures(const Tensor<1, 2> &N, const doub
                                                const double gradient_length)
 {
   const double along = squared_length_along(length, gradient_length);
-  require<InvalidMaterial>(length > 0. && std::isfinite(length),
-                           "fibres whose law has a gradient part need a positive and finite length");
-  require<InvalidMaterial>(along >= 0. && std::isfinite(gradient_length),
-                           "the micro-inertia length must be at least " + std::to_string(length / std::sqrt(12.)) +
-                             " m, the longest bond over sqrt(12), for the gradient part of a law to be positive");
+  require(length > 0. && std::isfinite(length),
+          "fibres whose law has a gradient part need a positive and finite length");
+  require(along >= 0. && std::isfinite(gradient_length),
+          "the micro-inertia length must be at least " + support::full_precision(length / std::sqrt(12.)) +
+            " m, the length of the bonds over sqrt(12), for the gradient part of a law to be positive");
   const auto measure = [&](const Tensor<1, 2> &M, const double squared_length)
   {
     return StrainMeasure{

@@ -23,7 +23,7 @@ StrainMeasure stretch_measure(const dealii::Tensor<1, 2> &N, double weight);
 double squared_length_along(double length, double gradient_length);
 
 /// Returns the components of the gradient across and along the fibre, with the weights c l_d^2 and c (l_d^2 - l^2/12).
-/// Throws InvalidMaterial if a length is not positive and finite, or the second weight negative.
+/// Throws InvalidInput if a length is not positive and finite, or the second weight negative.
 /// @param length l [m], undeformed @param gradient_length l_d [m]
 std::array<StrainMeasure, 2> gradient_measures(const dealii::Tensor<1, 2> &N, double weight, double length,
                                                double gradient_length);

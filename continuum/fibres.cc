@@ -48,17 +48,14 @@ PotentialDerivatives derivatives(const FibrePotential &potential, const double l
 
 void check_fibre(const dealii::Tensor<1, 2> &direction, const double weight, const std::string &name)
 {
-  require<InvalidMaterial>(std::abs(direction.norm() - 1.) <= 1e-12,
-                           "the direction of " + name + " must be a unit vector");
-  require<InvalidMaterial>(weight > 0. && std::isfinite(weight),
-                           "the weight of " + name + " must be positive and finite");
+  require(std::abs(direction.norm() - 1.) <= 1e-12, "the direction of " + name + " must be a unit vector");
+  require(weight > 0. && std::isfinite(weight), "the weight of " + name + " must be positive and finite");
 }
 
 void check(const FibreFamily &family)
 {
   check_fibre(family.direction, family.weight, "a fibre family");
   const double stiffness = derivatives(family.potential, 1.).second;
-  require<InvalidMaterial>(stiffness > 0. && std::isfinite(stiffness),
-                           "a fibre must have a positive and finite stiffness at stretch 1");
+  require(stiffness > 0. && std::isfinite(stiffness), "a fibre must have a positive and finite stiffness at stretch 1");
 }
 } // namespace latcon::continuum

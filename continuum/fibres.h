@@ -69,11 +69,11 @@ std::vector<dealii::Tensor<1, 2>> directions(unsigned int n);
 /// Returns psi(l) and its first four derivatives at stretch l > 0 [-] (theory-continuum.md, eqs. (C.12), (C.13)).
 PotentialDerivatives derivatives(const FibrePotential &potential, double l);
 
-/// Checks what `name` has as a family of fibres. Throws InvalidMaterial unless the direction is a unit vector to 1e-12,
+/// Checks what `name` has as a family of fibres. Throws InvalidInput unless the direction is a unit vector to 1e-12,
 /// and the weight is positive and finite.
 void check_fibre(const dealii::Tensor<1, 2> &direction, double weight, const std::string &name);
 
-/// Checks a family. Throws InvalidMaterial unless the direction is a unit vector to 1e-12, the weight is positive, the
+/// Checks a family. Throws InvalidInput unless the direction is a unit vector to 1e-12, the weight is positive, the
 /// stiffness psi''(1) is positive, and all are finite.
 void check(const FibreFamily &family);
 } // namespace latcon::continuum

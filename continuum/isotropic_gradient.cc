@@ -12,7 +12,7 @@ IsotropicGradient::IsotropicGradient(const double shear_modulus, const double le
   : modulus_(shear_modulus * length * length)
 {
   if (!(shear_modulus > 0. && length >= 0. && std::isfinite(modulus_)))
-    throw InvalidMaterial("an isotropic gradient energy needs a shear modulus > 0 and a length >= 0, both finite");
+    throw InvalidInput("an isotropic gradient energy needs a shear modulus > 0 and a length >= 0, both finite");
 }
 
 GradientResponse IsotropicGradient::evaluate(const Tensor<2, 2> &, const Gradient &G, const Order order) const

@@ -9,7 +9,7 @@ namespace latcon::continuum
 class IsotropicGradient : public GradientLaw
 {
 public:
-  /// Creates the law from `shear_modulus` mu [Pa] > 0 and `length` l_s [m] >= 0. Throws InvalidMaterial if a value is
+  /// Creates the law from `shear_modulus` mu [Pa] > 0 and `length` l_s [m] >= 0. Throws InvalidInput if a value is
   /// out of range.
   IsotropicGradient(double shear_modulus, double length);
 

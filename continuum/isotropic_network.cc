@@ -26,7 +26,7 @@ void add_in_all_directions(std::vector<FibreFamily> &fibres, const FibreFamily &
 
 IsotropicNetwork::IsotropicNetwork(const std::vector<FibreFamily> &families)
 {
-  require<InvalidMaterial>(!families.empty(), "a fibre network needs at least one family");
+  require(!families.empty(), "a fibre network needs at least one family");
   std::vector<FibreFamily> sampled;
   for (const FibreFamily &family : families)
   {

@@ -19,7 +19,7 @@ namespace latcon::continuum
 class IsotropicNetwork : public Material
 {
 public:
-  /// Creates the law from `families`, whose directions are ignored. Throws InvalidMaterial as CauchyBorn does.
+  /// Creates the law from `families`, whose directions are ignored. Throws InvalidInput as CauchyBorn does.
   explicit IsotropicNetwork(const std::vector<FibreFamily> &families);
 
   Response evaluate(const dealii::Tensor<2, 2> &F, Order order) const override;

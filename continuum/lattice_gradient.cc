@@ -3,6 +3,7 @@
 #include "continuum/errors.h"
 #include "continuum/fibre_strain.h"
 #include "continuum/material.h"
+#include "support/full_precision.h"
 
 #include <deal.II/base/symmetric_tensor.h>
 
@@ -61,7 +62,7 @@ void check(const BondFamily &family)
 {
   check(family.fibre);
   if (!(family.length > 0. && std::isfinite(family.length)))
-    throw InvalidMaterial("a bond needs a positive and finite length");
+    throw InvalidInput("a bond needs a positive and finite length");
 }
 
 double LatticeGradient::smallest_length(const std::vector<BondFamily> &families)
@@ -74,16 +75,16 @@ double LatticeGradient::smallest_length(const std::vector<BondFamily> &families)
 
 LatticeGradient::LatticeGradient(const std::vector<BondFamily> &families, const double length)
 {
-  require<InvalidMaterial>(!families.empty(), "a lattice gradient energy needs at least one family of bonds");
-  require<InvalidMaterial>(std::isfinite(length),
-                           "the micro-inertia length of a lattice gradient energy must be finite");
+  require(!families.empty(), "a lattice gradient energy needs at least one family of bonds");
+  require(std::isfinite(length), "the micro-inertia length of a lattice gradient energy must be finite");
   for (const BondFamily &family : families)
   {
     check(family);
     const double along = squared_length_along(family.length, length);
     if (along < 0.)
-      throw InvalidMaterial("the micro-inertia length must be at least " + std::to_string(smallest_length(families)) +
-                            " m, the longest bond over sqrt(12), for the gradient energy to be positive");
+      throw InvalidInput("the micro-inertia length must be at least " +
+                         support::full_precision(smallest_length(families)) +
+                         " m, the longest bond over sqrt(12), for the gradient energy to be positive");
     const Tensor<1, 2> &N = family.fibre.direction;
     const Tensor<1, 2> T({-N[1], N[0]});
     families_.push_back({family.fibre,

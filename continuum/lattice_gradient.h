@@ -14,7 +14,7 @@ struct BondFamily
   double length; ///< l [m] > 0, undeformed
 };
 
-/// Checks a family. Throws InvalidMaterial unless the fibre is valid and the length is positive and finite.
+/// Checks a family. Throws InvalidInput unless the fibre is valid and the length is positive and finite.
 void check(const BondFamily &family);
 
 /// Gradient law of a network of bonds, derived from the dispersion of long lattice waves to fourth order; the
@@ -25,7 +25,7 @@ void check(const BondFamily &family);
 class LatticeGradient : public GradientLaw
 {
 public:
-  /// Creates the law from `families`, with weights as in CauchyBorn, and `length` l_d [m]. Throws InvalidMaterial if a
+  /// Creates the law from `families`, with weights as in CauchyBorn, and `length` l_d [m]. Throws InvalidInput if a
   /// family is not valid, or if l_d^2 < l_k^2/12 for a family, which would make the energy indefinite.
   LatticeGradient(const std::vector<BondFamily> &families, double length);
 

@@ -41,22 +41,20 @@ Invariants invariants(const MooneyRivlin::Constants &m, const Tensor<2, 2> &F)
 MooneyRivlin::Constants MooneyRivlin::Constants::with_equal_lame_constants(const double shear_modulus,
                                                                            const double ratio)
 {
-  require<InvalidMaterial>(shear_modulus > 0. && ratio > -1. && ratio < 1.,
-                           "equal Lame constants need a shear modulus > 0 and a ratio c2/(c1+c2) in (-1, 1)");
+  require(shear_modulus > 0. && ratio > -1. && ratio < 1.,
+          "equal Lame constants need a shear modulus > 0 and a ratio c2/(c1+c2) in (-1, 1)");
   return {0.5 * (1. - ratio) * shear_modulus, 0.5 * ratio * shear_modulus, 2. * (1. - ratio) * shear_modulus};
 }
 
 MooneyRivlin::MooneyRivlin(const Constants &constants) : constants_(constants)
 {
   const auto &[c1, c2, kappa] = constants;
-  require<InvalidMaterial>(std::isfinite(c1) && std::isfinite(c2) && std::isfinite(kappa),
-                           "Mooney-Rivlin constants must be finite");
-  require<InvalidMaterial>(c1 + c2 > 0., "Mooney-Rivlin needs a positive shear modulus 2 (c1 + c2)");
-  require<InvalidMaterial>(kappa > 0., "Mooney-Rivlin needs kappa > 0");
+  require(std::isfinite(c1) && std::isfinite(c2) && std::isfinite(kappa), "Mooney-Rivlin constants must be finite");
+  require(c1 + c2 > 0., "Mooney-Rivlin needs a positive shear modulus 2 (c1 + c2)");
+  require(kappa > 0., "Mooney-Rivlin needs kappa > 0");
   // d2W/dF33^2 at F = I: the thickness of the unloaded sheet is stable if it is positive.
-  require<InvalidMaterial>(
-    2. * (2. * c1 + 4. * c2) + kappa > 0.,
-    "Mooney-Rivlin needs 4 c1 + 8 c2 + kappa > 0 for the thickness of the unloaded sheet to be stable");
+  require(2. * (2. * c1 + 4. * c2) + kappa > 0.,
+          "Mooney-Rivlin needs 4 c1 + 8 c2 + kappa > 0 for the thickness of the unloaded sheet to be stable");
 }
 
 Response MooneyRivlin::evaluate(const Tensor<2, 2> &F, const Order order) const

@@ -24,11 +24,11 @@ public:
     /// Returns constants with equal Lame constants in the small-strain limit in plane stress: shear modulus
     /// `shear_modulus` mu [Pa] > 0 and lambda = mu, that is, two-dimensional Poisson ratio 1/3. They are c1 = (1-r)
     /// mu/2, c2 = r mu/2, kappa = 2 mu (1-r), for the ratio r = c2/(c1 + c2) [-], -1 < r < 1 (theory-continuum.md, eq.
-    /// (C.10)). Throws InvalidMaterial if an argument is out of range.
+    /// (C.10)). Throws InvalidInput if an argument is out of range.
     static Constants with_equal_lame_constants(double shear_modulus, double ratio);
   };
 
-  /// Creates the law. Throws InvalidMaterial unless 2 (c1 + c2) > 0, kappa > 0, and the thickness is stable at F = I: 4
+  /// Creates the law. Throws InvalidInput unless 2 (c1 + c2) > 0, kappa > 0, and the thickness is stable at F = I: 4
   /// c1 + 8 c2 + kappa > 0.
   explicit MooneyRivlin(const Constants &constants);
 

@@ -20,7 +20,7 @@ public:
 
   /// Creates the law from `families`, whose directions are ignored, and `length` l_d [m]. Families with the same
   /// potential are merged into one with their mean squared length, so l_d only needs to satisfy eq. (C.58). Throws
-  /// InvalidMaterial as LatticeGradient does.
+  /// InvalidInput as LatticeGradient does.
   NetworkGradient(const std::vector<BondFamily> &families, double length);
 
   /// Returns the smallest l_d [m] for which the energy is positive: the largest root-mean-square length of bonds with

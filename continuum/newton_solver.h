@@ -45,9 +45,21 @@ double norm_over_free(const Sheet &sheet, const Square &square)
   return std::sqrt(dealii::Utilities::MPI::sum(sum, sheet.communicator()));
 }
 
-/// Round-off of a residual [N/m] relative to the norm of its rounded terms, eqs. (C.19) and (C.45). Factor 4: computing
-/// a stress adds several rounding errors to those of the displacement.
-constexpr double residual_round_off = 4. * std::numeric_limits<double>::epsilon();
+/// Returns the round-off of a residual [N/m], eqs. (C.19) and (C.45). Factor 4: computing a stress adds several
+/// rounding errors to those of the displacement. Collective. @param magnitude sum of the absolute values of its terms
+/// [N/m]
+/// @param tangent,elastic entry (i, i) of the matrix and of its elastic part for unknown i [N/m^2]
+template <class Tangent, class Elastic>
+double residual_round_off(const Sheet &sheet, const Sheet::Vector &magnitude, const Sheet::Vector &u,
+                          const Tangent &tangent, const Elastic &elastic)
+{
+  const auto square = [&](const dealii::types::global_dof_index i)
+  {
+    // F = I + Grad u has a rounding error of epsilon even for small u, as in a wave of small amplitude.
+    return std::pow(magnitude(i), 2) + std::pow(tangent(i) * u(i), 2) + std::pow(elastic(i) * sheet.smallest_cell(), 2);
+  };
+  return 4. * std::numeric_limits<double>::epsilon() * norm_over_free(sheet, square);
+}
 
 /// Newton's method with a line search that halves the step (theory-continuum.md, "Weak form and Newton"). StaticSolver
 /// and DynamicSolver pass their equations as functions of the nodal displacement u [m]; this class controls tolerance,

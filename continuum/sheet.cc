@@ -11,6 +11,7 @@
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
+#include <deal.II/grid/filtered_iterator.h>
 #include <deal.II/grid/grid_tools_cache.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 #include <deal.II/numerics/vector_tools_boundary.h>
@@ -115,6 +116,10 @@ Sheet::Sheet(const Mesh &mesh, const Constitution &constitution, const unsigned 
 {
   check_input();
   distribute();
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const auto &cell : mesh.active_cell_iterators() | IteratorFilters::LocallyOwnedCell())
+    smallest = std::min(smallest, cell->minimum_vertex_distance());
+  smallest_cell_ = dealii::Utilities::MPI::min(smallest, communicator());
 }
 
 std::unique_ptr<Sheet> Sheet::clone_on(const Mesh &mesh) const

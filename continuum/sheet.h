@@ -127,6 +127,7 @@ public:
   Vector without_ghosts(const Vector &x) const; ///< returns a copy without ghost entries
 
   const Mesh &mesh() const { return mesh_; }
+  double smallest_cell() const { return smallest_cell_; } ///< h, shortest distance of two corners of a cell [m]
   const Constitution &constitution() const { return constitution_; }
   const BoundaryConditions &conditions() const { return conditions_; }
   const dealii::FESystem<2> &element() const { return element_; }
@@ -157,6 +158,7 @@ private:
   void check_input() const;
 
   const Mesh &mesh_;
+  double smallest_cell_ = 0.;
   Constitution constitution_;
   BoundaryConditions conditions_;
   unsigned int degree_;

@@ -79,9 +79,8 @@ StaticSolver::Evaluation StaticSolver::evaluate(const Vector &u, const double lo
 // Returns the round-off of the residual, eq. (C.19) [N/m].
 double StaticSolver::round_off(const Evaluation &state, const Vector &u) const
 {
-  const auto square = [&](const types::global_dof_index i)
-  { return std::pow(state.magnitude(i), 2) + std::pow(linear_solver_->diag_element(i) * u(i), 2); };
-  return residual_round_off * norm_over_free(sheet_, square);
+  const auto diagonal = [this](const types::global_dof_index i) { return linear_solver_->diag_element(i); };
+  return residual_round_off(sheet_, state.magnitude, u, diagonal, diagonal);
 }
 
 std::string StaticSolver::attempt(const double target, SolverReport &report)

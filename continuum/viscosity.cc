@@ -11,13 +11,13 @@ namespace latcon::continuum
 FibreViscosity::FibreViscosity(std::vector<FibreDashpot> dashpots, const double gradient_length)
   : dashpots_(std::move(dashpots))
 {
-  require<InvalidMaterial>(!dashpots_.empty(), "fibre viscosity needs at least one dashpot");
+  require(!dashpots_.empty(), "fibre viscosity needs at least one dashpot");
   std::vector<StrainMeasure> gradients;
   for (const FibreDashpot &dashpot : dashpots_)
   {
     check_fibre(dashpot.direction, dashpot.weight, "a dashpot");
     if (!(dashpot.viscosity >= 0. && std::isfinite(dashpot.viscosity)))
-      throw InvalidMaterial("the viscosity of a dashpot must be finite and not negative");
+      throw InvalidInput("the viscosity of a dashpot must be finite and not negative");
     const double weight = dashpot.weight * dashpot.viscosity;
     strains_.push_back(stretch_measure(dashpot.direction, weight));
     if (gradient_length != 0.)

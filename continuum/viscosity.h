@@ -51,7 +51,7 @@ class FibreViscosity : public Viscosity
 {
 public:
   /// Creates the law, with the gradient part of the micro-inertia length `gradient_length` l_d [m] unless that is 0.
-  /// Throws InvalidMaterial if there is no dashpot, a direction is not a unit vector to 1e-12, a weight not positive or
+  /// Throws InvalidInput if there is no dashpot, a direction is not a unit vector to 1e-12, a weight not positive or
   /// a viscosity negative, or any not finite, and as gradient_measures() does.
   explicit FibreViscosity(std::vector<FibreDashpot> dashpots, double gradient_length = 0.);
 

@@ -87,6 +87,8 @@ public:
       velocity_.gradient << velocity[2], velocity[3], velocity[4], velocity[5];
     }
   }
+  /// Constrains the sites, whose velocities become 0, as when the sheet was set up.
+  void hold(State &state) const { constrain(state, band_, constraint_); }
   /// Frees the sites, if they were let go, in a state that was set up with them constrained.
   void free_if_released(State &state, const Material &material) const;
 

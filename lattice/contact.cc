@@ -68,10 +68,8 @@ void Contact::update_lists(const State &state)
         (!candidate.is_listed || (here - candidate.listed_at).squaredNorm() > 0.25 * skin_ * skin_))
       own.push_back({place, here.x(), here.y()});
   }
-  const std::vector<Listing> all = band_.all_gather(own);
-  for (const auto &[place, x, y] : all)
+  for (const auto &[place, x, y] : band_.all_gather(own))
     list(state, place, {x, y});
-  n_listings_ += all.size();
 }
 
 void Contact::list(const State &state, std::size_t place, const Eigen::Vector2d &here)

@@ -57,8 +57,6 @@ public:
   const std::vector<SiteForce> &evaluate(State &state, VectorField &velocity) override;
 
   const ContactLaw &law() const { return law_; } ///< as given
-  /// Returns how often candidates were listed, each for itself.
-  std::size_t n_listings() const { return n_listings_; }
 
 private:
   struct Candidate
@@ -82,7 +80,6 @@ private:
   LinkCells cells_;                                               // of candidates, by their places
   boost::container::flat_map<std::size_t, Candidate> candidates_; // by place
   SitesOfRanks sent_, received_;
-  std::size_t n_listings_ = 0;
 };
 
 } // namespace latcon::lattice

@@ -24,7 +24,6 @@ std::vector<std::size_t> sites_in(const Eigen::AlignedBox2d &box, const Triangul
   const auto [rows, columns] = lattice.window(box.min(), box.max());
   support::require(double(rows.end - rows.begin) * double(columns.end - columns.begin) <= most_sites,
                    "it takes more than 1e7 sites");
-
   std::vector<std::size_t> sites;
   for (const std::size_t place : lattice.sites(rows, columns))
     if (box.contains(lattice.reference(place)))

@@ -26,19 +26,16 @@ Eigen::Vector2d missing_force(const TriangularLattice &lattice, const Material &
 {
   Eigen::Vector2d force = Eigen::Vector2d::Zero();
   for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
-  {
-    const Shell *shell = material.shell(lattice, kind);
-    if (shell == nullptr)
-      continue;
-    const Eigen::Vector2d bond = F * lattice.bond_vector(kind);
-    const double length = bond.norm();
-    const double axial =
-      cross_section(*shell, lattice, kind) * lattice::force(shell->law, length / lattice.rest_length(kind));
-    if (!lattice.is_occupied(lattice.bond(place, kind).far))
-      force += axial / length * bond;
-    if (!lattice.is_occupied(lattice.bond_into(place, kind).near))
-      force -= axial / length * bond;
-  }
+    if (const Shell *shell = material.shell(lattice, kind))
+    {
+      const Eigen::Vector2d bond = F * lattice.bond_vector(kind);
+      const double length = bond.norm(), axial = cross_section(*shell, lattice, kind) *
+                                                 lattice::force(shell->law, length / lattice.rest_length(kind));
+      if (!lattice.is_occupied(lattice.bond(place, kind).far))
+        force += axial / length * bond;
+      if (!lattice.is_occupied(lattice.bond_into(place, kind).near))
+        force -= axial / length * bond;
+    }
   return force;
 }
 
@@ -51,10 +48,8 @@ Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material
   for (std::size_t kind = 0; kind < lattice.n_kinds(); ++kind)
     if (const Shell *shell = material.shell(lattice, kind))
     {
-      const Eigen::Vector2d R = lattice.bond_vector(kind);
-      const double l = lattice.rest_length(kind);
-      const double stretch = (F * R).norm() / l;
-      const Eigen::Vector2d n = (F * R).normalized();
+      const Eigen::Vector2d R = lattice.bond_vector(kind), n = (F * R).normalized();
+      const double l = lattice.rest_length(kind), stretch = (F * R).norm() / l;
       const Eigen::Matrix2d along = n * n.transpose();
       const double of_memory = is_fast ? properties(shell->memory).largest_stiffness : 0.;
       const Eigen::Matrix2d h = (stiffness(shell->law, stretch) + of_memory) * along +
@@ -66,8 +61,7 @@ Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material
 
 bool waves_run_along_x(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F)
 {
-  const Eigen::Matrix2d tangent = tangent_along_x(lattice, material, F);
-  return support::symmetric_eigenvalues(tangent)[0] > 0.;
+  return support::symmetric_eigenvalues(tangent_along_x(lattice, material, F))[0] > 0.;
 }
 
 EndLoads::EndLoads(const RowPartition &band, const Material &material, const State &state, const Eigen::Matrix2d &F,

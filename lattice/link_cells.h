@@ -32,8 +32,7 @@ public:
     support::require(reach > 0., "link cells need a positive reach");
   }
 
-  /// Removes all points.
-  void clear() { points_.clear(); }
+  void clear() { points_.clear(); } ///< removes all points
 
   /// Moves the point `id` between two positions [m]. A point whose position is not finite is near nothing, as one that
   /// was never put anywhere.

@@ -53,7 +53,7 @@ struct Material
     return lattice.is_triangular() && !third_nearest ? 2 * n_kinds_per_shell : lattice.n_kinds();
   }
 
-  /// Number of mechanisms by which memories store and dissipate energy: those of one shell after those of the other.
+  /// Number of mechanisms by which memories store and dissipate energy: shell after shell.
   std::size_t n_mechanisms() const { return first_mechanism(n_shells); }
   /// Number of mechanisms of the shells before one.
   std::size_t first_mechanism(std::size_t shell) const

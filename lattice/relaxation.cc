@@ -7,6 +7,7 @@
 
 #include "lattice/forces.h"
 #include "lattice/time_step.h"
+#include "support/require.h"
 
 namespace latcon::lattice
 {
@@ -53,6 +54,8 @@ Sums over_free_sites(const State &state, const TriangularLattice &lattice, const
 double relax(State &state, const TriangularLattice &lattice, const Material &material, double tolerance,
              std::size_t max_iterations)
 {
+  support::require(std::all_of(state.rollers.begin(), state.rollers.end(), [](std::uint8_t axes) { return axes == 0; }),
+                   "relaxation does not know rollers");
   // Constants of the cited paper.
   constexpr double initial_mixing = 0.1, mixing_decay = 0.99, speed_up = 1.1, slow_down = 0.5;
   constexpr std::size_t patience = 5;
@@ -61,9 +64,10 @@ double relax(State &state, const TriangularLattice &lattice, const Material &mat
   constexpr double smallest_stretch = 0.5;
   const double largest_step = 0.9 * time_step_limits(lattice, springs, smallest_stretch).elastic;
 
-  Forces forces(lattice, springs);
+  const RowPartition band(lattice);
+  Forces forces(band, springs);
   state.velocity = VectorField(lattice.n_places());
-  update_images(state, lattice);
+  update_images(state, band);
   double step = 0.3 * largest_step;
   double mixing = initial_mixing;
   std::size_t downhill = 0;
@@ -109,7 +113,7 @@ double relax(State &state, const TriangularLattice &lattice, const Material &mat
                       state.velocity.set(i, turned + step * f * state.inverse_mass[i]);
                       state.position.add(i, step * state.velocity.at(i));
                     });
-    update_images(state, lattice);
+    update_images(state, band);
   }
   std::ostringstream message;
   message << "the lattice did not come to rest: largest force on a free site " << residual << " N/m, wanted "

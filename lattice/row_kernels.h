@@ -118,11 +118,12 @@ struct Loops
   void (*kick)(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,
                double *velocity);
 
-  /// The first stage of a Runge-Kutta-Chebyshev step (theory.md, eq. (L.18)) for one component of n sites, in place,
-  /// after `duration` [s]; positions and velocities before it go to `start` and `previous`.
-  void (*first_stage)(double duration, std::size_t n, const double *acceleration, double *position, double *velocity,
-                      double *start_position, double *start_velocity, double *previous_position,
-                      double *previous_velocity);
+  /// The first stage of a Runge-Kutta-Chebyshev step (theory.md, eq. (L.18)) for one component of n sites, after
+  /// `duration` [s]; positions and velocities before it go to `start` and `previous`. `from` may be either of the
+  /// others.
+  void (*first_stage)(double duration, std::size_t n, const double *acceleration, const double *from_position,
+                      const double *from_velocity, double *position, double *velocity, double *start_position,
+                      double *start_velocity, double *previous_position, double *previous_velocity);
 
   /// A further stage of a step h [s] from the forces at the last one; it takes the place of the stage before the last.
   void (*next_stage)(const ChebyshevStages::Stage &stage, double h, std::size_t n, const double *force,

@@ -25,13 +25,24 @@ void RungeKuttaChebyshev::set_time_step(double time_step)
 void RungeKuttaChebyshev::step(State &state)
 {
   const double h = time_step();
+  const auto swap_with_previous = [&]
+  {
+    std::swap(state.position, previous_.position);
+    std::swap(state.velocity, previous_.velocity);
+  };
+  // The fields of the state stay where they are in memory: views of them remain valid.
+  const bool is_odd = stages_.stages().size() % 2 == 1;
+  if (is_odd)
+    swap_with_previous();
+  const VectorField &x = is_odd ? previous_.position : state.position,
+                    &v = is_odd ? previous_.velocity : state.velocity;
   const auto first_stage = [&](std::size_t row)
   {
     const std::size_t i = lattice_.index(row, 0);
     for (const std::size_t axis : axes)
-      kernels::loops().first_stage(h * stages_.first(), lattice_.columns(), &state.acceleration[axis][i],
-                                   &state.position[axis][i], &state.velocity[axis][i], &start_.position[axis][i],
-                                   &start_.velocity[axis][i], &previous_.position[axis][i],
+      kernels::loops().first_stage(h * stages_.first(), lattice_.columns(), &state.acceleration[axis][i], &x[axis][i],
+                                   &v[axis][i], &state.position[axis][i], &state.velocity[axis][i],
+                                   &start_.position[axis][i], &start_.velocity[axis][i], &previous_.position[axis][i],
                                    &previous_.velocity[axis][i]);
   };
   for_each_row(lattice_, band_.rows(), first_stage);
@@ -49,8 +60,7 @@ void RungeKuttaChebyshev::step(State &state)
     };
     forces_.set_elapsed(stage.elapsed * h);
     evaluate(state, std::ref(next));
-    std::swap(state.position, previous_.position);
-    std::swap(state.velocity, previous_.velocity);
+    swap_with_previous();
     kick_sites(state, h * stage.now);
     exchange_ghosts(state);
   }

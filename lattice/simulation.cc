@@ -83,9 +83,8 @@ int Simulation::needed_parts() const
     if (forces_.row_sums(row).has_short_bonds)
       rows.push_back(row);
   int parts = 1;
-#pragma omp parallel for schedule(dynamic)                                                                             \
-  reduction(max                                                                                                        \
-            : parts) if (rows.size() * lattice_.stride() >= min_places_for_threads)
+  const bool threads = rows.size() * lattice_.stride() >= min_places_for_threads;
+#pragma omp parallel for schedule(dynamic) reduction(max : parts) if (threads)
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
     const std::size_t row = rows[i];
@@ -195,14 +194,14 @@ void Simulation::cut_bonds(const std::vector<std::pair<std::size_t, std::size_t>
   reinitialize_forces();
 }
 
-void Simulation::set_velocities(const VectorField &velocity)
+void Simulation::set_velocities(const VectorField &velocity, bool is_initial)
 {
   const double before = kinetic_energy(state_, band_);
   for (const std::size_t place : band_.known_sites())
     for (const std::size_t axis : axes)
       if (state_.inverse_mass[place] > 0. && state_.is_free(place, axis))
         state_.velocity[axis][place] = velocity[axis][place];
-  initial_energy_ += kinetic_energy(state_, band_) - before;
+  (is_initial ? initial_energy_ : work_[boundary][0]) += kinetic_energy(state_, band_) - before;
   reinitialize_forces();
 }
 
@@ -244,8 +243,8 @@ void Simulation::advance(double duration, double end)
   // Forces are evaluated anew only where the velocities of constrained sites change.
   bool changed = false;
   for (std::size_t c = 0; c < constraints_.size(); ++c)
-    if (constraints_[c].prescribe(state_, material_, state_.time, state_.time + duration, work_[of_constraint(c)]))
-      changed = true;
+    changed |=
+      constraints_[c].prescribe(state_, material_, state_.time, state_.time + duration, work_[of_constraint(c)]);
   if (changed)
     reinitialize_forces();
   integrator_->set_time_step(duration);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -23,8 +22,8 @@ namespace latcon::lattice
 /// A sheet in motion: state, forces, time stepping, fracture and the energy ledger, one step at a time.
 ///
 /// Ranks that share the sheet make one simulation together, each of its band of rows. Every function that is not const
-/// is collective, and so are energies() and position(). What they return, and all that does not depend on who moves
-/// which row, is the same bits on all ranks, for any number of them.
+/// is collective, but for save() and restore(), and so are energies() and position(). What they return, and all that
+/// does not depend on who moves which row, is the same bits on all ranks, for any number of them.
 class Simulation
 {
 public:
@@ -68,9 +67,10 @@ public:
   /// velocities, and are evaluated on each rank for its own sites.
   void add(std::unique_ptr<SiteForces> forces);
 
-  /// Sets the velocities of the free sites, of which initial waves and tests consist; the change of kinetic energy
-  /// counts as initial energy. @param velocity by place [m/s]
-  void set_velocities(const VectorField &velocity);
+  /// Sets the velocities of the free sites. @param velocity by place [m/s]
+  /// @param is_initial the change of kinetic energy counts as initial energy, as of a wave to begin with; else as
+  /// boundary work, as of an impulse on the way
+  void set_velocities(const VectorField &velocity, bool is_initial = true);
 
   /// Advances by one time step, in parts if a bond is so short that the whole step would be unstable (theory.md,
   /// eq. (L.24)). @return bonds of the whole sheet that broke in it
@@ -103,7 +103,6 @@ public:
   const Material &material() const { return material_; }
   const State &state() const { return state_; }      ///< in the rows that the band knows
   Eigen::Vector2d position(std::size_t place) const; ///< of any site [m]
-  const Forces &forces() const { return forces_; }
   double time_step() const { return time_stepping_.step; } ///< of a whole step [s]
   std::optional<std::size_t> tip() const { return fracture_ ? fracture_->tip() : std::nullopt; }
   /// See Fracture::nearest_to_breaking(), of state(), which must be complete; none if bonds do not break.
@@ -172,9 +171,7 @@ private:
 template <class Archive>
 void Simulation::archive(Archive &archive)
 {
-  const std::vector<std::size_t> known = band_.known_rows();
-  std::vector<std::size_t> all(lattice_.rows());
-  std::iota(all.begin(), all.end(), std::size_t{0});
+  const std::vector<std::size_t> known = band_.known_rows(), all = RowPartition(lattice_).known_rows();
   // Of this very simulation, on this rank.
   constexpr bool is_snapshot = std::is_same_v<Archive, Snapshot::Archive<Archive::loads>>;
   constexpr bool is_checked = Archive::loads && !is_snapshot;
@@ -182,6 +179,9 @@ void Simulation::archive(Archive &archive)
   const double energy_before = initial_energy_;
   if constexpr (is_checked)
     bonds_before = state_.bonds;
+  if constexpr (Archive::loads) // those that were let go after the instant that is loaded
+    for (const PrescribedMotion &constraint : constraints_)
+      constraint.hold(state_);
   archive("time", state_.time);
   for_each_field(state_, lattice_,
                  [&](const std::string &name, auto &field) { archive_rows(archive, name, field, band_, known); });

@@ -11,8 +11,8 @@ namespace latcon::lattice
 
 /// Continuum quantities at one site, from the bonds it has.
 ///
-/// The area of a site is that of its reference Voronoi cell, (sqrt3 / 2) d^2, also at the edges of the sheet and at
-/// cracks, where a site has fewer bonds and the values are sums over those.
+/// The area of a site is TriangularLattice::site_area(), also at the edges of the sheet and at cracks, where a site has
+/// fewer bonds and the values are sums over those.
 struct SiteValues
 {
   /// W [J/m^3]: half the energy of the law of every bond of the site over its reference volume. Exact in a homogeneous

@@ -43,12 +43,11 @@ BondFactors bond_factors(const RowPartition &band, const Material &material, Bon
 void update_images(State &state, const RowPartition &band)
 {
   for (const TriangularLattice::Image &image : band.lattice().images())
-  {
-    if (!band.is_relevant(image.site))
-      continue;
-    state.position.set(image.place, state.position.at(image.site) + state.periods * image.period);
-    state.velocity.set(image.place, state.velocity.at(image.site));
-  }
+    if (band.is_relevant(image.site))
+    {
+      state.position.set(image.place, state.position.at(image.site) + state.periods * image.period);
+      state.velocity.set(image.place, state.velocity.at(image.site));
+    }
 }
 
 std::vector<std::size_t> sites_at(const TriangularLattice &lattice, const Material &material, const Edges &edges)
@@ -92,12 +91,8 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
 
   state.periods = F;
   for (std::size_t place = 0; place < n; ++place)
-  {
-    const bool in_margin = lattice.row_of(place) >= lattice.rows();
-    if (!in_margin && !band.is_relevant(place))
-      continue;
-    state.position.set(place, F * lattice.reference(place));
-  }
+    if (lattice.row_of(place) >= lattice.rows() || band.is_relevant(place)) // the margin, or a row that is known
+      state.position.set(place, F * lattice.reference(place));
 
   state.stiffness = bond_factors(band, material, BondProperty::stiffness);
   // In all rows, as a crack tip may come to any. No other values are written in rows that are not known.

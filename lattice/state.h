@@ -38,11 +38,7 @@ struct VectorField
   Field &operator[](std::size_t axis) { return axis == 0 ? x : y; }
   const Field &operator[](std::size_t axis) const { return axis == 0 ? x : y; }
   Eigen::Vector2d at(std::size_t place) const { return {x[place], y[place]}; }
-  void set(std::size_t place, const Eigen::Vector2d &vector)
-  {
-    x[place] = vector.x();
-    y[place] = vector.y();
-  }
+  void set(std::size_t place, const Eigen::Vector2d &vector) { x[place] = vector.x(), y[place] = vector.y(); }
   void add(std::size_t place, const Eigen::Vector2d &vector) { set(place, at(place) + vector); }
   /// What there is more at one place than at another.
   Eigen::Vector2d difference(std::size_t from, std::size_t to) const { return at(to) - at(from); }

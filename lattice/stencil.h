@@ -61,7 +61,6 @@ struct Grid
     return from_row_frame(columns + (kind == Kind::triangular ? 0.5 * rows : 0.), rows);
   }
   double pitch() const { return kind == Kind::triangular ? half_sqrt3 : 1.; } ///< distance of rows, in spacings
-  double cell_area() const { return pitch() * spacing * spacing; }            ///< reference area of a point [m^2]
 };
 
 /// A bond of a stencil, seen from one of its ends.

@@ -50,7 +50,7 @@ inline constexpr double short_stretch = 0.5;
 
 /// Longest step [s] that follows the recoil of a bond (theory.md, eq. (L.24)). For velocity Verlet: the combined
 /// limit, at most a tenth of the elastic one; for Runge-Kutta-Chebyshev: 1 / kappa. All bonds of the shell of `kind`
-/// are taken to be at `stretch`, those of the other shell at short_stretch.
+/// are taken to be at `stretch`, all others at short_stretch.
 /// @param contact none: sites do not touch
 double recoil_step(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
                    std::size_t kind, double stretch, const std::optional<ContactLaw> &contact);

@@ -66,8 +66,10 @@ TriangularLattice::TriangularLattice(const Grid &grid, const std::vector<HalfBon
   columns_ = repeats_along() ? intervals(along, spacing) : intervals(along, spacing, !rows_along_x()) + 1;
   rows_ = intervals(across, grid.pitch() * spacing, rows_along_x() || repeats_across()) + (repeats_across() ? 0 : 1);
   // The margin of a periodic sheet is filled from the sheet once around, so it must not be wider.
-  support::require(columns_ >= (repeats_along() ? column_reach_ : 3) && rows_ >= (repeats_across() ? reach_ : 2),
-                   "the sheet is too small for its lattice spacing: fewer than two rows or three columns");
+  support::require(
+    columns_ >= (repeats_along() ? column_reach_ : 3) && rows_ >= (repeats_across() ? reach_ : 2),
+    "the sheet is too small for its lattice spacing: fewer than two rows or three columns, or than bonds reach "
+    "where it is periodic");
   const auto aligned = [](std::size_t n) { return (n + row_alignment - 1) / row_alignment * row_alignment; };
   first_column_ = aligned(column_reach_);
   stride_ = first_column_ + aligned(columns_ + column_reach_);

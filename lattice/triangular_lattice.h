@@ -93,7 +93,7 @@ public:
   double length() const { return extent().x(); } ///< distance of the outermost sites along x, or the period [m]
   double height() const { return extent().y(); } ///< the same along y [m]
   /// Reference area V of one site [m^2], (sqrt3 / 2) d^2 of the triangular lattice.
-  double site_area() const { return grid_.cell_area(); }
+  double site_area() const { return grid_.pitch() * spacing() * spacing(); }
 
   std::size_t rows() const { return rows_; }
   std::size_t columns() const { return columns_; } ///< sites in an even row

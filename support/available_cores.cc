@@ -1,7 +1,6 @@
 #include "support/available_cores.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <limits>
@@ -20,7 +19,7 @@ namespace
 
 constexpr std::size_t max_cores = 8192; // largest number that Linux can be configured for
 
-// Returns a byte per hardware thread, 1 if this process may run on it; empty if the system does not report it.
+// Returns a byte per hardware thread, 1 if this process may run on it; all 0 if the system does not report it.
 std::vector<std::uint8_t> allowed_cores()
 {
   cpu_set_t *const set = CPU_ALLOC(max_cores);

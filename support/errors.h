@@ -89,13 +89,6 @@ public:
   }
 };
 
-/// Run that was interrupted by a signal, after its checkpoint was written.
-class Interrupted : public Error
-{
-public:
-  explicit Interrupted(const std::string &message) : Error(ExitCode::interrupted, message) {}
-};
-
 /// Folder that another process writes to.
 class FolderInUse : public std::runtime_error
 {

@@ -13,8 +13,8 @@ namespace latcon::support
 /// process creates missing levels of the folder and removes empty levels when it ends, so a process fails to start if
 /// another one ends between its calls of mkdir. It does not look for networks either, which takes 0.2 s, nor for
 /// devices and displays. Variables set by the user (OMPI_MCA_ess_singleton_isolated, OMPI_MCA_orte_create_session_dirs,
-/// OMPI_MCA_pml, OMPI_MCA_btl, OMPI_MCA_coll, HWLOC_PLUGINS_PATH) take precedence. Ranks of `mpirun` and `srun` are
-/// left as the launcher set them up.
+/// OMPI_MCA_pml, OMPI_MCA_btl, OMPI_MCA_coll, HWLOC_PLUGINS_PATH, HWLOC_COMPONENTS) take precedence. Ranks of `mpirun`
+/// and `srun` are left as the launcher set them up.
 ///
 /// MPI does not get the arguments of the program. To be created once, before other threads start.
 class MpiSession

@@ -8,13 +8,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <string>
+#include <string_view>
 
 int main(int argc, char **argv)
 {
-  const std::string command = argc > 1 ? argv[1] : "";
-  constexpr const char *with_threads[] = {"verify", "lattice", "continuum", "fracture"};
-  if (std::find(std::begin(with_threads), std::end(with_threads), command) != std::end(with_threads))
+  // Options may come before the command.
+  constexpr std::string_view with_threads[] = {"verify", "lattice", "continuum", "fracture", "gate"};
+  if (std::find_first_of(argv + 1, argv + argc, std::begin(with_threads), std::end(with_threads)) != argv + argc)
     latcon::support::let_waiting_threads_sleep(argv);
   latcon::commands::occupy_closed_streams();
   try

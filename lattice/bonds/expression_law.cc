@@ -35,7 +35,7 @@ Block<n> pow(const Block<n> &a, double exponent)
 }
 
 // A function of the stretch and its derivative, for automatic differentiation. @tparam T double, Block, or Dual for two
-// derivatives, of which the first has the same bits
+// derivatives
 template <class T>
 struct Dual
 {
@@ -115,6 +115,13 @@ std::array<double, 3> ExpressionLaw::derivatives(double stretch) const noexcept
 {
   const auto psi = value_of<Dual<Dual<double>>>(psi_, {{stretch, 1.}, 1.});
   return {psi.value.value - at_rest_, psi.slope.value, psi.slope.slope};
+}
+
+double ExpressionLaw::force(double stretch) const noexcept
+{
+  double slope = 0.;
+  slopes<1>(psi_, &stretch, &slope);
+  return slope;
 }
 
 void ExpressionLaw::forces(std::size_t n, const double *stretches, double *forces) const noexcept

@@ -22,7 +22,7 @@ public:
   ExpressionLaw(support::Expression psi, double longest);
 
   double energy(double stretch) const noexcept override { return derivatives(stretch)[0]; }
-  double force(double stretch) const noexcept override { return derivatives(stretch)[1]; }
+  double force(double stretch) const noexcept override;
   double stiffness(double stretch) const noexcept override { return derivatives(stretch)[2]; }
   void forces(std::size_t n, const double *stretches, double *forces) const noexcept override;
 

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
+
+#include "support/text_wrap.h"
 
 namespace latcon::lattice
 {
@@ -15,11 +16,7 @@ constexpr double difference_step = 1e-4; // of differences, relative; the wider 
 
 std::string text(double number)
 {
-  if (std::isnan(number))
-    return "nan"; // whatever its sign
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.6g", number);
-  return digits;
+  return std::isnan(number) ? "nan" : support::text_of(number); // whatever its sign
 }
 
 std::string name(std::size_t derivative)

@@ -152,9 +152,14 @@ def _errors_of(place: str) -> Iterator[None]:
 def write_file(place: str, text: str | bytes) -> None:
     """Replaces a file as :func:`write_atomically` does, and adds it to the list of its folder, if it has one."""
     folder, name = os.path.split(place)
-    if os.path.exists(os.path.join(folder, _LIST)):
-        add_to_list(folder, [name])
+    list_files(folder, [name])
     write_atomically(place, text)
+
+
+def list_files(folder: str, names: list[str]) -> None:
+    """Adds files to the list of a folder, if it has one: before several processes write them at once."""
+    if os.path.exists(os.path.join(folder, _LIST)):
+        add_to_list(folder, names)
 
 
 def _listed(folder: str) -> set[str]:

@@ -76,7 +76,7 @@ class Simulation:
             Number of steps.
         forces
             Forces of your own, evaluated before each step, whose impulse over the step is added to the velocities then; the change
-            of kinetic energy counts as initial energy.
+            of kinetic energy counts as boundary work.
         """
         if forces is None:
             self.broken += self._sheet.step(count)
@@ -88,7 +88,10 @@ class Simulation:
             self.broken += self._sheet.step(1)
 
     def move_edges(self, velocity_gradient: ArrayLike) -> None:
-        """Moves the held edges with v = L X from here on; L is a 2 by 2 matrix [1/s], 0 to stop them."""
+        """Moves the held edges with v = L X from here on; L is a 2 by 2 matrix [1/s], 0 to stop them.
+
+        A checkpoint holds no L: call this again after one is loaded.
+        """
         self._sheet.move_edges(np.broadcast_to(np.asarray(velocity_gradient, float), (2, 2)))
 
     @property
@@ -163,9 +166,9 @@ class Simulation:
 @functools.cache
 def _module() -> Any:
     program = find_program()
-    # OpenMP reads it while it is loaded with the module; the reason and the number are those of support/waiting_threads.h.
+    # OpenMP reads it while it is loaded with the module; the reason and the number are those of support/waiting_threads.cc.
     if not os.environ.keys() & {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"}:
-        os.environ["GOMP_SPINCOUNT"] = "1000"
+        os.environ["GOMP_SPINCOUNT"] = "20000"
     for folder in (program.parent, program.parent.parent / "lib" / "latcon"):
         for suffix in importlib.machinery.EXTENSION_SUFFIXES:
             path = folder / f"latcon_stepping{suffix}"

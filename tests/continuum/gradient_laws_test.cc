@@ -225,7 +225,7 @@ TEST(NetworkGradient, HasTheMeanSquaredLengthOfLikeBonds)
   const double mu = rubber_network().tangent(I)[0][1][0][1];
   EXPECT_NEAR(NetworkGradient(bonds, least).energy(I, G), 0., 100. * epsilon * mu);
   EXPECT_GT(NetworkGradient(bonds, 1.01 * least).energy(I, G), 1e-6 * mu);
-  EXPECT_THROW(NetworkGradient(bonds, 0.999 * least), continuum::InvalidMaterial);
+  EXPECT_THROW(NetworkGradient(bonds, 0.999 * least), continuum::InvalidInput);
   // With a third potential on additional bonds, the longest mean determines the result.
   EXPECT_NEAR(NetworkGradient::smallest_length(mixed_bonds()), 1.3 * spacing / std::sqrt(12.), 10. * epsilon * spacing);
 }
@@ -234,16 +234,16 @@ TEST(LatticeGradient, RefusesWhatIsNotPositive)
 {
   const auto bonds = rubber_bonds(spacing);
   EXPECT_NO_THROW(LatticeGradient(bonds, 0.5 * spacing));
-  EXPECT_THROW(LatticeGradient(bonds, 0.499 * spacing), continuum::InvalidMaterial);
-  EXPECT_THROW(LatticeGradient({}, spacing), continuum::InvalidMaterial);
+  EXPECT_THROW(LatticeGradient(bonds, 0.499 * spacing), continuum::InvalidInput);
+  EXPECT_THROW(LatticeGradient({}, spacing), continuum::InvalidInput);
   auto broken = bonds;
   broken[0].length = 0.;
-  EXPECT_THROW(LatticeGradient(broken, spacing), continuum::InvalidMaterial);
+  EXPECT_THROW(LatticeGradient(broken, spacing), continuum::InvalidInput);
   broken = bonds;
   broken[0].fibre.weight = -1.;
-  EXPECT_THROW(LatticeGradient(broken, spacing), continuum::InvalidMaterial);
-  EXPECT_THROW(IsotropicGradient(0., 1.), continuum::InvalidMaterial);
-  EXPECT_THROW(IsotropicGradient(1., -1.), continuum::InvalidMaterial);
+  EXPECT_THROW(LatticeGradient(broken, spacing), continuum::InvalidInput);
+  EXPECT_THROW(IsotropicGradient(0., 1.), continuum::InvalidInput);
+  EXPECT_THROW(IsotropicGradient(1., -1.), continuum::InvalidInput);
   EXPECT_THROW(rubber_gradient(spacing).energy(matrix(1., 0., 0., -1.), Gradient()), continuum::NonPhysicalState);
 }
 

@@ -6,6 +6,7 @@
 #include "continuum/meshes.h"
 #include "multigrid_cases.h"
 #include "sheets.h"
+#include "support/errors.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -177,6 +178,8 @@ TEST(Ranks, AllThrowWhatOneThrows)
     throw continuum::NonPhysicalState("no matter");
   };
   EXPECT_THROW(continuum::run_collectively(MPI_COMM_WORLD, fail_differently), continuum::OutputFailed);
+  const auto fail_of_input = [] { throw support::InputError("no number"); };
+  EXPECT_THROW(continuum::run_collectively(MPI_COMM_WORLD, fail_of_input), support::InputError);
   EXPECT_NO_THROW(continuum::run_collectively(MPI_COMM_WORLD, [] {}));
 }
 

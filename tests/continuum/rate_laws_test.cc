@@ -281,16 +281,16 @@ TEST(RateLaws, RefuseWhatIsNoFibreOrNoState)
   EXPECT_NO_THROW(FibreMemory({fibres}, shortest));
   for (const double bad : {0.999 * shortest, nan})
   {
-    EXPECT_THROW(FibreViscosity({dashpot}, bad), InvalidMaterial);
-    EXPECT_THROW(FibreMemory({fibres}, bad), InvalidMaterial);
+    EXPECT_THROW(FibreViscosity({dashpot}, bad), InvalidInput);
+    EXPECT_THROW(FibreMemory({fibres}, bad), InvalidInput);
   }
-  EXPECT_THROW(FibreViscosity({}), InvalidMaterial);
-  EXPECT_THROW(FibreMemory({}), InvalidMaterial);
+  EXPECT_THROW(FibreViscosity({}), InvalidInput);
+  EXPECT_THROW(FibreMemory({}), InvalidInput);
   const auto refused = [&](const auto &law, const auto &valid, auto &&change, const double length)
   {
     auto other = valid;
     change(other);
-    EXPECT_THROW(law({other}, length), InvalidMaterial);
+    EXPECT_THROW(law({other}, length), InvalidInput);
   };
   const auto viscosity = [](const std::vector<FibreDashpot> &all, const double l) { return FibreViscosity(all, l); };
   const auto memory = [](const std::vector<MaxwellFibres> &all, const double l) { return FibreMemory(all, l); };

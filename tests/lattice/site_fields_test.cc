@@ -71,6 +71,8 @@ TEST(Relaxation, SaysWhenItDoesNotGetThere)
   State state = homogeneous_state(sheet, material, sheets::stretched(2.3, 2.8), Edges::held);
   add_noise(state, sheet, 0.1 * sheets::spacing, 3);
   EXPECT_THROW(relax(state, sheet, material, 1e-11, 10), std::runtime_error);
+  constrain(state, sheet, {{sheet.index(5, 5)}, true, false});
+  EXPECT_THROW(relax(state, sheet, material, 1e-3), std::invalid_argument);
 }
 
 constexpr Orientation orientations[] = {Orientation::rows_along_crack, Orientation::rows_across_crack};

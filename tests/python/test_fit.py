@@ -223,8 +223,8 @@ def test_an_interrupted_fit_continues_with_the_same_bits(small_fit, crack, tmp_p
 
 
 def test_points_do_not_depend_on_the_number_of_workers(small_fit, crack, tmp_path):
-    small_fit(tmp_path / "one", evaluations=12)
-    small_fit(tmp_path / "four", evaluations=12, workers=4)
+    small_fit(tmp_path / "one", evaluations=64)
+    small_fit(tmp_path / "four", evaluations=64, workers=4)
     assert sorted(lines(tmp_path / "four"), key=lambda line: json.loads(line)["number"]) == lines(tmp_path / "one")
 
 

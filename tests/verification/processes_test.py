@@ -89,7 +89,7 @@ def test_threads_that_wait_sleep_unless_they_are_told_otherwise(tmp_path):
     free = {name: value for name, value in environment().items() if name not in names}
     pages = {"GLIBC_TUNABLES": "glibc.malloc.hugetlb=1"}  # huge ones
     for told, expected in (({}, {"GOMP_SPINCOUNT": "20000", **pages}), ({"OMP_WAIT_POLICY": "active"}, {"OMP_WAIT_POLICY": "active"})):
-        run = subprocess.Popen([LATCON, "fracture", CASES / "quick.prm", "--skip-verification", "--quiet",
+        run = subprocess.Popen([LATCON, "--quiet", "fracture", CASES / "quick.prm", "--skip-verification",
                                 "--output-dir", tmp_path / "out"], env=dict(free, **told))
         wait_for((tmp_path / "out" / "energy.csv").exists, run)
         with open(f"/proc/{run.pid}/environ", "rb") as file:

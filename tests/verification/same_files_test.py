@@ -1,4 +1,4 @@
-"""A run leaves the same files, byte for byte, on two ranks, and where it goes on from their checkpoint on one rank with two threads.
+"""A run leaves the same files, byte for byte, on two ranks, and where it continues from their checkpoint on one rank with two threads.
 
 Runs that are killed: tests/faults.
 """

@@ -157,7 +157,9 @@ def motion(out, *more, length="30 cm", end="1"):
 
 
 def is_saved(out, process):
-    ends(process, f"interrupted; --resume goes on from what is in {out}")
+    message = f"interrupted; --resume continues from what is in {out}"
+    ends(process, message)
+    assert (out / "log.txt").read_text().endswith(f"latcon: {message}\n")
     assert info(out)["exit_code"] == INTERRUPTED
     assert list((out / "checkpoints").glob("*.h5"))
     assert (out / "crack.csv").exists()

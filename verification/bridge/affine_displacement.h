@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 #include <deal.II/base/auto_derivative_function.h>
-#include <deal.II/lac/vector.h>
 
 #include "continuum/meshes.h"
 #include "continuum/static_solver.h"
@@ -47,12 +46,6 @@ public:
   double value(const dealii::Point<2> &X, unsigned int component) const override
   {
     return field_(component, X[0], X[1]);
-  }
-
-  void vector_value(const dealii::Point<2> &X, dealii::Vector<double> &values) const override
-  {
-    for (unsigned int component = 0; component < 2; ++component)
-      values[component] = value(X, component);
   }
 
 private:

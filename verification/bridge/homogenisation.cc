@@ -192,10 +192,6 @@ Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, c
     {
       return std::numeric_limits<double>::infinity(); // no equilibrium thickness: excluded
     }
-    catch (const continuum::InvalidMaterial &)
-    {
-      return std::numeric_limits<double>::infinity();
-    }
   };
 
   // A scan brackets the minimum, golden-section search refines it. The residual is smooth and has one minimum where it

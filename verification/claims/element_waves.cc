@@ -100,9 +100,7 @@ std::array<Vector, 2> elastic_waves(const WaveContinuum &medium, const continuum
 // Energy [J/m] of a sheet with these nodal values.
 double energy(const continuum::Sheet &sheet, const Vector &nodal)
 {
-  Vector u = sheet.make_ghosted();
-  u = nodal;
-  return sheet.energy(u);
+  return sheet.energy(sheet.with_ghosts(nodal));
 }
 
 // A periodic mesh as long as the wave K.
@@ -130,8 +128,7 @@ struct MovingSheet : WaveRectangle
   // Displacement from that of a state [m].
   Vector displacement_from(const Vector &base) const
   {
-    Vector difference = solver.sheet().make_owned();
-    difference = solver.displacement();
+    Vector difference = solver.sheet().without_ghosts(solver.displacement());
     difference -= base;
     return difference;
   }
@@ -208,8 +205,7 @@ std::array<bridge::PlaneWave, 2> discrete_waves(const WaveContinuum &medium, con
   const WaveRectangle of_wave(K, resolution.cells);
   const continuum::Sheet sheet(of_wave.mesh, medium.constitution, resolution.degree, periodic_edges());
   const WaveSheet at_rest(medium, sheet, F);
-  Vector u = sheet.make_ghosted();
-  u = at_rest.base;
+  const Vector u = sheet.with_ghosts(at_rest.base);
   continuum::Sheet::Matrix stiffness;
   sheet.make_matrix(sheet.conformity_constraints(), stiffness);
   sheet.tangent(u, sheet.conformity_constraints(), stiffness);

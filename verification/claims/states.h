@@ -21,6 +21,10 @@ namespace latcon::claims
 /// quasi-shear.
 inline const std::string wave_names[] = {"L", "S"};
 
+/// Strain below which claims about loaded sheets take another state: of a hundredth, the round-off of stretches is
+/// 100 epsilon.
+inline constexpr double smallest_strain = 1e-2;
+
 /// Name of a homogeneous state in rows and plots: "F = I", "F = (2.3, 2.8)", "F = (1, 1, shear 0.5)".
 inline std::string state_name(const Eigen::Matrix2d &F)
 {

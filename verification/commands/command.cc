@@ -99,7 +99,8 @@ void record_exit_code(support::ExitCode exit_code, const std::string &message)
   const std::shared_ptr<Run::Record> record = std::exchange(Run::last, nullptr);
   if (!record)
     return;
-  record->log_end = message;
+  if (!message.empty())
+    record->log_end = message;
   if (record->exit_code != exit_code)
     record->write(exit_code);
   else
@@ -202,10 +203,11 @@ support::ExitCode Run::end(const output::Results &results, support::ExitCode exi
     for (const auto &[row, kind] : results.failed_rows())
       failed[row] = to_string(kind);
     info().add("failed_rows", failed);
+    if (exit_code == support::ExitCode::interrupted)
+      record_->log_end = "latcon: interrupted; --resume continues from what is in " + directory_ + "\n";
     record_->write(exit_code);
     record_->exit_code = exit_code;
-    if (exit_code == support::ExitCode::interrupted)
-      std::cerr << "latcon: interrupted; --resume goes on from what is in " << directory_ << std::endl;
+    std::cerr << record_->log_end << std::flush;
   }
   return exit_code;
 }

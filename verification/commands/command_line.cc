@@ -101,7 +101,7 @@ support::ExitCode run_program(int argc, char **argv)
     [](const std::string &folder)
     {
       return folder == "~" || folder.compare(0, 2, "~/") == 0
-               ? "the folder '" + folder + "' begins with ~, which stands for the home in a shell only; give its path"
+               ? "the folder '" + folder + "' begins with ~, which is the home in a shell only; give its path"
                : std::string();
     },
     "");

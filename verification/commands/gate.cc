@@ -29,7 +29,7 @@ struct Stored
   std::string note; // message for the user; empty: no problem
 };
 
-// Returns the text of a file of verdicts that may stand for a check; empty: there is no file. Of verdicts that refuse a
+// Returns the text of a file of verdicts that may replace a check; empty: there is no file. Of verdicts that refuse a
 // crack, rows may be missing. Throws UnusableVerdicts.
 std::string usable_text(const std::string &file, const claims::VerdictKey &key,
                         const std::vector<claims::Claim> &required, const bool is_shipped)

@@ -36,7 +36,7 @@ bool any_rank_interrupted();
 bool interrupted();
 
 /// Sets the action of the waiting thread before it ends the process: save the results so far, without MPI, while the
-/// other threads continue. Its exceptions are ignored.
+/// other threads continue. Its exceptions are printed.
 void on_interruption(std::function<void()> action);
 
 /// From here on signals have no effect: the exit code is decided. Does not return while a signal ends the process.

@@ -364,7 +364,7 @@ void require_constant_loading(const Case &input, Parameters &parameters, const s
 void require_no_plasticity(const Case &input, Parameters &parameters, const std::string &reason);
 
 /// Constraints of the edges of a case: its rollers, and the motion of all held sites.
-/// @param state of the sheet, which tells the held sites
+/// @param state of the sheet, which has the held sites
 std::vector<lattice::Constraint> edge_constraints(const Case &input, const lattice::State &state,
                                                   const lattice::TriangularLattice &sheet);
 

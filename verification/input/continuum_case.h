@@ -120,7 +120,7 @@ struct ContinuumCase
     motion
   };
   Solution solution = Solution::equilibrium;
-  std::optional<double> time_step; ///< [s]; none: a tenth of the time in which a shear wave crosses a cell
+  std::optional<double> time_step; ///< [s]; none: automatic, see element_motion.cc
   enum class Rule
   {
     average_acceleration,

@@ -45,7 +45,7 @@ void write_names(const fs::path &folder, const Names &names)
   support::write_atomically(folder / output_list_name, text, support::Sync::yes);
 }
 
-// Whether a file has a name of the list, in which `*` stands for digits and dots.
+// Whether a file has a name of the list, in which `*` represents digits and dots.
 bool is_in(const Names &names, const fs::path &file)
 {
   const auto fits = [&file](std::string name)

@@ -23,7 +23,7 @@ namespace latcon::stepping
 namespace
 {
 
-// Sheet of a case with its seed crack. Arrays are views of its fields, over all places; sites() tells which are sites.
+// Sheet of a case with its seed crack. Arrays are views of its fields, over all places; sites() has those that are sites.
 class Sheet
 {
 public:
@@ -61,7 +61,7 @@ public:
     return broken;
   }
 
-  // Places of the sites that are there, by row.
+  // Places of the sites that were not removed, by row.
   py::array sites() const
   {
     std::vector<std::size_t> found;
@@ -104,7 +104,7 @@ public:
     lattice::VectorField velocity = simulation_->state().velocity;
     for (std::size_t place = 0; place < n; ++place)
       velocity.add(place, simulation_->state().inverse_mass[place] * Eigen::Vector2d(px[place], py[place]));
-    simulation_->set_velocities(velocity);
+    simulation_->set_velocities(velocity, false);
   }
 
   std::map<std::string, double> energies() const

@@ -25,7 +25,7 @@ class Table:
     `coordinates` are 0 at the lower bound, 1 at the upper. `means` are those over the seeds that determine the quantity, of a
     word the fraction of seeds that have it, NaN if none does; `scatter` is the standard deviation from seed to seed, 0 if
     unknown. `targets` and `sigmas` are the observed values and their uncertainties, `totals` the uncertainty of observation and
-    mean over all seeds together. `is_word` tells words and truth values. `misfits` are infinite for points whose runs were not
+    mean over all seeds together. `is_word` is true of words and truth values. `misfits` are infinite for points whose runs were not
     all done.
     """
 

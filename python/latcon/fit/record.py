@@ -6,7 +6,7 @@ import json
 import math
 import os
 import pathlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from ..errors import LatconError, UnreadableFile
 from ..files import read_json, read_text
@@ -80,7 +80,7 @@ class Record:
             except BaseException:
                 file.truncate(end)  # a full disk: no half line
                 raise
-        self.evaluations[evaluation.number] = evaluation
+        self.evaluations = _by_number([*self.evaluations.values(), evaluation])
 
     def _open_problem(self) -> None:
         path = self.directory / "fit.json"
@@ -97,6 +97,10 @@ class Record:
             raise LatconError(f"{self.directory}: holds another fit; different: {', '.join(different)}; choose another directory")
 
 
+def _by_number(evaluations: Iterable[Evaluation]) -> dict[int, Evaluation]:
+    return {one.number: one for one in sorted(evaluations, key=lambda one: one.number)}
+
+
 def _read_evaluations(directory: pathlib.Path) -> dict[int, Evaluation]:
     """Evaluated points of a fit by number; raises UnreadableFile if a complete line is damaged."""
     path = directory / "evaluations.jsonl"
@@ -106,7 +110,7 @@ def _read_evaluations(directory: pathlib.Path) -> dict[int, Evaluation]:
     complete = text[:text.rfind("\n") + 1]
     if complete != text:
         os.truncate(path, len(complete.encode()))
-    found = {}
+    found = []
     for number, line in enumerate(complete.splitlines(), start=1):
         try:
             item = json.loads(line)
@@ -117,5 +121,5 @@ def _read_evaluations(directory: pathlib.Path) -> dict[int, Evaluation]:
                                     tuple(outcomes))
         except (ValueError, TypeError, KeyError, AttributeError) as error:
             raise UnreadableFile(path, f"line {number} is no evaluated point: {error}") from error
-        found[evaluation.number] = evaluation
-    return dict(sorted(found.items()))
+        found.append(evaluation)
+    return _by_number(found)

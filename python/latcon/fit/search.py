@@ -214,26 +214,25 @@ def fit_case(case: CaseLike, parameters: Sequence[Parameter], observations: Sequ
     place.mkdir(parents=True, exist_ok=True)
     with FolderLock(os.fspath(place)), progress_indicator(progress) as show_line:
         record, begin = Record(place, problem), time.monotonic()
-        evaluated = record.evaluations
-        held = len(evaluated)
+        held = len(record.evaluations)
 
         def show() -> None:
-            done = len(evaluated)
+            done = len(record.evaluations)
             left = max(0, evaluations - done) * (time.monotonic() - begin) / max(1, done - held)
-            misfits = tabulate(problem, list(evaluated.values())).misfits
+            misfits = tabulate(problem, list(record.evaluations.values())).misfits
             show_line(f"{done} of {evaluations} points, least misfit {misfits.min():.4g}, {left:.0f} s left", left)
 
         for first in range(0, evaluations, batch):
             numbers = range(first, min(first + batch, evaluations))
-            if not all(number in evaluated for number in numbers):
-                earlier = tabulate(problem, [evaluation for number, evaluation in evaluated.items() if number < first])
+            if not all(number in record.evaluations for number in numbers):
+                earlier = tabulate(problem, [evaluation for number, evaluation in record.evaluations.items() if number < first])
                 chosen = propose(earlier, len(problem.axes), first, len(numbers), evaluations, search_seed)
                 points = [(number, stage, problem.values(at)) for number, (stage, at) in zip(numbers, chosen)
-                          if number not in evaluated]
+                          if number not in record.evaluations]
                 evaluate(record, points, workers or len(os.sched_getaffinity(0)), keep_runs, show)
-            found = list(evaluated.values())[:batch]
+            found = list(record.evaluations.values())[:batch]
             if first == 0 and not any(outcome.ended == "done" for one in found for outcome in one.outcomes):
                 outcome = found[0].outcomes[0]
                 raise LatconError(f"{record.directory}: no run of the first {len(found)} points is done; the first was "
                                   f"{outcome.ended}: {outcome.message}")
-        return Fit(place, problem, tuple(evaluated.values()))
+        return Fit(place, problem, tuple(record.evaluations.values()))

@@ -12,7 +12,7 @@ ROUND_OFF = 1e-12
 
 
 class Table(dict):
-    """Columns of a table of a claim: {name: array}. A column that is read and is not there makes its file unreadable."""
+    """Columns of a table of a claim: {name: array}. A missing column that is read makes its file unreadable."""
 
     def __init__(self, path, columns):
         super().__init__(columns)

@@ -8,6 +8,7 @@ from pathlib import Path
 from markupsafe import Markup
 
 from ..errors import UnreadableFile
+from ..folder import list_files
 from ..quantities import number_text
 from .claim_plots import all_plots
 from .claim_sections import WORDS, claim_sections
@@ -101,10 +102,12 @@ def report(folder, output_dir=None, quiet=False, animated=False):
             animation = read_motion(run) if run.is_fracture and animated else None
             found = pictures_of(run, animation, place) if run.is_fracture else {}
             pictures[run.folder] = {name: files for name, (*files, _) in found.items()}
+            pngs = {plot: place / f"{plot.name}.png" for plot in all_plots() if plot.name in run.tables}
+            together = [*pictures[run.folder].values(), pngs.values()]
+            list_files(str(place), [file.name for files in together for file in files if file])
             with drawn_meanwhile([draw for *_, draw in found.values()]):
                 motion = animation or (read_motion(run) if run.is_fracture else None)
                 sheets[run.folder] = None if motion is None else sheet_data(run, motion, most)
-                pngs = {plot: place / f"{plot.name}.png" for plot in all_plots() if plot.name in run.tables}
                 plots[run.folder] = {plot.name: (png, plot.write(run.tables, png)) for plot, png in pngs.items()}
             runs.append(run)
         except UnreadableFile as error:

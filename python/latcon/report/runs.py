@@ -68,7 +68,7 @@ class Run:
     broken: dict  # broken_bonds.csv: t [s], the two sites, X, Y [m] in the undeformed sheet
     energy: dict  # energy.csv of a motion of the lattice: t [s], the rest in J per metre of sheet thickness
     claims: dict  # claims.json: {name: (title, statement)}, in the order in which they are checked; empty without it
-    tables: dict  # of the claims, {file name without ".csv": {column: array}}; those that are there
+    tables: dict  # of the claims, {file name without ".csv": {column: array}}; those that exist
 
     @property
     def is_fracture(self):

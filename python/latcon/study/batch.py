@@ -93,10 +93,9 @@ def write_batch(program: Program, printed: Printed, options: Mapping[str, Any]) 
         printed.say(f"{counts}. To submit them:\n  runs=$(sbatch --parsable {shlex.quote(runs)})\n"
                     f"  sbatch --dependency=afterany:$runs {shlex.quote(collect)}")
         return DONE
-    log = os.path.join(folder, "sbatch.log")
-    array = _submit([runs], log)
+    array = _submit([runs])
     printed.say(f"{counts}: job {array}")
-    printed.say(f"then the verdict: job {_submit([f'--dependency=afterany:{array}', collect], log)}")
+    printed.say(f"then the verdict: job {_submit([f'--dependency=afterany:{array}', collect])}")
     return DONE
 
 
@@ -105,7 +104,7 @@ def _directives(options: Mapping[str, Any], name: str, log: str) -> str:
     return _DIRECTIVES.format(name=name, time=options["time"], log=log, partition=partition)
 
 
-def _submit(arguments: Sequence[str], log: str) -> str:
+def _submit(arguments: Sequence[str]) -> str:
     """Submits a script and returns the number of the job."""
     try:
         ended = subprocess.run(["sbatch", "--parsable", *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -113,8 +112,6 @@ def _submit(arguments: Sequence[str], log: str) -> str:
     except OSError:
         raise InputError("--submit: there is no sbatch on this machine; copy the scripts to one with Slurm, or submit them "
                          "there") from None
-    with open(log, "w", encoding="utf-8") as file:
-        file.write(ended.stdout)
     printed = ended.stdout.strip()
     if ended.returncode != 0:
         raise InputError(f"--submit: sbatch ended with {ended.returncode}: {printable(printed, 300)}")

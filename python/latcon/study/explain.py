@@ -6,11 +6,10 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
 from ..errors import DONE
 from ..folder import write_atomically
 from ..schema import Entry, EntryValue
+from .output import shortest
 from .program import InputError, Program, printable, read_input
 from .record import Printed
 
@@ -81,5 +80,5 @@ def _text(value: EntryValue) -> str:
     if isinstance(value, list):
         return ", ".join(map(_text, value))
     if isinstance(value, float):
-        return min(np.format_float_positional(value, trim="-"), np.format_float_scientific(value, trim="-", exp_digits=2), key=len)
+        return shortest(value)
     return "auto" if value is None else str(value).lower() if isinstance(value, bool) else str(value)

@@ -118,9 +118,9 @@ class Record:
         if exit_code == DONE and verdict == "fails":
             exit_code = CLAIM_FAILED
         self.add(verdict=verdict, failed_rows={f"{row['claim']}: {row['quantity']}": "claim" for row in rows if row["verdict"] == "fails"})
-        self.write(exit_code)
-        if exit_code == INTERRUPTED:
-            say_error(f"latcon: interrupted; --resume goes on from what is in {self.directory}\n")
+        message = f"latcon: interrupted; --resume continues from what is in {self.directory}\n" if exit_code == INTERRUPTED else ""
+        self.write(exit_code, message)
+        say_error(message)
         return exit_code
 
     def verify(self, program: Program, case: str, on_continuum: bool) -> None:

@@ -50,7 +50,7 @@ inline latcon::claims::ClaimOutcome energy_of_waves(const latcon::bridge::Subjec
 inline latcon::claims::NonlocalOptions nonlocal_options(const latcon::bridge::Subject &subject)
 {
   latcon::claims::NonlocalOptions options;
-  options.stencils = latcon::claims::fixed_stencils(subject.spacing, subject.orientation);
+  options.stencils = latcon::claims::fixed_stencils(subject);
   options.samples = 5;
   options.breaking_stretch = 3.05;
   return options;

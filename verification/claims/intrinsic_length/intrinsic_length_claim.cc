@@ -12,8 +12,7 @@ namespace
 {
 
 const output::Tolerance bloch_tolerance{
-  1e-7,
-  "extrapolation of Bloch's frequencies to kd = 0 (bloch_alpha): 84 (kd)^2 (l/d)^6 / 20160 at kd = 0.01 and below"};
+  1e-7, "extrapolation of Bloch's frequencies to kd = 0 (bloch_alpha): 84 (kd)^4 (l/d)^6 / 20160 at kd = 0.02"};
 const output::Tolerance equal_closed_forms{1e-10, "two closed forms of the same number"};
 const output::Tolerance sign{0., "a sign"};
 const output::Tolerance positive{1e-12, "round-off of an eigenvalue that may be zero"};

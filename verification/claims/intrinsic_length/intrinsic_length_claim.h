@@ -33,7 +33,7 @@ using Alpha = std::array<double, 2>;
 Alpha lattice_alpha(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                     const Eigen::Matrix2d &F, const Eigen::Vector2d &N, Alpha *nearest_part = nullptr);
 
-/// Alpha of a lattice from its exact dispersion at kd = 0.02 and 0.04, extrapolated to 0; error 1e-7.
+/// Alpha of a lattice from its exact dispersion at kd = 0.02, 0.04 and 0.08, extrapolated to 0; error 1e-7.
 Alpha bloch_alpha(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                   const Eigen::Matrix2d &F, const Eigen::Vector2d &N);
 

@@ -334,17 +334,19 @@ std::vector<lattice::HalfBond> planted_bonds(const bridge::Subject &subject, con
   return bonds;
 }
 
-std::vector<NonlocalStencil> fixed_stencils(double d, lattice::Orientation orientation)
+std::vector<NonlocalStencil> fixed_stencils(const bridge::Subject &subject)
 {
   std::vector<NonlocalStencil> list;
   for (const auto &[kind, name] :
        {std::pair(lattice::Grid::Kind::square, "square"), std::pair(lattice::Grid::Kind::triangular, "triangular")})
     for (const auto &[m, text] : {std::pair(1.5, "1.5"), std::pair(2., "2"), std::pair(3., "3")})
-      list.push_back({std::string(name) + " grid, m = " + text, {kind, d / m, orientation}});
-  lattice::Grid square = list[0].grid, triangular = list[4].grid;
+      list.push_back({std::string(name) + " grid, m = " + text, {kind, subject.spacing / m, subject.orientation}});
+  // With the third shell, points of a finer grid would have too many bonds.
+  const bool is_coarse = subject.material.third_nearest.has_value();
+  lattice::Grid square = list[0].grid, triangular = list[is_coarse ? 3 : 4].grid;
   square.scatter = triangular.scatter = {0.5, 1};
   list.push_back({"scattered points of a square grid, m = 1.5", square});
-  list.push_back({"scattered points of a triangular grid, m = 2", triangular});
+  list.push_back({"scattered points of a triangular grid, m = " + std::string(is_coarse ? "1.5" : "2"), triangular});
   return list;
 }
 
@@ -366,7 +368,7 @@ ClaimOutcome check_nonlocal(const ClaimInput &input)
 {
   const bridge::Subject &subject = input.subject;
   NonlocalOptions options;
-  options.stencils = fixed_stencils(subject.spacing, subject.orientation);
+  options.stencils = fixed_stencils(subject);
   const input::NonlocalCase &own = input.entries.nonlocal;
   const auto is_own = [&](const NonlocalStencil &fixed)
   {

@@ -38,9 +38,9 @@ struct NonlocalOptions
   };
 };
 
-/// Square and triangular grids of a lattice with spacing `d` [m] for m = 1.5, 2 and 3, and scattered points for m = 1.5
-/// and 2, bonds in all directions.
-std::vector<NonlocalStencil> fixed_stencils(double d, lattice::Orientation orientation);
+/// Square and triangular grids for m = 1.5, 2 and 3, and scattered points of a square one for m = 1.5 and of a
+/// triangular one for m = 2, with the third shell 1.5; bonds in all directions.
+std::vector<NonlocalStencil> fixed_stencils(const bridge::Subject &subject);
 
 /// Claim `nonlocal`: the nonlocal continuum, bonds of the lattice's lengths in all directions on a grid or between
 /// scattered points, has the moduli of the network law and the mean over rotations of the lattice, up to what its grid

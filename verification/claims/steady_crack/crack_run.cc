@@ -95,7 +95,6 @@ public:
     run.speed = support::slope(times, positions);
     run.broken = per_bond(end.broken - begin->broken);
     run.viscous = per_bond(end.viscous - begin->viscous);
-    run.kinetic = per_bond(end.kinetic - begin->kinetic);
     run.released = per_bond(begin->elastic - end.elastic);
     return run;
   }

@@ -143,7 +143,6 @@ struct CrackRun
   double broken;            ///< held by bonds when they broke; above 1, since time steps are finite
   double viscous;           ///< dissipated by the dashpots
   double released;          ///< by the springs, what broken bonds held included
-  double kinetic;           ///< gained
   double largest_elsewhere; ///< elongation of a bond near the tip but not across the middle, over the breaking one
   std::size_t bonds_broken;
   std::size_t off_line; ///< bonds broken anywhere but across the middle, over the whole run
