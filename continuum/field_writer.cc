@@ -63,18 +63,25 @@ public:
         F[i] += inputs.solution_gradients[p][i];
         G[i] = inputs.solution_hessians[p][i];
       }
-      const GradientResponse W = laws_.evaluate(inputs.evaluation_points[p], F, G);
-      Tensor<2, 2> P = W.first_piola;
-      for (unsigned int k = 0; k < interpolation_.n() && !stresses_.empty(); ++k)
-        P += interpolation_(p, k) * stresses_[first_stress + k];
+      std::fill(computed[p].begin(), computed[p].end(), std::numeric_limits<double>::quiet_NaN());
       auto next = computed[p].begin();
       const auto append = [&next](const auto &tensor) { next = std::copy(tensor.begin_raw(), tensor.end_raw(), next); };
       append(F);
-      append(P);
-      append(cauchy_stress(P, F));
-      *next++ = W.energy;
-      append(G);
-      append(W.double_stress);
+      try
+      {
+        const GradientResponse W = laws_.evaluate(inputs.evaluation_points[p], F, G);
+        Tensor<2, 2> P = W.first_piola;
+        for (unsigned int k = 0; k < interpolation_.n() && !stresses_.empty(); ++k)
+          P += interpolation_(p, k) * stresses_[first_stress + k];
+        append(P);
+        append(cauchy_stress(P, F));
+        *next++ = W.energy;
+        append(G);
+        append(W.double_stress);
+      }
+      catch (const NonPhysicalState &) // of a node: det F is positive at quadrature points alone
+      {
+      }
     }
   }
 

@@ -76,9 +76,4 @@ Response MooneyRivlin::evaluate(const Tensor<2, 2> &F, const Order order) const
   return response(InvariantFunction({energy, by_F_squared, by_j, -ft * ft / tt, -ft * jt / tt, jj - jt * jt / tt}), F,
                   order);
 }
-
-double MooneyRivlin::thickness_stretch(const Tensor<2, 2> &F) const
-{
-  return invariants(constants_, F).t;
-}
 } // namespace latcon::continuum

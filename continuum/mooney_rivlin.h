@@ -34,9 +34,6 @@ public:
 
   Response evaluate(const dealii::Tensor<2, 2> &F, Order order) const override;
 
-  /// Thickness stretch F_33 [-], the stable root of S_33 = 0 (theory-continuum.md, eq. (C.6)).
-  double thickness_stretch(const dealii::Tensor<2, 2> &F) const;
-
   const Constants &constants() const { return constants_; }
 
 private:

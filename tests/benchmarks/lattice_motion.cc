@@ -11,7 +11,6 @@
 //   LAMMPS
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <limits>

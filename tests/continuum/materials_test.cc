@@ -98,8 +98,6 @@ TEST(MooneyRivlin, AgreesWithDifferentiatedEnergy)
     {
       const Tensor<2, 2> F = random_deformation(generator);
       expect_derivatives(law, energy, F, 10.);
-      const double f = F.norm_square(), j = determinant(F), t = law.thickness_stretch(F);
-      EXPECT_NEAR(energy.by_thickness(f, j, t), 0., 100. * epsilon * energy.by_thickness_twice(f, j, t));
     }
   }
 }

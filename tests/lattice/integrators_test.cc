@@ -2,7 +2,6 @@
 // ledgers.
 #include <cmath>
 #include <ostream>
-#include <vector>
 
 #include <gtest/gtest.h>
 

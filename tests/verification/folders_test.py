@@ -192,10 +192,22 @@ def test_files_of_the_run_before_are_moved_aside(out):
     assert sorted(path.name for path in (out / "earlier-run").glob("lattice-*.vtp")) == before
     assert (out / "earlier-run" / "crack.csv").read_bytes() == first
     assert (out / "notes.txt").exists()
+    assert f"now in {out}/earlier-run-2\n" in run("--skip-verification", "--resume")  # there is no checkpoint
     # A refused crack leaves no files of the previous run among its own, and a report shows one run.
     run(*REFUSED, expect=3)
     assert [found.folder for found in find_runs(out)[0]] == [out]
     assert not any((out / name).exists() for name in ("crack.json", "crack.csv", "crack_path.png"))
+
+
+def test_files_of_others_are_moved_aside(out):
+    out.mkdir()
+    names = ("lattice-0000.vtp", "results.csv")
+    for name in names:
+        (out / name).write_text("mine")
+    run = latcon("lattice", *TINY, "--output-dir", out)
+    for name, aside in zip(names, ("earlier-run", "earlier-run-2")):
+        assert (out / aside / name).read_text() == "mine" and (out / name).read_bytes() != b"mine"
+    assert run.stderr.count("that latcon did not write are now in") == 2
 
 
 def test_case_in_its_own_folder_is_not_overwritten(out):

@@ -45,6 +45,21 @@ void check_period(const input::Case &input, input::Parameters &p, const std::str
             command + " relaxes a periodic sheet at its undeformed period; give 0", {"Bottom edge/condition"});
 }
 
+// Entries of the finite elements that have no counterpart.
+void check_unused(const input::ContinuumCase &c, input::Parameters &p, const std::string &command, bool moves)
+{
+  if (!c.mesh_file.empty())
+    p.error("Continuum/mesh file", command + " does not support a mesh file; the lattice fills a rectangle");
+  if (!c.body_force.is_zero())
+    p.error(std::string("Body force/force ") + c.body_force.given(), command + " does not support body forces; give 0");
+  if (moves && c.initial_base != input::ContinuumCase::Base::loading)
+    p.error("Initial state/base", command + " starts a motion from the homogeneous loading; give loading");
+  for (const auto &[field, name] : {std::pair(&c.initial_displacement, std::string("Initial state/displacement")),
+                                    std::pair(&c.initial_velocity, std::string("Initial state/velocity"))})
+    if (moves && !field->is_zero())
+      p.error(name + " " + field->given(), command + " starts a motion at rest, apart from noise; give 0");
+}
+
 } // namespace
 
 void require_lattice_sheet(const input::Case &input, input::Parameters &p, const std::string &command)
@@ -62,26 +77,13 @@ void require_lattice_sheet(const input::Case &input, input::Parameters &p, const
     input::require_constant_loading(input, p, command + " keeps the period of a sheet");
   if (input.has_inner_edge() && c.edges[4].condition == Condition::held)
     p.error("Inner edge/condition", command + " leaves the rim of a hole or notch free; give free");
-  if (!c.mesh_file.empty())
-    p.error("Continuum/mesh file", command + " does not support a mesh file; the lattice fills a rectangle");
-  if (!c.body_force.is_zero())
-    p.error(std::string("Body force/force ") + c.body_force.given(), command + " does not support body forces; give 0");
+  check_unused(c, p, command, input.solution != input::Case::Solution::relaxed);
   if (input.has_sheet())
     check_period(input, p, command);
-  if (input.solution == input::Case::Solution::relaxed)
-  {
-    if (std::none_of(c.edges.begin(), c.edges.begin() + 4,
-                     [](const input::EdgeCase &edge) { return edge.condition == Condition::held; }))
-      p.error("Left edge/condition", command + " needs a held edge for equilibrium",
-              {"Right edge/condition", "Bottom edge/condition", "Top edge/condition"});
-    return;
-  }
-  if (c.initial_base != input::ContinuumCase::Base::loading)
-    p.error("Initial state/base", command + " starts a motion from the homogeneous loading; give loading");
-  for (const auto &[field, name] : {std::pair(&c.initial_displacement, std::string("Initial state/displacement")),
-                                    std::pair(&c.initial_velocity, std::string("Initial state/velocity"))})
-    if (!field->is_zero())
-      p.error(name + " " + field->given(), command + " starts a motion at rest, apart from noise; give 0");
+  const auto is_held = [](const input::EdgeCase &edge) { return edge.condition == Condition::held; };
+  if (input.solution == input::Case::Solution::relaxed && std::none_of(c.edges.begin(), c.edges.begin() + 4, is_held))
+    p.error("Left edge/condition", command + " needs a held edge for equilibrium",
+            {"Right edge/condition", "Bottom edge/condition", "Top edge/condition"});
 }
 
 void require_fracture_case(const input::Case &input, input::Parameters &p)
@@ -97,6 +99,7 @@ void require_fracture_case(const input::Case &input, input::Parameters &p)
               command + " needs every edge of the sheet held; give held");
   for (std::size_t id = 0; id < 5; ++id)
     check_edge(input.continuum.edges[id], p, command, id == 2 || id == 3);
+  check_unused(input.continuum, p, command, true);
   if (!input.breaking_stretch)
     p.error("Fracture/breaking stretch", "fracture needs a breaking stretch");
   if (!(input.end_time > 0.))

@@ -124,7 +124,6 @@ Oscillation fit_oscillation(const std::vector<double> &values, double step)
     }
     amplitudes = support::least_squares(J.leftCols<2>(), a);
     const Eigen::VectorXd left = a - J.leftCols<2>() * amplitudes;
-    const double residual = left.norm() / a.norm();
     for (Eigen::Index i = 0; i < n; ++i)
     {
       const double wt = static_cast<double>(i) * step * w; // derivatives by g/w and by the logarithm of w
@@ -136,11 +135,9 @@ Oscillation fit_oscillation(const std::vector<double> &values, double step)
     w *= 1. + change[3];
     if (!(w > 0.) || !std::isfinite(g))
       break;
-    if (std::abs(change[2]) + std::abs(change[3]) < 1e-13)
-      return {w, g, residual};
     // Round-off of the values themselves can keep the last digits moving.
-    if (iteration > 8 && std::abs(change[2]) + std::abs(change[3]) < 1e-10)
-      return {w, g, residual};
+    if (std::abs(change[2]) + std::abs(change[3]) < (iteration > 8 ? 1e-10 : 1e-13))
+      return {w, g};
   }
   throw std::runtime_error("no oscillation fits the wave's amplitude");
 }

@@ -13,7 +13,6 @@ struct Oscillation
 {
   double frequency; ///< w [rad/s]
   double decay;     ///< g [1/s]
-  double residual;  ///< rms of the residual of the fit, over the rms of the values [-]
 };
 
 /// How waves of a sheet in motion are sampled.

@@ -21,8 +21,7 @@ namespace latcon::claims
 /// quasi-shear.
 inline const std::string wave_names[] = {"L", "S"};
 
-/// Strain below which claims about loaded sheets take another state: of a hundredth, the round-off of stretches is
-/// 100 epsilon.
+/// Strain below which claims about loaded sheets take another state: 100 epsilon of it are round-off of stretches.
 inline constexpr double smallest_strain = 1e-2;
 
 /// Name of a homogeneous state in rows and plots: "F = I", "F = (2.3, 2.8)", "F = (1, 1, shear 0.5)".

@@ -107,9 +107,10 @@ void record_exit_code(support::ExitCode exit_code, const std::string &message)
     record->write_log();
 }
 
-Run::Run(const input::Options &options, const input::Parameters *parameters)
+Run::Run(const input::Options &options, const input::Parameters *parameters, const output::Checkpoints *checkpoints)
   : record_(std::make_shared<Record>(options)), directory_(options.output_dir), is_root_(support::is_root_rank()),
-    is_verbose_(is_root_ && !options.quiet), prints_all_(options.verbose), resumes_(options.resume),
+    is_verbose_(is_root_ && !options.quiet), prints_all_(options.verbose),
+    resumes_(checkpoints != nullptr && checkpoints->found()),
     has_default_threads_(commands::has_default_threads(options))
 {
   if (parameters != nullptr)
@@ -135,6 +136,10 @@ Run::Run(const input::Options &options, const input::Parameters *parameters)
   }
   // No other rank writes before the directory exists.
   MPI_Barrier(MPI_COMM_WORLD);
+  if (resumes_)
+    record_checkpoint(*checkpoints);
+  else if (is_verbose_ && options.resume)
+    std::cout << "No checkpoint in " << directory_ << ": starting from the beginning\n";
 }
 
 void Run::clear(const input::Options &options, bool has_case) const
@@ -172,24 +177,17 @@ void Run::begin_log(const input::Options &options)
 
 void Run::record_checkpoint(const output::Checkpoints &checkpoints)
 {
-  const std::optional<output::CheckpointPlace> &found = checkpoints.found();
-  if (found)
-    info().add("resumed_from", {{"checkpoint", found->file.filename().string()},
-                                {"step", found->step},
-                                {"time", found->time},
-                                {"git_commit", found->commit},
-                                {"program_hash", found->program_hash}});
-  if (!is_verbose_ || !resumes_)
+  const output::CheckpointPlace &found = *checkpoints.found();
+  info().add("resumed_from", {{"checkpoint", found.file.filename().string()},
+                              {"step", found.step},
+                              {"time", found.time},
+                              {"git_commit", found.commit},
+                              {"program_hash", found.program_hash}});
+  if (!is_verbose_)
     return;
-  if (!found)
-  {
-    std::cout << "No checkpoint in " << directory_ << ": starting from the beginning\n";
-    return;
-  }
-  std::cout << "Resuming from " << found->file.string() << ": step " << found->step << ", t = " << found->time
-            << " s\n";
-  if (found->program_hash != output::program_hash())
-    std::cout << "It was written by another build of latcon, commit " << found->commit << "; run.json names both\n";
+  std::cout << "Resuming from " << found.file.string() << ": step " << found.step << ", t = " << found.time << " s\n";
+  if (found.program_hash != output::program_hash())
+    std::cout << "It was written by another build of latcon, commit " << found.commit << "; run.json names both\n";
 }
 
 support::ExitCode Run::end(const output::Results &results, support::ExitCode exit_code)

@@ -118,20 +118,18 @@ void require_time(const input::Options &options, double seconds);
                                         const output::Results &results);
 
 /// Output directory of a run, locked until the run has ended, and its provenance. Rank 0 alone writes.
-///
 /// Until the program ends, run.json gets its exit code however it ends: see record_exit_code().
 class Run
 {
 public:
-  /// Creates and locks the directory, moves files of an earlier run aside (see output_file.h) unless this one resumes,
-  /// and writes case.prm and run.json. To be constructed once the input is known to be valid.
-  /// @param parameters of its case; null: none, and no case.prm
+  /// Creates and locks the directory, moves files of an earlier run aside (see output_file.h) unless this one continues
+  /// from a checkpoint, and writes case.prm and run.json, which names the checkpoint. To be constructed once the input
+  /// is known to be valid.
+  /// @param parameters of its case; null: none, and no case.prm @param checkpoints null: it has none
   /// @throws InputError if another process writes to the directory, or case.prm would replace the user's own case:
   /// nothing is written then @throws OutputError
-  Run(const input::Options &options, const input::Parameters *parameters);
-
-  /// Reports the checkpoint from which the run continues, in words and in run.json.
-  void record_checkpoint(const output::Checkpoints &checkpoints);
+  Run(const input::Options &options, const input::Parameters *parameters,
+      const output::Checkpoints *checkpoints = nullptr);
 
   const std::string &directory() const { return directory_; }
   output::RunInfo &info() { return record_->info; }
@@ -148,6 +146,7 @@ public:
   support::ExitCode end(const output::Results &results, support::ExitCode exit_code);
 
 private:
+  void record_checkpoint(const output::Checkpoints &checkpoints);
   // Moves the files of an earlier run aside, unless this run resumes.
   void clear(const input::Options &options, bool has_case) const;
   void print(const output::Results &results) const;

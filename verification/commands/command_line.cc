@@ -100,6 +100,8 @@ support::ExitCode run_program(int argc, char **argv)
   const auto no_tilde = CLI::Validator(
     [](const std::string &folder)
     {
+      if (folder.empty())
+        return std::string("an empty name is that of no folder");
       return folder == "~" || folder.compare(0, 2, "~/") == 0
                ? "the folder '" + folder + "' begins with ~, which is the home in a shell only; give its path"
                : std::string();

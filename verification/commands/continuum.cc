@@ -76,8 +76,7 @@ support::ExitCode run_continuum(const input::Options &options)
   }
   require_time(options, seconds);
   output::Checkpoints checkpoints(options, parameters, input, "continuum");
-  Run run(options, &parameters);
-  run.record_checkpoint(checkpoints);
+  Run run(options, &parameters, &checkpoints);
   try
   {
     const output::Results results =

@@ -1,5 +1,6 @@
 #include "verification/commands/command.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -59,7 +60,7 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
     }
     out << "\n";
     if (input.frame_interval > 0.)
-      frames += std::floor(steps * stepping.step / input.frame_interval);
+      frames += std::min(steps, std::floor(steps * stepping.step / input.frame_interval));
     parts = resources::parts_of_first_step(input, stepping, run);
     if (parts > 1.)
       out << "# bonds of the loaded sheet are so short that the first step is made in " << parts

@@ -221,8 +221,7 @@ support::ExitCode run_fracture(const input::Options &options)
 
   output::Checkpoints checkpoints(options, parameters, input,
                                   options.on_continuum ? "fracture --side continuum" : "fracture");
-  Run run(options, &parameters);
-  run.record_checkpoint(checkpoints);
+  Run run(options, &parameters, &checkpoints);
   if (options.on_continuum)
   {
     run.info().add("side", "continuum");

@@ -102,8 +102,7 @@ support::ExitCode run_lattice(const input::Options &options)
                     moves ? resources::RunKind::dynamics : resources::RunKind::equilibrium))
     return support::ExitCode::done;
   output::Checkpoints checkpoints(options, parameters, input, "lattice");
-  Run run(options, &parameters);
-  run.record_checkpoint(checkpoints);
+  Run run(options, &parameters, &checkpoints);
   output::Results results;
   const auto state_of = [&](const lattice::RowPartition &band)
   {

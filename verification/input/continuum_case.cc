@@ -126,10 +126,16 @@ void EdgeCase::check(Parameters &p, const FieldCase::Points &points) const
     p.error(name + "/condition", "a held edge needs a displacement that is not `free`, or condition = free");
   // A given load must have an effect: on a held edge for a free component only, on a periodic edge never.
   for (const bool is_x : {true, false})
+  {
+    const std::string &given = is_x ? displacement.x : displacement.y;
     if ((is_x ? traction.x : traction.y) != "0" && condition != Condition::free &&
-        (condition == Condition::periodic || (is_x ? displacement.x : displacement.y) != "free"))
+        (condition == Condition::periodic || given != "free"))
       p.error(name + (is_x ? "/traction x" : "/traction y"), "a traction needs an edge that is free to move that way",
               {name + "/condition"});
+    if (condition != Condition::held && given != "loading" && given != "free")
+      p.error(name + (is_x ? "/displacement x" : "/displacement y"), "a displacement needs an edge that is held",
+              {name + "/condition"});
+  }
   if (condition == Condition::periodic && normal_gradient != NormalGradient::free)
     p.error(name + "/normal gradient", "that of a periodic edge follows from the opposite one", {name + "/condition"});
   if (!double_traction.is_zero() && (condition == Condition::periodic || normal_gradient != NormalGradient::free))
@@ -145,8 +151,7 @@ void ContinuumCase::declare(Parameters &p)
          {"mooney-rivlin-network", ContinuumLaw::mooney_rivlin_network},
          {"mooney-rivlin", ContinuumLaw::mooney_rivlin}},
         "material law of the finite element sheet: Cauchy-Born law of the lattice, its mean over all bond directions, "
-        "or the "
-        "plane-stress Mooney-Rivlin law calibrated along the loading path");
+        "or the plane-stress Mooney-Rivlin law calibrated along the loading path");
   p.add("Continuum", "ratio", mooney_rivlin_ratio, Range{-0.9, 0.9}, "1",
         "r = C2 / (C1 + C2) of the law mooney-rivlin; auto: calibrated along the loading path")
     .read_by = ReadBy::claims;
@@ -249,6 +254,8 @@ void ContinuumCase::check(Parameters &p, const Case &input) const
             {"Right edge/condition", "Bottom edge/condition", "Top edge/condition", "Inner edge/condition"});
   if (solution == Solution::motion && adaptive_cycles > 0)
     p.error("Continuum/adaptive cycles", "the mesh of a motion is not refined; give 0", {"Continuum/solution"});
+  if (solution == Solution::motion && time_step && input.end_time > 0. && *time_step > input.end_time)
+    p.error("Continuum/time step", "a step is longer than the motion; give at most Time/end", {"Time/end"});
   if (edges[4].normal_gradient == EdgeCase::NormalGradient::loading)
     p.error("Inner edge/normal gradient", "an inner edge has no single normal; give free or clamped");
   const Points inside = points_in(input);

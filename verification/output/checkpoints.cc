@@ -1,7 +1,6 @@
 #include "verification/output/checkpoints.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <map>

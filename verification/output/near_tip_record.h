@@ -2,7 +2,6 @@
 
 #include <array>
 #include <filesystem>
-#include <optional>
 #include <vector>
 
 #include "lattice/simulation.h"

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iostream>
+#include <iterator>
 #include <set>
 #include <system_error>
 
@@ -57,43 +59,11 @@ bool is_in(const Names &names, const fs::path &file)
   return std::any_of(names.begin(), names.end(), fits);
 }
 
-} // namespace
-
-bool is_listed_output(const fs::path &file)
-{
-  return is_in(names_in(file.parent_path()), file);
-}
-
-void begin_output_list(const fs::path &folder)
-{
-  Names names = names_in(folder);
-  names.insert(frames.begin(), frames.end());
-  write_names(folder, names);
-}
-
-void write_file(const std::string &path, const std::string &text)
-{
-  const fs::path file = path, folder = file.parent_path();
-  if (std::error_code none; fs::exists(folder / output_list_name, none))
-  {
-    Names names = names_in(folder);
-    if (names.insert(file.filename().string()).second)
-      write_names(folder, names);
-  }
-  support::write_atomically(path, text, support::Sync::yes);
-}
-
-void write_files(const TextFiles &files)
-{
-  for (const auto &[path, text] : files)
-    write_file(path, text);
-}
-
-fs::path archive_earlier_output(const fs::path &folder, const fs::path &keep)
+// Moves the files of these names, but for `keep`, to a folder that is made for them. @return it; empty: there are none
+fs::path move_aside(const fs::path &folder, const Names &names, const fs::path &keep)
 {
   try
   {
-    const Names names = names_in(folder);
     std::vector<fs::path> files; // the list is not in itself
     std::error_code none;
     for (const fs::directory_entry &entry : fs::directory_iterator(folder))
@@ -114,8 +84,53 @@ fs::path archive_earlier_output(const fs::path &folder, const fs::path &keep)
   catch (const fs::filesystem_error &error)
   {
     throw support::OutputError(folder.string(),
-                               std::string("the files of the previous run cannot be moved: ") + error.what());
+                               std::string("files that would be replaced cannot be moved: ") + error.what());
   }
+}
+
+// Files of names that were not in the list are not latcon's: they are moved aside.
+void add_to_list(const fs::path &folder, const Names &added)
+{
+  Names names = names_in(folder), further;
+  std::set_difference(added.begin(), added.end(), names.begin(), names.end(), std::inserter(further, further.end()));
+  if (further.empty())
+    return;
+  if (const fs::path aside = move_aside(folder, further, {}); !aside.empty())
+    std::cerr << "latcon: files in " << folder.string() << " that latcon did not write are now in " << aside.string()
+              << std::endl;
+  names.merge(further);
+  write_names(folder, names);
+}
+
+} // namespace
+
+bool is_listed_output(const fs::path &file)
+{
+  return is_in(names_in(file.parent_path()), file);
+}
+
+void begin_output_list(const fs::path &folder)
+{
+  add_to_list(folder, frames);
+}
+
+void write_file(const std::string &path, const std::string &text)
+{
+  const fs::path file = path, folder = file.parent_path();
+  if (std::error_code none; fs::exists(folder / output_list_name, none))
+    add_to_list(folder, {file.filename().string()});
+  support::write_atomically(path, text, support::Sync::yes);
+}
+
+void write_files(const TextFiles &files)
+{
+  for (const auto &[path, text] : files)
+    write_file(path, text);
+}
+
+fs::path archive_earlier_output(const fs::path &folder, const fs::path &keep)
+{
+  return move_aside(folder, names_in(folder), keep);
 }
 
 } // namespace latcon::output

@@ -37,6 +37,13 @@ std::string mpi_version()
   return all.substr(0, all.find_first_of(",\n"));
 }
 
+std::uint64_t peak_memory() // of this process [bytes]
+{
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024; // Linux reports kibibytes
+}
+
 // Returns the number of ranks; 1 if MPI is not initialised.
 unsigned int n_ranks()
 {
@@ -124,13 +131,6 @@ const std::string &program_hash()
     return module.empty() ? digits : input::sha256(digits + " " + input::sha256_of_file(module));
   }();
   return hash;
-}
-
-std::uint64_t peak_memory()
-{
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024; // Linux reports kibibytes
 }
 
 RunInfo::RunInfo(std::vector<std::string> command_line)

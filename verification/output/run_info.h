@@ -48,9 +48,6 @@ private:
 /// @throws std::runtime_error if it cannot be read
 [[nodiscard]] const std::string &program_hash();
 
-/// Returns the peak memory of this process [bytes].
-[[nodiscard]] std::uint64_t peak_memory();
-
 /// Content of run.json: program, compiler, libraries, threads and ranks, times, memory, command line, outcome, and
 /// entries added by the run; the name of the machine is not included. Thread-safe.
 class RunInfo

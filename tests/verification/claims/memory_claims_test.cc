@@ -1,7 +1,6 @@
 // Claims about memories of bonds, and what makes them fail.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <string>

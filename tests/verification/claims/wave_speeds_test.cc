@@ -61,12 +61,10 @@ TEST(Oscillation, FindsFrequencyAndDecayIfThereAreSuch)
     const Oscillation found = fit_oscillation(values, step);
     EXPECT_NEAR(found.frequency, frequency, 1e-11);
     EXPECT_NEAR(found.decay, decay, 1e-11);
-    EXPECT_LT(found.residual, 1e-12);
     for (std::size_t i = 0; i < values.size(); ++i)
       values[i] += 1e-3 * std::sin(1e4 * static_cast<double>(i * i)); // as good as random
     const Oscillation noisy = fit_oscillation(values, step);
     EXPECT_NEAR(noisy.frequency, frequency, 2e-3);
-    EXPECT_GT(noisy.residual, 1e-4);
   }
   std::vector<double> dies_out;
   for (int i = 0; i < 100; ++i)

@@ -1,10 +1,8 @@
 #include "verification/input/user_law.h"
 
-#include <cmath>
 #include <map>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 #include "verification/claims/steady_crack/steady_crack_claim.h"
 
-#include <cstdint>
 #include <stdexcept>
 
 #include <Eigen/Dense>

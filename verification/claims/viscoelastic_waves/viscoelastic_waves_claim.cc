@@ -73,7 +73,7 @@ public:
   {
     const bridge::MemoryWave wave = theory(cell, material, w);
     const double lowest = rubbery(cell, material, w), highest = glassy(cell, material, w);
-    ElementWave run{{unknown, unknown, 0.}, unknown, unknown};
+    ElementWave run{{unknown, unknown}, unknown, unknown};
     rows.attempt(support::text_of(part, has_elements_ ? ", finite elements" : "", ", wave ", wave_names[w],
                                   ", w tau = ", scaled_time),
                  [&]
@@ -85,7 +85,7 @@ public:
                    else
                      run.oscillation = lattice_wave(cell, planted, F_, wave);
                  });
-    const auto &[frequency, decay, residual] = run.oscillation;
+    const auto &[frequency, decay] = run.oscillation;
     frequency_.add_relative(frequency, wave.frequency());
     decay_.add(std::abs(decay - wave.decay()) / wave.frequency(), decay, wave.decay());
     // Overdamped limits of dashpots are no bounds.

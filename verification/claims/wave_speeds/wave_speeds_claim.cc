@@ -223,7 +223,7 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
     outcome.results, "wave-speeds",
     support::text_of(subject.name, ", ", state_name(F), ", kd = ", std::round(1e4 * k * subject.spacing) / 1e4, ": "));
   // If a wave does not oscillate, its rows fail.
-  std::vector<Oscillation> run(2, {unknown, unknown, 0.}), elements = run;
+  std::vector<Oscillation> run(2, {unknown, unknown}), elements = run;
   rows.attempt("lattice run, damped waves",
                [&] { run = lattice_waves(cell, options.planted(material), F, options.integrator); });
   // Waves this long hardly feel the gradient energy: the error in space is below 1e-6.
