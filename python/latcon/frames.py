@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from .errors import UnreadableFile, optional_package
 from .files import read_series
+from .folder import write_atomically
 
 if TYPE_CHECKING:
     import xarray
@@ -158,13 +159,13 @@ def _nodes(path: pathlib.Path, cells: Any) -> NDArray[np.int64]:
 
 
 def write_frame(path: str | os.PathLike[str], frame: Frame) -> None:
-    """Writes a frame of a lattice as a `.vtp` file, of a continuum as `.vtu`, which :func:`read_frame` reads."""
-    from vtkmodules.vtkIOXML import vtkXMLDataSetWriter
-    writer = vtkXMLDataSetWriter()
-    writer.SetFileName(os.fsencode(path))
+    """Writes a frame of a lattice as a `.vtp` file, of a continuum as `.vtu`, which :func:`read_frame` reads; raises OSError."""
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
+    writer = vtkXMLUnstructuredGridWriter() if len(frame.cells) else vtkXMLPolyDataWriter()
     writer.SetInputData(_data_set(frame))
-    if not writer.Write():
-        raise OSError(5, "the frame cannot be written", os.fspath(path))
+    writer.WriteToOutputStringOn()  # VTK reports no failure to write a file
+    writer.Write()
+    write_atomically(os.fspath(path), writer.GetOutputString())
 
 
 def _data_set(frame: Frame) -> Any:

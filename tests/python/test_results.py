@@ -213,6 +213,8 @@ def test_frames_of_both_sides_are_those_of_other_libraries(crack, tmp_path, monk
         assert frame.to_pyvista().GetNumberOfCells() == (len(frame.cells) or len(frame.reference) + len(frame.bonds))
         write = tmp_path / ("frame.vtu" if len(frame.cells) else "frame.vtp")
         latcon.frames.write_frame(write, frame)
+        with pytest.raises(FileNotFoundError):
+            latcon.frames.write_frame(tmp_path / "missing" / write.name, frame)
         read = latcon.frames.read_frame(write, frame.time)
         assert read.units == {name: unit for name, unit in frame.units.items() if name in (*frame.fields, *frame.bond_fields)}
         for one, same in ((frame.cells, read.cells), (frame.bonds, read.bonds), (frame.position, read.position),
