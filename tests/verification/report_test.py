@@ -96,6 +96,13 @@ def test_says_what_was_checked_measured_and_given(runs, write, expect):
     expect_texts(runs, write.__name__, out + err)
 
 
+def test_a_crack_without_run_json_is_not_shown_as_verified(runs):
+    write_fracture(runs, [HOLDS], has_sheet=False)
+    (runs / "run.json").unlink()
+    (runs / "crack.json").write_text(json.dumps(json.loads((runs / "crack.json").read_text()) | {"skip_verification": True}))
+    assert "not verified" in drawn(runs)[0] and "Not verified" in read_page(runs)[1].text
+
+
 def test_leaves_out_studies_beside_runs(runs):
     write_verification(runs, [FAILS])
     (runs / "study.json").write_text("{}")

@@ -69,6 +69,7 @@ class Run:
     energy: dict  # energy.csv of a motion of the lattice: t [s], the rest in J per metre of sheet thickness
     claims: dict  # claims.json: {name: (title, statement)}, in the order in which they are checked; empty without it
     tables: dict  # of the claims, {file name without ".csv": {column: array}}; those that exist
+    skipped_verification: bool  # whether the crack was run without checking the claims for its material
 
     @property
     def is_fracture(self):
@@ -87,11 +88,6 @@ class Run:
         if exit_code == INTERRUPTED:
             return "interrupted"
         return "complete" if self.has_results and exit_code is not None else "unfinished"
-
-    @property
-    def skipped_verification(self):
-        """True if the crack was run without checking the claims for its material."""
-        return bool((self.info or {}).get("skip_verification"))
 
     def input_number(self, key):
         """Value of an entry of the case, SI unit, as run.json records it; None if it is missing or not a number."""
@@ -138,7 +134,9 @@ def read_run(folder):
     """Reads all files of a run except its fields. The verdicts of rows must follow from their numbers."""
     results = folder / "results.json"
     rows, info = if_present(read_rows, results), if_present(read_json, folder / "run.json")
-    checks = [Check(**row, verified=not (info or {}).get("skip_verification")) for row in rows or []]
+    crack = read_numbers(folder / "crack.json", "pattern", CRACK_NUMBERS)
+    skipped = any((document or {}).get("skip_verification") for document in (info, crack))
+    checks = [Check(**row, verified=not skipped) for row in rows or []]
     for number, check in enumerate(checks, start=1):
         if check.verdict != verdict(check.ratio):
             raise UnreadableFile(results, f"row {number} of \"claims\": the verdict {check.verdict!r} contradicts its numbers")
@@ -149,13 +147,14 @@ def read_run(folder):
         has_results=rows is not None,
         info=info,
         case_text=if_present(read_text, folder / "case.prm"),
-        crack=read_numbers(folder / "crack.json", "pattern", CRACK_NUMBERS),
+        crack=crack,
         near_tip=read_numbers(folder / "near_tip.json", "reason"),
         tip=if_present(read_columns, folder / "crack.csv", ("t", "X", "Y")),
         broken=if_present(read_columns, folder / "broken_bonds.csv", ("t", "site", "other_site", "X", "Y")),
         energy=read_energy(folder / "energy.csv"),
         claims=read_claims(folder / "claims.json"),
         tables=read_claim_tables(folder),
+        skipped_verification=skipped,
     )
 
 
