@@ -79,6 +79,7 @@ def test_second_command_is_refused_and_writes_nothing(start, out, tmp_path, stud
         assert "--output-dir" in said
     latcon("lattice", *TINY, "--dry-run", "--output-dir", out)
     elsewhere = tmp_path / "elsewhere"
+    assert latcon("report", out, "--dry-run", "--output-dir", elsewhere).stdout == f"{out}\n" and not elsewhere.exists()
     latcon("report", out, "--animation", "--output-dir", elsewhere, "--quiet")
     assert "has not ended" in (elsewhere / "report.html").read_text()
     assert contents(out) == before

@@ -50,13 +50,14 @@ def main(words=None):
     parser.add_argument("directory", metavar="DIR", type=Path, help="output directory, for a report also a folder of several")
     parser.add_argument("--output-dir", metavar="OUT", help="folder for page and pictures of a report (default: DIR)")
     parser.add_argument("--animation", action="store_true", help="draw animation.gif of each crack of a report as well")
+    parser.add_argument("--dry-run", action="store_true", help="list the runs of a report and draw nothing")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     given = parser.parse_args(words)
     from latcon.errors import UnreadableFile
     from latcon.report import comparison, report, study
     try:
         if given.page == "report":
-            return report.report(given.directory, given.output_dir, given.quiet, given.animation)
+            return report.report(given.directory, given.output_dir, given.quiet, given.animation, given.dry_run)
         page = (study.study_page if given.page == "study" else comparison.comparison_page)(given.directory)
         if not given.quiet:
             print(page)

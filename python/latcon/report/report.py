@@ -84,14 +84,22 @@ def drawn_meanwhile(draws):
             draw()
 
 
-def report(folder, output_dir=None, quiet=False, animated=False):
-    """Draws and writes the report of a folder.
+def report(folder, output_dir=None, quiet=False, animated=False, dry_run=False):
+    """Draws and writes the report of a folder; a dry run only lists the runs.
 
     output_dir: folder for the page and the pictures, those of each run in the same sub-folder as the run; None: the folder itself
     @return exit code: 0; 3 if a claim fails; 2 if a run cannot be read, which is listed with its error, while the others are shown
     """
     output = Path(output_dir or folder)
     readable, unreadable = find_runs(folder)
+    if not quiet:
+        sys.stdout.reconfigure(errors="replace")
+    if dry_run:
+        for run in [] if quiet else readable:
+            print(run.folder)
+        for one in unreadable:
+            print(f"error: {one.problem}", file=sys.stderr)
+        return 2 if unreadable else 0
     # By folder of the run: {name in CAPTIONS: (picture, still or None)}, {plot: (PNG, error metrics)}, data of the viewer or None.
     runs, pictures, plots, sheets = [], {}, {}, {}
     most = LARGEST_SHEETS // max(1, sum(run.is_fracture for run in readable))
@@ -127,7 +135,6 @@ def report(folder, output_dir=None, quiet=False, animated=False):
     for one in unreadable:
         print(f"error: {one.problem}", file=sys.stderr)
     if not quiet:
-        sys.stdout.reconfigure(errors="replace")
         print(text_summary(runs, unreadable))
         print(f"\n{os.path.join(output_dir or folder, 'report.html')}")
     if unreadable:

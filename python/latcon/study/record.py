@@ -199,7 +199,7 @@ def draw_page(kind: str, directory: str, page: str, repeat: str) -> bool:
 
 
 def report(_: Program, __: Printed, options: Mapping[str, Any]) -> int:
-    """Draws pictures and page of a run, or of a folder of several."""
+    """Draws pictures and page of a run, or of a folder of several; a dry run lists the runs."""
     folder, out = options["word"], options["output_dir"]
     if not os.path.isdir(folder):
         raise InputError(f"{folder} is not a directory")
@@ -207,9 +207,13 @@ def report(_: Program, __: Printed, options: Mapping[str, Any]) -> int:
     if not options["quiet"]:
         command.remove("--quiet")
     if out:
-        os.makedirs(out, exist_ok=True)
         command += ["--output-dir", out]
-    with FolderLock(out or folder):
+    with contextlib.ExitStack() as held:
+        if options["dry_run"]:
+            command.append("--dry-run")
+        else:
+            os.makedirs(out or folder, exist_ok=True)
+            held.enter_context(FolderLock(out or folder))
         status = subprocess.run(command, check=False).returncode
     if status == PACKAGES_MISSING:
         say_error(f"latcon: no report; every other file is complete. With these packages, draw it by: latcon report {folder}\n")
