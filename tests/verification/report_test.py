@@ -5,7 +5,9 @@ import json
 import math
 import os
 import re
+import select
 import shutil
+import signal
 import time
 from unittest import mock
 
@@ -166,6 +168,18 @@ def test_names_the_damaged_file(runs):
 def test_a_drawing_that_fails_in_another_process_fails_here():
     with pytest.raises(ZeroDivisionError), report.drawn_meanwhile([lambda: 1 / 0]):
         time.sleep(1)  # so that the other process takes it
+
+
+def test_drawings_end_with_the_process_that_waits_for_them():
+    ended, drawing = os.pipe()
+    if (parent := os.fork()) == 0:
+        with report.drawn_meanwhile([lambda: (os.write(drawing, b"!"), time.sleep(60))]):
+            time.sleep(1)
+    os.read(ended, 1)
+    os.close(drawing)
+    os.kill(parent, signal.SIGKILL)
+    os.waitpid(parent, 0)
+    assert select.select([ended], [], [], 30)[0]
 
 
 def test_animation_has_all_frames_and_is_small(runs):

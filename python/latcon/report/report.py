@@ -1,6 +1,7 @@
 """Draws the pictures of runs and writes report.html, the contents of the template of that name."""
 import json
 import os
+import signal
 import sys
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,6 +11,7 @@ from markupsafe import Markup
 from ..errors import UnreadableFile
 from ..folder import list_files
 from ..quantities import number_text
+from ..study.pool import end_with
 from .claim_plots import all_plots
 from .claim_sections import WORDS, claim_sections
 from .crack_path import draw_crack_path
@@ -63,12 +65,13 @@ def drawn_meanwhile(draws):
         while number := os.read(queue, 1):
             draws[number[0]]()
 
-    processes = []
+    parent, processes = os.getpid(), []
     for _ in range(min(len(os.sched_getaffinity(0)) - 1, len(draws))):
         processes.append(os.fork())
         if processes[-1] == 0:
             code = 1
             try:
+                end_with(parent, signal.SIGKILL)
                 draw_next()
                 code = 0
             finally:

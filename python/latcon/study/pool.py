@@ -14,6 +14,7 @@ _POLL_INTERVAL = 0.02  # [s]
 _PATIENCE = 60.0  # [s] until a child that does not end is killed
 _NOT_STARTED = 127
 _PR_SET_PDEATHSIG = 1
+_LIBC = ctypes.CDLL(None)
 # Variables of a launcher, with which a child would be a rank of another job, and of this process alone.
 _LAUNCHER = ("OMPI_", "PMIX_", "PMI_")
 
@@ -71,14 +72,19 @@ def run_processes(n_jobs: int, limit: int, start: Callable[[int], tuple[Sequence
 
 def start_child(command: Sequence[str], last_signal: int, **streams: Any) -> subprocess.Popen[bytes]:
     """Starts a child, which gets a signal when this process dies, without the variables that would make it a rank of another job."""
-    parent, libc = os.getpid(), ctypes.CDLL(None)
+    parent = os.getpid()
 
     def prepare() -> None:
-        libc.prctl(_PR_SET_PDEATHSIG, last_signal)
-        if os.getppid() != parent:
-            os._exit(_NOT_STARTED)
+        end_with(parent, last_signal)
         signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     environment = {name: value for name, value in os.environ.items()
                    if not name.startswith(_LAUNCHER) and name not in ("FLUX_JOB_ID", "LATCON_PROGRESS", "PYTHONPATH")}
     return subprocess.Popen(command, env=environment, preexec_fn=prepare, **streams)
+
+
+def end_with(parent: int, last_signal: int) -> None:
+    """Has a signal sent to this process, a child, when its parent dies; ends it if that is dead already."""
+    _LIBC.prctl(_PR_SET_PDEATHSIG, last_signal)
+    if os.getppid() != parent:
+        os._exit(_NOT_STARTED)
