@@ -7,10 +7,21 @@ Examples
 >>> run = latcon.fracture(case, "output", threads=2)
 >>> run.crack.speed_lagrangian
 """
+import sys
+
+from .errors import OUTPUT_FAILED, LatconError, optional_package
+
+if sys.argv[:2] == ["-m", "--parsed"]:  # a command of the program, before __main__.py, which comes after this file
+    try:
+        optional_package("numpy", "this command needs", "numpy (Debian: python3-numpy)")
+    except LatconError as missing:
+        print(f"latcon: {missing}", file=sys.stderr)
+        sys.exit(OUTPUT_FAILED)
+
 from .case import Case
 from .commands import Job, continuum, fracture, lattice, start, verify
-from .errors import (BadInput, ClaimFailed, DidNotConverge, InternalError, Interrupted, LatconError, OutputFailed, ProgramError,
-                     ProgramNotFound, UnknownEntry, UnreadableFile)
+from .errors import (BadInput, ClaimFailed, DidNotConverge, InternalError, Interrupted, OutputFailed, ProgramError, ProgramNotFound,
+                     UnknownEntry, UnreadableFile)
 from .frames import Frame
 from .program import find_program
 from .quantities import Quantities, Value

@@ -2,6 +2,7 @@
 import json
 import os
 import subprocess
+import sys
 
 import pytest
 
@@ -69,3 +70,11 @@ def test_report_does_not_depend_on_settings_of_python(out, tmp_path):
                 "PYTHONPATH": str(tmp_path / "modules")}
     latcon("report", out, env=dict(os.environ, **settings))
     assert (out / "report.html").exists()
+
+
+def test_commands_in_python_say_that_numpy_is_missing(tmp_path):
+    (python := tmp_path / "python").write_text(f'#!/bin/sh\nexec {sys.executable} -S "$@"\n')
+    python.chmod(0o755)
+    for command in (["init", tmp_path / "new"], ["entries"], ["report", tmp_path], ["compare", "a", "b"], ["study", "paper"], ["batch", "paper", "--slurm"]):
+        run = latcon(*command, env=os.environ | {"LATCON_PYTHON": str(python)}, expect=OUTPUT_FAILED)
+        assert run.stderr == "latcon: this command needs the Python package numpy (Debian: python3-numpy): No module named 'numpy'\n"
