@@ -235,7 +235,8 @@ class Progress:
 
     def __init__(self, is_wanted: bool) -> None:
         self._in_place = os.isatty(2) and os.environ.get("TERM") != "dumb"
-        self._descriptor = int(os.environ.get("LATCON_PROGRESS") or -1)
+        given = os.environ.get("LATCON_PROGRESS", "")
+        self._descriptor = int(given) if given.isdecimal() and len(given) < 10 else -1
         self._interval = (0.2 if self._in_place or self._descriptor >= 0 else 60.0) if is_wanted else math.inf
         self._begin = self._shown = time.monotonic()
 
