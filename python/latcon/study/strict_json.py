@@ -113,9 +113,9 @@ class JsonPlace:
         return self.value if isinstance(self.value, str) and self.value else self._wrong("a non-empty text", "")
 
     def number(self) -> float:
-        """Returns a number."""
-        is_number = isinstance(self.value, (int, float)) and not isinstance(self.value, bool)
-        return float(self.value) if is_number else self._wrong("a number", 0.0)
+        """Returns a number; one like 1e999 is read as infinite."""
+        is_number = isinstance(self.value, (int, float)) and not isinstance(self.value, bool) and math.isfinite(self.value)
+        return float(self.value) if is_number else self._wrong("a finite number", 0.0)
 
     def unsigned(self) -> int | None:
         """Returns a whole number that is not negative; None, without a problem, for another value."""
