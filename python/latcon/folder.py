@@ -13,6 +13,7 @@ import stat
 import time
 from collections.abc import Callable, Iterator
 
+from .errors import BAD_INPUT, BadInput
 from .study.program import InputError
 
 EARLIER = "earlier-run"  # folder of the files of the run before
@@ -83,7 +84,12 @@ class FolderLock(contextlib.AbstractContextManager["FolderLock"]):
 
 
 def absolute(path: str | os.PathLike[str]) -> pathlib.Path:
-    """Returns a path that is of use after a change of folder, with the home in place of a leading ``~``, as in a shell."""
+    """Returns a path that is of use after a change of folder, with the home in place of a leading ``~``, as in a shell.
+
+    Raises BadInput if it is empty, which Python would take for the current folder.
+    """
+    if not os.fspath(path):
+        raise BadInput("the name of the folder is empty; that of the current folder is '.'", BAD_INPUT)
     return pathlib.Path(path).expanduser().absolute()
 
 

@@ -226,6 +226,8 @@ def test_errors_of_the_program_are_raised(tmp_path):
     with pytest.raises(latcon.BadInput, match="Sheet/height = 1 kg") as caught:
         latcon.fracture(tiny_case().set("Sheet/height", "1 kg"), tmp_path / "out", progress=False)
     assert caught.value.directory == tmp_path / "out" and not (tmp_path / "out").exists()
+    with pytest.raises(latcon.BadInput, match="name of the folder is empty"):
+        latcon.lattice(tiny_case().set("Sheet/height", "1 kg"), "", progress=False)
     (tmp_path / "file").touch()
     with pytest.raises(latcon.OutputFailed):
         latcon.lattice(tiny_case(), tmp_path / "file" / "out", progress=False)
