@@ -43,8 +43,6 @@ class _Crack:
 def compare(program: Program, printed: Printed, options: Mapping[str, Any]) -> int:
     """Compares two cracks or two frames. Returns the exit code; raises LatconError for invalid options or files."""
     names = options["first"], options["second"]
-    if options["overrides"]:
-        raise InputError("latcon compare has no case that --set could change")
     cracks = [os.path.isfile(os.path.join(name, "crack.json")) for name in names]
     if all(cracks):
         if any(options[name] for name in ("time", "lattice_time", "continuum_time", "tolerances", "excluded", "overlap")):

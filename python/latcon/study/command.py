@@ -39,6 +39,8 @@ def run(command: str, options: Mapping[str, Any]) -> int:
     signals = Signals()
     try:
         signals.unblock()
+        if options["overrides"] and command not in ("study", "batch"):
+            raise InputError(f"latcon {command} has no case that --set could change")
         program = Program(options)
         if command in ("study", "batch"):
             options = {**options, "output_dir": options["output_dir"] or default_folder(options["study"], bool(options["sweeps"]))}
