@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -31,6 +32,11 @@ RECORDED: dict[str, str] = {name: unit for unit, words in _TABLE for word in wor
 `near_tip.json`, and those that follow from these, the case and the tables: zeta, lengths over d, numbers of the path, energies per area."""
 UNITS: dict[str, str] = RECORDED | dict.fromkeys(("X", "Y", "sampled_from", "sampled_to", "sinusoid_offset"), "m")
 """SI units of the numbers in `crack.json` and `near_tip.json`; all others are pure numbers."""
+_IN_FILES = [name for name in RECORDED if not re.search(f"^zeta|_over_d|^path_|_per_area|{_UNCERTAINTY}$", name)]
+NAMES = {"crack": [*_IN_FILES[:_IN_FILES.index("samples")], "sinusoid_offset", "sinusoid_slope", "sinusoid_phase", "pattern", "reason",
+                   "side", "thresholds", "nearest_to_breaking", "skip_verification"],
+         "near_tip": [*_IN_FILES[_IN_FILES.index("samples"):], "reason", "sampled_from", "sampled_to"]}
+"""Names of the quantities in `crack.json` and `near_tip.json`."""
 
 SHOWN = {"m": (100.0, "cm"), "m^2": (1e6, "mm²"), "s": (1e3, "ms"), "degrees": (1.0, "°")}
 """Scale and unit shown for SI units."""

@@ -304,13 +304,16 @@ def test_wrong_arguments_are_refused_before_anything_runs(small_fit, crack, tmp_
             (dict(parameters=[Parameter(STRETCH, 0.0, 2, True)]), "be positive"),
             (dict(parameters=[Parameter(STRETCH, "3 kg", 4)]), "3 kg"), (dict(parameters=[Parameter(SEED, 1, 4)]), "over seeds"),
             (dict(observations=[Observation("speed", 1, 1)]), "crack.NAME"), (dict(command="verify"), "must be one of"),
+            (dict(observations=[Observation("crack.sped_lagrangian", 1, 1)]), "no quantity 'sped_lagrangian'; nearest: speed_lagrangian"),
+            (dict(observations=[Observation("crack.wedge_angle", 1, 1)]), "known: speed_lagrangian, "),
+            (dict(observations=[Observation("crack.pattern", "oscilating")]), "no pattern 'oscilating'; nearest: oscillating"),
             (dict(observations=[Observation(SPEED, 1)]), "positive uncertainty"),
             (dict(observations=[Observation(SPEED, math.nan, 1)]), "finite value"),
             (dict(command="lattice"), "crack.NAME or near_tip.NAME of a crack")):
         with pytest.raises(ValueError, match=message):
             small_fit(tmp_path / "fit", **change)
     assert not crack.runs and not (tmp_path / "fit").exists()
-    for observation, message in ((Observation("crack.mood", 1, 1), "no quantity 'crack.mood'"),
+    for observation, message in ((Observation("crack.side", 1, 1), "no quantity 'crack.side'"),
                                  (Observation("crack.pattern", 1, 1), "'oscillating'|'straight'"),
                                  (Observation(SPEED, "fast"), "the observed value is 'fast'")):
         with pytest.raises(ValueError, match=message):

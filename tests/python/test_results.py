@@ -14,7 +14,7 @@ import pytest
 
 import latcon
 from conftest import tiny_case
-from latcon.quantities import RECORDED
+from latcon.quantities import NAMES, RECORDED
 
 
 def rows(path):
@@ -42,7 +42,8 @@ def test_crack_has_values_uncertainties_and_units(crack):
 
 
 def test_recorded_quantities_are_those_of_the_files(crack):
-    written = {name for file in ("crack", "near_tip") for name in json.loads((crack.directory / f"{file}.json").read_text())}
+    written = {name for file in NAMES for name in json.loads((crack.directory / f"{file}.json").read_text())}
+    assert {"crack": {"side", *crack.crack}, "near_tip": set(crack.near_tip)} == {file: set(names) for file, names in NAMES.items()}
     derived = {"zeta", *(name for name in RECORDED if "_over_d" in name or name.startswith("path_") or name.endswith("_per_area"))}
     assert set(RECORDED) - derived <= written and not derived & written
     others = {"pattern", "reason", "thresholds", "nearest_to_breaking", "skip_verification", "units", "sampled_from", "sampled_to",

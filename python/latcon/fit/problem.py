@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import difflib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -11,9 +12,10 @@ import numpy as np
 from ..case import Case, Settable
 from ..commands import CaseLike, as_case
 from ..frames import Floats
-from ..quantities import Quantities, Value
+from ..quantities import NAMES, Quantities, Value
 from ..results import Run
 from ..schema import SEED_ENTRY, schema
+from ..study.study_file import PATTERNS
 
 COMMANDS = ("fracture", "lattice", "continuum")
 
@@ -201,6 +203,10 @@ def resolve_problem(case: CaseLike, parameters: Sequence[Parameter], observation
         if observation.measure is None and (file not in ("crack", "near_tip") or not path or command != "fracture"):
             raise ValueError(f"observation {name!r}: must be crack.NAME or near_tip.NAME of a crack, or have the function "
                              "`measure`")
+        if observation.measure is None:
+            _require_known(name, "quantity", path.partition(".")[0], NAMES[file])
+            if name == "crack.pattern" and observation.is_word:
+                _require_known(name, "pattern", str(observation.value), [*PATTERNS, "undecided"])
         if not math.isfinite(observation.uncertainty) or observation.uncertainty < 0:
             raise ValueError(f"observation {name!r}: the uncertainty {observation.uncertainty} must be positive")
         if not observation.is_word and not (math.isfinite(float(observation.value)) and observation.uncertainty > 0):
@@ -218,6 +224,13 @@ def resolve_problem(case: CaseLike, parameters: Sequence[Parameter], observation
     else:
         problem.of(base, problem.values([0.5] * len(axes))).resolved()
     return problem
+
+
+def _require_known(observation: str, what: str, given: str, known: Sequence[str]) -> None:
+    if given not in known:
+        nearest = difflib.get_close_matches(given, known, 1)
+        raise ValueError(f"observation {observation!r}: no {what} {given!r}; "
+                         + (f"nearest: {nearest[0]}" if nearest else f"known: {', '.join(known)}"))
 
 
 def _axis(base: Case, parameter: Parameter) -> Axis:
