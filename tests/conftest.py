@@ -9,7 +9,6 @@ import tempfile
 
 import pytest
 
-
 CHOSEN = ("in full only", "long", "once is enough", "the quick versions are enough")
 
 

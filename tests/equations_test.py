@@ -22,15 +22,10 @@ RANGE = re.compile(rf"\(({NUMBER})\)\s+(?:[/#]+\s+)?to\s+(?:[/#]+\s+)?\(({NUMBER
 ONE = re.compile(rf"\(({NUMBER})\)")
 
 
-def expanded(first, last):
-    letter, low = first.split(".")
-    return [f"{letter}.{number}" for number in range(int(low), int(last.split(".")[1]) + 1)]
-
-
 def references(text):
     """Numbers of the equations that a text refers to; the equations between the ends of a range need not all exist."""
     named = set(ONE.findall(text))
-    within = {number for first, last in RANGE.findall(text) for number in expanded(first, last)}
+    within = {f"{first[0]}.{number}" for first, last in RANGE.findall(text) for number in range(int(first[2:]), int(last[2:]) + 1)}
     return named, within | named
 
 
@@ -39,13 +34,9 @@ def bare(text, letters):
     return re.findall(rf"(?:\beqs?\.|\.md,)\s+(?:[/#]+\s+)?[{letters}]\.\d+", text)
 
 
-def theory_pages():
-    return sorted((ROOT / "docs").glob("theory*.md"))
-
-
 def equations():
     """Number of occurrences of each equation number."""
-    return collections.Counter(tag for page in theory_pages() for tag in TAG.findall(page.read_text()))
+    return collections.Counter(tag for page in (ROOT / "docs").glob("theory*.md") for tag in TAG.findall(page.read_text()))
 
 
 # A test of C++ or Python with the comments and decorators right above it: a reference elsewhere does not say that the equation

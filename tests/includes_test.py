@@ -54,8 +54,7 @@ ROOTS = ("support", "lattice", "continuum", "verification", "tests")
 
 def included(text):
     """Names of the included files, without steps up and down."""
-    return ["/".join(part for part in pathlib.PurePosixPath(name).parts if part not in ("..", "."))
-            for name in INCLUDE.findall(text)]
+    return ["/".join(part for part in pathlib.PurePosixPath(name).parts if part not in ("..", ".")) for name in INCLUDE.findall(text)]
 
 
 def rule(folder):

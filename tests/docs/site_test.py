@@ -71,7 +71,6 @@ def test_dead_references_are_warnings(tmp_path):
         run = subprocess.run(["sphinx-build", "-n", "-q", "-c", ROOT / "docs", source, site, "-D", "html_static_path="],
                              capture_output=True, text=True, check=True)
         return [line for line in run.stderr.splitlines() if "WARNING" in line]
-
     assert warnings("By (L.1), but not by `(L.9)` and $(L.9)$, [here](#a-part).\n") == []
     assert 'href="#eq-l-1"' in (site / "index.html").read_text()
     dead = ["(L.2)", "[a page](none.md)", "[a part](#none)", "[a part](index.md#none)", "![a picture](none.png)"]

@@ -19,9 +19,8 @@ LATCON, SOURCE = pathlib.Path(os.environ["LATCON"]), pathlib.Path(__file__).reso
 FULL = "LATCON_FULL" in os.environ
 
 # Entries without which there is no case, for blocks that show a part of one.
-REQUIRED = {"Sheet/spacing": "1 mm", "Sheet/length": "4 cm", "Sheet/height": "2 cm", "Material/density": "944",
-            "Loading/strain x": "0.1", "Loading/strain y": "0.1"}
-
+REQUIRED = [word for entry in ("Sheet/spacing=1 mm", "Sheet/length=4 cm", "Sheet/height=2 cm", "Material/density=944",
+                               "Loading/strain x=0.1", "Loading/strain y=0.1") for word in ("--set", entry)]
 
 # Run weekly as a whole: tests/python covers what they show.
 WEEKLY = {"docs/python.md"}
@@ -99,11 +98,8 @@ def try_statements(clone, statements):
 def try_input(clone, block):
     path = clone.folder / f"block-{block.line}.{block.language}"
     path.write_text(block.text)
-    if '"runs"' in block.text:
-        ended = clone.run("./run", "study", path.name, "--dry-run", "--quiet")
-    else:
-        ended = clone.run("./run", "continuum", path.name, "--dry-run", "--quiet",
-                          *[word for name, value in REQUIRED.items() for word in ("--set", f"{name}={value}")])
+    command, options = ("study", []) if '"runs"' in block.text else ("continuum", REQUIRED)
+    ended = clone.run("./run", command, path.name, "--dry-run", "--quiet", *options)
     return f"{block.place()}: {ended.stdout}" if ended.returncode else ""
 
 

@@ -14,6 +14,7 @@ import kills
 import moments
 import victims
 import whole
+from program import ended
 
 PROGRAM = victims.Program(os.environ["LATCON"], os.environ["LATCON_FILE_FAULTS"])
 TIMES = int(os.environ.get("LATCON_FAULTS", 1))
@@ -41,9 +42,9 @@ def test_run_survives_a_fault_at_a_call_that_changes_files(name, fault, module_p
 
 
 def crack_on(disk, options, then=""):
-    """Runs a crack with a file system of its own mounted at `disk`."""
+    """Runs a crack, which fails by its output, with a file system of its own mounted at `disk`."""
     script = f'mount -t tmpfs -o {options} none {disk} || exit 77; {shlex.join([PROGRAM.latcon, *CRACK])} --output-dir {disk}/out; status=$?; {then} exit $status'
-    return subprocess.run(["unshare", "-m", "sh", "-c", script], capture_output=True, text=True, timeout=600)
+    return ended(subprocess.run(["unshare", "-m", "sh", "-c", script], capture_output=True, text=True, timeout=600), expect=5)
 
 
 @pytest.mark.usefixtures("needs_mount")
@@ -54,7 +55,6 @@ def test_small_disk(tmp_path, whole_run):
     disk.mkdir()
     size = sum(path.stat().st_size for path in complete.rglob("*") if path.is_file())
     run = crack_on(disk, f"size={size // 2048}k", f"cp -r {disk}/out {kept};")
-    assert run.returncode == 5, run.stderr
     assert str(disk) in run.stderr
     assert whole.check(kept) > 5
     status, said = PROGRAM.run([*CRACK, "--resume"], kept)
@@ -64,9 +64,7 @@ def test_small_disk(tmp_path, whole_run):
 
 @pytest.mark.usefixtures("needs_mount")
 def test_disk_that_cannot_be_written(tmp_path):
-    run = crack_on(tmp_path, "ro")
-    assert run.returncode == 5, run.stderr
-    assert f"{tmp_path}/out" in run.stderr
+    assert f"{tmp_path}/out" in crack_on(tmp_path, "ro").stderr
 
 
 def test_folder_of_somebody_else(tmp_path):
@@ -78,8 +76,7 @@ def test_folder_of_somebody_else(tmp_path):
     run = subprocess.run([*prefix, PROGRAM.latcon, *CRACK, "--output-dir", folder / "out"], capture_output=True, text=True, timeout=600,
                          env=dict(os.environ, HOME=str(tmp_path), XDG_CACHE_HOME=str(tmp_path)))
     assert run.returncode == 5, run.stderr
-    assert "ermission denied" in run.stderr
-    assert str(folder / "out") in run.stderr
+    assert "ermission denied" in run.stderr and str(folder / "out") in run.stderr
 
 
 @pytest.fixture(scope="module")

@@ -13,8 +13,7 @@ def counted(program, name, folder):
     arguments = victims.VICTIMS[name]
     log = folder / "calls"
     out = folder / "counted"
-    status, said = program.run([*arguments, "--threads", "1"], out,
-                               fault={"LATCON_FAULT": "count", "LATCON_FAULT_LOG": str(log)})
+    status, said = program.run([*arguments, "--threads", "1"], out, fault={"LATCON_FAULT": "count", "LATCON_FAULT_LOG": str(log)})
     if status not in victims.DONE:
         raise Failure(f"exit {status} when counted: {said}")
     contents = victims.contents(out)
@@ -30,8 +29,7 @@ def at_moments(program, name, folder, fault, moments):
     out = folder / fault
     for call in moments(calls):
         shutil.rmtree(out, ignore_errors=True)
-        status, said = program.run([*arguments, "--threads", "1"], out,
-                                   fault={"LATCON_FAULT": fault, "LATCON_FAULT_AT": str(call)})
+        status, said = program.run([*arguments, "--threads", "1"], out, fault={"LATCON_FAULT": fault, "LATCON_FAULT_AT": str(call)})
         if fault == "full" and status in victims.DONE:
             compare(name, out, expected)  # no call after it needed space
             continue

@@ -9,7 +9,6 @@ import time
 
 from program import latcon, settings
 
-
 HERE = pathlib.Path(__file__).parent
 # The last have no checkpoints: after a kill they start from the beginning, and a study with its incomplete runs.
 RUNS = {name: [*words, "--quiet", *settings(*(f"{key}={value}" for key, value in entries.items()))]

@@ -1,6 +1,4 @@
 """Tests of the Debian packages: their dependencies, and that their contents run where they are unpacked."""
-
-
 import json
 import re
 import shlex
@@ -8,7 +6,7 @@ import types
 
 import pytest
 
-from folders import BUILD, FOLDER, SOURCE, check_program, files_below, mentions_of_sources, modules, python, run
+from folders import BUILD, FOLDER, SOURCE, VERSION, check_program, files_below, mentions_of_sources, modules, python, run
 
 
 def field(package, name):
@@ -30,9 +28,7 @@ def once():
 
 
 def test_name_their_version(once):
-    project = re.search(r"project\(latcon VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1)
-    for package in (once.program, once.libraries, once.python):
-        assert field(package, "Version") == project
+    assert [field(package, "Version") for package in (once.program, once.libraries, once.python)] == [VERSION] * 3
 
 
 def test_ask_for_what_they_need(once):
@@ -54,8 +50,7 @@ def test_program_runs_where_it_is_unpacked(once):
     root = FOLDER / "root"
     run("dpkg-deb", "--extract", once.program, root)
     assert mentions_of_sources(root) == []
-    for name in ("share/man/man1/latcon.1.gz", "share/bash-completion/completions/latcon",
-                 "share/doc/latcon/copyright"):
+    for name in ("share/man/man1/latcon.1.gz", "share/bash-completion/completions/latcon", "share/doc/latcon/copyright"):
         assert (root / "usr" / name).is_file(), name
     check_program(root / "usr")
 

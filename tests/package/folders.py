@@ -6,6 +6,7 @@ import subprocess
 import tempfile
 
 SOURCE, BUILD = pathlib.Path(__file__).resolve().parents[2], pathlib.Path(os.environ["LATCON_BUILD"])
+VERSION = re.search(r"project\(latcon VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text())[1]
 SCRATCH = tempfile.TemporaryDirectory()
 FOLDER = pathlib.Path(SCRATCH.name)
 ENVIRONMENT = dict(os.environ, XDG_CACHE_HOME=str(FOLDER / "cache"), OMP_NUM_THREADS="1")

@@ -29,8 +29,7 @@ def run_in(folder, *words):
 
 @pytest.fixture
 def clone(tmp_path):
-    clone = empty_clone(tmp_path)
-    return shutil.copytree(SMALL, clone, dirs_exist_ok=True)
+    return shutil.copytree(SMALL, empty_clone(tmp_path), dirs_exist_ok=True)
 
 
 def rewrite(clone, name):
@@ -68,8 +67,7 @@ def test_shows_the_steps_of_the_first_build_alone(clone, tmp_path):
 
 def test_a_copied_clone_builds_in_its_own_place(clone, tmp_path):
     set_up(tmp_path, clone)
-    copy = tmp_path / "copy"
-    shutil.copytree(clone, copy, symlinks=True)
+    copy = shutil.copytree(clone, tmp_path / "copy", symlinks=True)
     rewrite(copy, "copy")
     before = state(clone)
     assert "Configuring" in set_up(tmp_path, copy)

@@ -3,12 +3,11 @@ import re
 
 import pytest
 
-from folders import SOURCE
+from folders import SOURCE, VERSION
 
 
 @pytest.mark.parametrize("file, pattern", [
     ("CITATION.cff", r"^version: (\S+)"), ("python/latcon/__init__.py", r'^__version__ = "(\S+)"'), ("packaging/conda/meta.yaml", r"^  version: (\S+)"),
     ("packaging/spack/packages/latcon/package.py", r'^    version\("(\S+)"\)')])
 def test_version_is_that_of_the_project(file, pattern):
-    version, = re.findall(r"project\(latcon VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text())
-    assert re.findall(pattern, (SOURCE / file).read_text(), re.M) == [version]
+    assert re.findall(pattern, (SOURCE / file).read_text(), re.M) == [VERSION]

@@ -50,16 +50,14 @@ def test_is_found_by_environment_prefix_path_and_build_folder(tmp_path):
     assert "LATCON is '/no/latcon'" in found(elsewhere, tmp_path, LATCON="/no/latcon", PATH=path)
 
 
-@pytest.mark.parametrize("code, kind", [(1, latcon.InternalError), (2, latcon.BadInput), (3, latcon.ClaimFailed),
-                                        (4, latcon.DidNotConverge), (5, latcon.OutputFailed), (130, latcon.Interrupted),
-                                        (77, latcon.ProgramError)])
+@pytest.mark.parametrize("code, kind", [(1, latcon.InternalError), (2, latcon.BadInput), (3, latcon.ClaimFailed), (4, latcon.DidNotConverge),
+                                        (5, latcon.OutputFailed), (130, latcon.Interrupted), (77, latcon.ProgramError)])
 def test_exit_codes_are_exceptions_with_the_message(stand_in, tmp_path, code, kind):
     stand_in(f"print('table', flush=True); print('latcon: first\\nsecond', file=sys.stderr); sys.exit({code})")
     with pytest.raises(kind) as caught:
         program.run(["lattice"], tmp_path, False)
-    assert type(caught.value) is kind
-    assert (caught.value.exit_code, caught.value.message, caught.value.directory) == (code, "first\nsecond", tmp_path)
-    assert str(caught.value) == "first\nsecond"
+    error = caught.value
+    assert (type(error), error.exit_code, error.directory) == (kind, code, tmp_path) and str(error) == error.message == "first\nsecond"
 
 
 def test_loops_that_catch_errors_stop_when_interrupted():

@@ -35,8 +35,7 @@ def refused(overrides):
 def test_prints_one_document_with_format_and_version():
     document = json.loads(run("schema").stdout)
     assert document["format"] == "latcon-schema" and document["format_version"] == 1
-    assert document["version"] == run("--version").stdout.split()[1]
-    assert "case" not in document
+    assert document["version"] == run("--version").stdout.split()[1] and "case" not in document
     assert {"fig1", "quick", "hole"} <= set(document["cases"])
     assert all(pathlib.Path(path).is_file() for path in document["cases"].values())
 
@@ -69,12 +68,9 @@ def test_bounds_are_those_that_the_program_keeps():
     for key, entry in entries.items():
         bounds = entry.range
         step = 1 if entry.type == "integer" else 1e-3
-        if "minimum" in bounds:
-            included[key] = bounds["minimum"]
-            beyond[key] = bounds["minimum"] - step * max(1, abs(bounds["minimum"]))
-        elif "maximum" in bounds:
-            included[key] = bounds["maximum"]
-            beyond[key] = bounds["maximum"] + step * max(1, abs(bounds["maximum"]))
+        for end, outwards in (("maximum", step), ("minimum", -step)):  # the lower one where there are both
+            if end in bounds:
+                included[key], beyond[key] = bounds[end], bounds[end] + outwards * max(1, abs(bounds[end]))
         if "exclusive_minimum" in bounds:
             excluded[key] = bounds["exclusive_minimum"]
     assert len(beyond) > 50 and excluded

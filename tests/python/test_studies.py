@@ -3,6 +3,7 @@ import concurrent.futures
 import contextlib
 import itertools
 import time
+import types
 
 import numpy as np
 import pytest
@@ -13,16 +14,11 @@ from conftest import tiny_case
 STRAINS = np.array([1.5, 1.9])
 
 
-class Future:
-    def __init__(self, function, arguments):
-        self.result = lambda: function(*arguments)
-
-
 class Lazy:
     """Executor of another library: futures that know result() alone."""
 
     def submit(self, function, *arguments):
-        return Future(function, arguments)
+        return types.SimpleNamespace(result=lambda: function(*arguments))
 
 
 @pytest.fixture(scope="module")
@@ -96,7 +92,6 @@ def test_an_interrupted_sweep_stops_its_runs(tmp_path):
 
     def stop():
         raise KeyboardInterrupt
-
     long = tiny_case().set({"Sheet/length": "60 cm", "Time/end": "1 s"})
     with Stopping(1) as executor, pytest.raises(KeyboardInterrupt):
         latcon.sweep(long, {"Loading/strain y": STRAINS}, tmp_path / "out", executor=executor, skip_verification=True, progress=False)

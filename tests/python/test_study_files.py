@@ -118,11 +118,10 @@ def test_plans_differ_in_words():
     plan = [planned("a", 1), planned("b", 1)]
     stored = plan_text("t", plan, False, 2)
     assert plan_difference(stored, plan_text("t", plan, False, 0)) == ""
-    assert "another study, 't'" in plan_difference(stored, plan_text("u", plan, False, 2))
-    assert "--skip-verification" in plan_difference(stored, plan_text("t", plan, True, 2))
-    assert "begun with 2 shards" in plan_difference(stored, plan_text("t", plan, False, 3))
-    assert "the case of run c-1 differs" in plan_difference(stored, plan_text("t", [plan[0], planned("c", 1)], False, 2))
-    assert "it has 2 runs, now there are 1" in plan_difference(stored, plan_text("t", plan[:1], False, 2))
+    for said, *now in (("another study, 't'", "u", plan, False, 2), ("--skip-verification", "t", plan, True, 2),
+                       ("begun with 2 shards", "t", plan, False, 3), ("it has 2 runs, now there are 1", "t", plan[:1], False, 2),
+                       ("the case of run c-1 differs", "t", [plan[0], planned("c", 1)], False, 2)):
+        assert said in plan_difference(stored, plan_text(*now))
     assert "damaged" in plan_difference("[", plan_text("t", plan, False, 2))
 
 
@@ -132,7 +131,6 @@ def test_pool_runs_all_jobs_and_keeps_its_limit(tmp_path):
     def waiting(running):
         nonlocal largest
         largest = max(largest, len(running))
-
     commands = [["/bin/sh", "-c", text] for text in ("echo one; sleep 0.2", "exit 3", "kill -9 $$", "sleep 0.2")] + [["/nowhere/no"]]
     assert run_processes(5, 2, lambda job: (commands[job], str(tmp_path / f"{job}.txt")), ended.__setitem__, waiting, lambda: False)
     assert ended == {0: 0, 1: 3, 2: 137, 3: 0, 4: 127} and largest == 2
@@ -145,7 +143,6 @@ def test_pool_ends_its_children_when_it_is_stopped_or_fails(tmp_path):
     def waiting(running):
         if time.monotonic() - begin > 0.3:
             raise ValueError
-
     command = [sys.executable, "-c", "import time; time.sleep(60)"], str(tmp_path / "log.txt")
     assert not run_processes(2, 1, lambda job: command, lambda job, status: ended.append(job), lambda running: None,
                              lambda: time.monotonic() - begin > 0.3)

@@ -9,8 +9,7 @@ from latcon.study.command import refined_runs
 from latcon.study.outcome import RunOutcome, RunState, statistics
 from latcon.study.plan import PlannedRun
 from latcon.study.record import table_of_rows
-from latcon.study.statistical_tests import SampleMean, adjust_by_holm, isotonic_test, level_probabilities, welch_p_value
-from latcon.study.statistical_tests import fit_onset
+from latcon.study.statistical_tests import SampleMean, adjust_by_holm, fit_onset, isotonic_test, level_probabilities, welch_p_value
 from latcon.study.study_file import Rule, Study, StudyRow, StudyRun
 from latcon.study.table import Verdict, judge
 
@@ -62,7 +61,6 @@ def test_isotonic_test_finds_trends_as_often_as_it_says():
     def shares(means):
         tests = [isotonic_test([drawn(generator, mean, 3) for mean in means], levels) for _ in range(3000)]
         return np.mean(np.array(tests) <= 0.05, axis=0)
-
     flat = shares([0, 0, 0, 0])
     assert np.all((0.03 < flat) & (flat < 0.066))
     rise, fall = shares([0, 2, 4, 4])

@@ -6,16 +6,15 @@ import shutil
 import numpy as np
 import pytest
 
-from program import CASES, checkpoints, files, latcon, latcon_on_ranks, numbers
+from program import CASES, checkpoints, files, latcon, latcon_on_ranks, numbers, settings
 
 SPECTRUM = CASES / "spectrum.prm"
-STRIP = ["fracture", SPECTRUM, "--skip-verification", "--no-report", "--quiet", "--set", "Sheet/length=2.5 cm", "--set",
-         "Sheet/height=1 cm", "--set", "Near tip/interval=0"]
-MOTION = [word for entry in (
-    "Continuum/solution=motion", "Continuum/law=cauchy-born", "Continuum/gradient=none", "Continuum/cells x=6",
-    "Continuum/cells y=4", "Continuum/degree=2", "Continuum/time step=5 us", "Initial state/base=loading",
-    "Initial state/velocity y=20*sin(pi*x/0.03)*sin(pi*y/0.015)", "Time/end=0.1 ms", "Output/frame interval=0.05 ms",
-    "Checkpoints/steps=7") for word in ("--set", entry)]
+STRIP = ["fracture", SPECTRUM, "--skip-verification", "--no-report", "--quiet",
+         *settings("Sheet/length=2.5 cm", "Sheet/height=1 cm", "Near tip/interval=0")]
+MOTION = settings(
+    "Continuum/solution=motion", "Continuum/law=cauchy-born", "Continuum/gradient=none", "Continuum/cells x=6", "Continuum/cells y=4",
+    "Continuum/degree=2", "Continuum/time step=5 us", "Initial state/base=loading", "Initial state/velocity y=20*sin(pi*x/0.03)*sin(pi*y/0.015)",
+    "Time/end=0.1 ms", "Output/frame interval=0.05 ms", "Checkpoints/steps=7")
 BRANCHES = [f"{shell}_branch_{i}" for shell in ("nearest", "next_nearest") for i in (1, 2, 3)]
 
 
@@ -57,12 +56,10 @@ def test_automatic_step_of_finite_elements_resolves_waves_and_relaxation():
               "Continuum/cells y=12", *(f"{shell}/area factor={2 / 3}" for shell in shells)]
     elastic = [f"{shell}/{entry}=" for shell in shells for entry in ("branch moduli", "relaxation times")]
     for entries, expected in (([], 0.1 * shortest), (elastic, 0.5 * 0.015 / 12 / longitudinal_speed)):
-        words = [word for entry in motion + entries for word in ("--set", entry)]
-        run = latcon("continuum", SPECTRUM, "--dry-run", *words)
+        run = latcon("continuum", SPECTRUM, "--dry-run", *settings(*motion, *entries))
         step = float(re.search(r"^# motion: time step (\S+) s", run.stdout, re.M).group(1))
         assert step <= expected * (1 + 1e-5)
-        assert 1 / step > 1 / expected * (1 - 1e-5)
-        assert 1 / step < 1 / expected + 1 / end  # the last step ends at the end
+        assert 1 / expected * (1 - 1e-5) < 1 / step < 1 / expected + 1 / end  # the last step ends at the end
 
 
 def test_motion_of_finite_elements_records_and_resumes_branches(out, tmp_path):
@@ -71,8 +68,7 @@ def test_motion_of_finite_elements_records_and_resumes_branches(out, tmp_path):
     assert not any(first[f"{name}_stored"] for name in BRANCHES)
     # The step resolves the motion to (w h)^2 / 12 with w h = 0.3 for waves as long as two cells.
     assert abs(last["imbalance"]) < 0.01 * first["kinetic"]
-    stopped = tmp_path / "stopped"
-    shutil.copytree(out, stopped)
+    stopped = shutil.copytree(out, tmp_path / "stopped")
     for late in checkpoints(stopped)[1:]:
         late.unlink()
     latcon("continuum", SPECTRUM, *MOTION, "--resume", "--output-dir", stopped)
@@ -92,18 +88,14 @@ def test_motion_of_finite_elements_records_and_resumes_branches(out, tmp_path):
 def test_memory_is_estimated():
     def estimate(n):
         """Sites, and bytes beside those of the program, of a sheet whose bonds have n branches each."""
-        lists = {"branch moduli": ", ".join(["1 MPa"] * n), "relaxation times": ", ".join(["1 ms"] * n)}
-        entries = [word for section in ("Nearest neighbours", "Next-nearest neighbours") for key, value in lists.items()
-                   for word in ("--set", f"{section}/{key}={value}")]
-        text = latcon("fracture", SPECTRUM, "--dry-run", "--set", "Sheet/length=30 cm", "--set", "Sheet/height=15 cm",
-                      *entries).stdout
+        lists = [f"{section}/{key}={', '.join([value] * n)}" for section in ("Nearest neighbours", "Next-nearest neighbours")
+                 for key, value in (("branch moduli", "1 MPa"), ("relaxation times", "1 ms"))]
+        text = latcon("fracture", SPECTRUM, "--dry-run", *settings("Sheet/length=30 cm", "Sheet/height=15 cm", *lists)).stdout
         peak, own = re.search(r"^# memory: about (\d+) bytes .* itself takes (\d+) bytes", text, re.M).groups()
         return int(re.search(r"^# lattice: (\d+) sites", text, re.M)[1]), int(peak) - int(own)
-
     (sites, none), (_, three), (_, sixteen) = map(estimate, (0, 3, 16))
     # n + 1 numbers for each of six bonds per place of the state, of its snapshot and of three frames that are not yet written, of
     # which some have no site: 960 bytes for three branches.
     places = (three - none) / 960
-    assert places > sites
-    assert places < 1.06 * sites
+    assert sites < places < 1.06 * sites
     assert sixteen - none == pytest.approx(5 * 17 * 6 * 8 * places, abs=10)

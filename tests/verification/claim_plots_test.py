@@ -16,7 +16,6 @@ from latcon.files import read_columns
 from latcon.report.claim_plots import MODULES, all_plots
 from latcon.report.claim_tables import Table, fitted_order, groups, largest_text, range_text
 
-
 TABLES = [name for plot in all_plots() for name in (plot.name, *plot.others)]
 decay_of = MODULES["intrinsic-length"].decay_of
 # In the order in which they are checked.

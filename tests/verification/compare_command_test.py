@@ -10,11 +10,11 @@ import pytest
 from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
 from vtkmodules.vtkFiltersCore import vtkProbeFilter
 
-from program import CASES, frames, latcon, latcon_on_ranks, read, read_csv
+from program import CASES, expect_same, files, frames, latcon, latcon_on_ranks, read, read_csv, settings
 
 FIELDS = ["displacement", "deformation_gradient", "first_piola_stress", "cauchy_stress", "strain_energy_density"]
-SMALL = ["--set", "Sheet/length=2 cm", "--set", "Sheet/height=1.5 cm", "--set", "Loading/strain y=0.3", "--set", "Loading/strain x=0.1"]
-MOTION = ["--set", "Time/end=0.02 ms", "--set", "Output/frame interval=0"]
+SMALL = settings("Sheet/length=2 cm", "Sheet/height=1.5 cm", "Loading/strain y=0.3", "Loading/strain x=0.1")
+MOTION = settings("Time/end=0.02 ms", "Output/frame interval=0")
 
 
 def sites_of(folder):
@@ -27,9 +27,8 @@ def found(folder):
 
 @pytest.fixture(scope="module")
 def once(module_path):
-    made = types.SimpleNamespace()
     runs = module_path
-    made.runs, made.lattice, made.continuum = runs, runs / "lattice", runs / "continuum"
+    made = types.SimpleNamespace(runs=runs, lattice=runs / "lattice", continuum=runs / "continuum")
     # The continuum has free sides and the lattice has not, which produces a difference.
     for command, out, ranks, entries in [
             ("lattice", made.lattice, 1, []), ("continuum", made.continuum, 1, []),
@@ -54,10 +53,9 @@ def refused(out, parts, *arguments):
 
 # The sites of a periodic lattice stop half a spacing or a whole one short of its ends.
 def test_periodic_sheets_are_the_same_sheet(tmp_path, out):
-    periodic = [word for side in ("Left", "Right") for word in ("--set", f"{side} edge/condition=periodic")]
+    sheet = [word.replace("x=0.1", "x=0") for word in SMALL] + settings("Left edge/condition=periodic", "Right edge/condition=periodic")
     for command in ("lattice", "continuum"):
-        latcon(command, CASES / "quick.prm", "--quiet", "--output-dir", tmp_path / command, *periodic,
-               *(word.replace("x=0.1", "x=0") for word in SMALL))
+        latcon(command, CASES / "quick.prm", "--quiet", "--output-dir", tmp_path / command, *sheet)
     compare(out, tmp_path / "lattice", tmp_path / "continuum", "--tolerance", "displacement=1e-6")
     assert found(out)["sites outside the finite element sheet"]["lattice"] == "0"
 
@@ -140,11 +138,9 @@ def test_a_part_of_the_sheet_is_compared_where_both_are(tmp_path, once, out):
 
 def test_ranks_leave_no_trace(once, tmp_path, out):
     compare(out, once.lattice, once.continuum)
-    names = ["difference.pvd", "difference_sites.vtp", "difference_continuum.vtu", "results.json", "results.csv"]
-    one = {name: (out / name).read_bytes() for name in names}
+    assert {"difference.pvd", "difference_sites.vtp", "difference_continuum.vtu", "results.json", "results.csv"} <= files(out).keys()
     latcon_on_ranks(2, "compare", once.lattice, once.continuum, "--output-dir", tmp_path / "ranks")
-    for name in names:
-        assert one[name] == (tmp_path / "ranks" / name).read_bytes(), name
+    expect_same(tmp_path / "ranks", files(out))
 
 
 def test_motions_end_at_the_same_time(once, out):

@@ -22,29 +22,28 @@ def command(folder, *more, entries=None, side="continuum"):
 
 
 def run_to_end(out, *more, **keywords):
-    return latcon(*command(out, *more, **keywords))
+    """@return its folder"""
+    latcon(*command(out, *more, **keywords))
+    return out
 
 
 @pytest.fixture(scope="module")
 def whole(module_path):
     """Folder of an undisturbed crack, which tests leave as it is."""
-    run_to_end(module_path / "whole", "--no-report", "--threads", "2")
-    return module_path / "whole"
+    return run_to_end(module_path / "whole", "--no-report", "--threads", "2")
 
 
 @pytest.fixture(scope="module")
 def on_lattice(module_path):
     """The same crack of the lattice."""
-    run_to_end(module_path / "lattice", "--no-report", side="lattice")
-    return module_path / "lattice"
+    return run_to_end(module_path / "lattice", "--no-report", side="lattice")
 
 
 @pytest.mark.parametrize("more", [{}, {"Third-nearest neighbours/present": "true", "Third-nearest neighbours/viscosity": "50 Pa s",
                                   "Sheet/orientation": "rows-across-crack"}])
 def test_six_directions_at_the_spacing_of_the_lattice_are_the_lattice(out, tmp_path, more):
-    run_to_end(out, "--no-report", side="lattice", entries=more)
-    run_to_end(tmp_path / "nonlocal", "--no-report", entries=more | THE_LATTICE)
-    expected, found = files(out), files(tmp_path / "nonlocal")
+    expected = files(run_to_end(out, "--no-report", side="lattice", entries=more))
+    found = files(run_to_end(tmp_path / "nonlocal", "--no-report", entries=more | THE_LATTICE))
     assert {"crack.csv", "broken_bonds.csv", "energy.csv", "near_tip.json", "lattice-0002.vtp"} <= expected.keys()
     for name in ("crack.json", "results.json", "results.csv", "case.prm"):  # they name the side, or its entries
         expected.pop(name, None), found.pop(name, None)
@@ -77,8 +76,7 @@ def test_files(whole, out):
 @pytest.fixture(scope="module")
 def scattered(module_path):
     """The undisturbed crack between scattered points."""
-    run_to_end(module_path / "scattered", "--no-report", "--threads", "2", entries=SHORT)
-    return module_path / "scattered"
+    return run_to_end(module_path / "scattered", "--no-report", "--threads", "2", entries=SHORT)
 
 
 def test_frames_and_bonds_are_where_scattered_points_are(scattered):
@@ -130,8 +128,7 @@ def test_study_of_both_sides(tmp_path, out):
 
     def study(*more):
         path.write_text(json.dumps(document))
-        run = latcon("study", path, "--skip-verification", "--no-report", "--output-dir", out, *more)
-        return run.stdout
+        return latcon("study", path, "--skip-verification", "--no-report", "--output-dir", out, *more).stdout
 
     def sides():
         cracks = [json.loads((out / "runs" / f"{name}-1" / "crack.json").read_text()) for name in ("rings", "bonds")]

@@ -3,13 +3,12 @@ import numpy as np
 import pytest
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from program import CASES, frames, latcon, read, read_csv, unit
+from program import CASES, frames, latcon, read, read_csv, settings, unit
 
 LENGTH, STOP = 25e-3, 20e-3  # [m]
 MOTION_FRAMES = 10
 STRIP = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report", "--quiet",
-         "--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=1.5 ms",
-         "--set", "Output/frame interval=0.4 ms", "--set", "Fracture/stop position=0.8"]
+         *settings("Sheet/length=2.5 cm", "Sheet/height=1.5 cm", "Time/end=1.5 ms", "Output/frame interval=0.4 ms", "Fracture/stop position=0.8")]
 
 
 @pytest.fixture(scope="module")
@@ -22,15 +21,13 @@ def test_motion_follows_the_tip(once):
     motion = frames(once / "motion.pvd")
     times = [time for time, _ in motion]
     assert times == sorted(set(times))
-    assert times[0] == 0.0
-    assert times[-1] == frames(once / "lattice.pvd")[-1][0]  # to the last digit
+    assert (times[0], times[-1]) == (0.0, frames(once / "lattice.pvd")[-1][0])  # to the last digit
     tip = read_csv(once / "crack.csv")
     reached = [max(float(row["X"]) for row in tip if float(row["t"]) <= time) for time in times]
     assert reached[-1] > STOP  # so it passed all positions
     # One frame each time the tip passes another tenth of its way; a jump may skip some of them.
     pitch = (STOP - reached[0]) / MOTION_FRAMES
-    assert len(motion) > 0.7 * MOTION_FRAMES
-    assert len(motion) <= MOTION_FRAMES + 2
+    assert 0.7 * MOTION_FRAMES < len(motion) <= MOTION_FRAMES + 2
     tenths = [int((X - reached[0]) / pitch * (1 + 1e-12)) for X in reached[:-1]]
     assert tenths == sorted(set(tenths))
 
@@ -55,12 +52,10 @@ def test_none_are_written_if_none_are_wanted(once):
 
 
 def test_paraview_shows_stretch_and_warps_by_displacement(once):
-    sheet = read(frames(once / "lattice.pvd")[-1][1])
+    sheet, motion = (read(frames(once / name)[-1][1]) for name in ("lattice.pvd", "motion.pvd"))
     assert sheet.GetCellData().GetScalars().GetName() == "stretch"
-    assert sheet.GetPointData().GetVectors().GetName() == "displacement"
-    motion = read(frames(once / "motion.pvd")[-1][1])
-    assert motion.GetPointData().GetScalars().GetName() == "displacement"
-    assert motion.GetPointData().GetVectors().GetName() == "displacement"
+    for shown in (sheet.GetPointData().GetVectors(), motion.GetPointData().GetScalars(), motion.GetPointData().GetVectors()):
+        assert shown.GetName() == "displacement"
 
 
 def test_a_site_has_the_mean_stretch_of_its_bonds(once):

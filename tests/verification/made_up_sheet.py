@@ -52,7 +52,6 @@ def write_torn_sheet(folder):
         lost = [b for b in across if breaks[b] <= time or b in seed]
         gone = np.bincount(bonds[lost].ravel(), minlength=len(reference))
         return {"displacement": moved, "velocity": velocity, "damage": gone / degree, "site": site, "cauchy_stress": opening(1e4 + open_by)}
-
     whole = {}
     for name, time, number in (("lattice-0000.vtp", 0.0, 0), ("lattice-0001.vtp", times[-1], FRAMES - 1)):
         values = fields(time, number)

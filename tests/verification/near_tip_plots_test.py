@@ -23,10 +23,8 @@ def write_field(path, backward=3.0, without=()):
     disc = np.hypot(X - 8e-3, Y) < 5e-3
     fields = {
         "displacement": np.stack(((STRETCH - 1) * X, (STRETCH - 1) * Y, zero), axis=-1),
-        "velocity": np.stack((np.where(disc, -backward, np.where(X < -2e-3, 10.0, 0.0)), 10 * np.sign(Y), zero),
-                             axis=-1),
-        "cauchy_stress": np.stack([*[zero] * 4, 1e5 * (1 + np.exp(-(X**2 + Y**2) / 1e-5)), *[zero] * 4], axis=-1),
-    }
+        "velocity": np.stack((np.where(disc, -backward, np.where(X < -2e-3, 10.0, 0.0)), 10 * np.sign(Y), zero), axis=-1),
+        "cauchy_stress": np.stack([*[zero] * 4, 1e5 * (1 + np.exp(-(X**2 + Y**2) / 1e-5)), *[zero] * 4], axis=-1)}
     occupancy = np.where((X < 0) & (np.abs(Y) < 2.5e-3), 0.2, 1.0)
     for values in fields.values():
         values[occupancy == 0.2] = np.nan

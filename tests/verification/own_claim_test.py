@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from program import CASES, FULL, latcon
+from program import CASES, FULL, latcon, settings
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 EXAMPLE = ROOT / "examples" / "own-claim"
@@ -46,11 +46,9 @@ def test_command_line_knows_it():
 
 @pytest.mark.skipif(not FULL, reason="in full only")  # gate_test.py: a crack waits for all claims with the property above
 def test_crack_is_verified_with_it(out):
-    words = ["fracture", CASES / "quick.prm", "--no-report", "--output-dir", out]
-    for setting in ("Sheet/length=2.5 cm", "Sheet/height=1.5 cm", "Time/end=0.01 ms", "Next-nearest neighbours/present=false"):
-        words += ["--set", setting]
+    short = settings("Sheet/length=2.5 cm", "Sheet/height=1.5 cm", "Time/end=0.01 ms", "Next-nearest neighbours/present=false")
     for reused in (False, True):
-        latcon(*words)
+        latcon("fracture", CASES / "quick.prm", "--no-report", "--output-dir", out, *short)
         assert json.loads((out / "run.json").read_text())["verification"]["reused"] == reused
         rows = json.loads((out / "results.json").read_text())["claims"]
         assert CLAIM in {row["claim"] for row in rows}

@@ -8,12 +8,12 @@ import subprocess
 import numpy as np
 import pytest
 
-from program import CASES, LATCON, latcon, numbers
+from program import CASES, LATCON, ended, latcon, numbers, settings
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+GENT_LAW = (SOURCE / "examples/own-laws/gent_law.c").read_text()
 # A crack that takes a second.
-TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=0.6 ms", "--no-report",
-        "--skip-verification"]
+TINY = [*settings("Sheet/length=2.5 cm", "Sheet/height=1.5 cm", "Time/end=0.6 ms"), "--no-report", "--skip-verification"]
 GENT = "mu = 0.25 MPa, Jm = 120"
 MOONEY_RIVLIN = {"law": "expression", "psi": "a*(lam^2/2 + 1/lam) + k/2*(2*lam + lam^-2)", "parameters": "k = 0.15 MPa"}
 
@@ -30,14 +30,14 @@ def crack(tmp_path, name, *options, **entries):
 
 
 def refused(tmp_path, part, *options, **entries):
-    ended = latcon("fracture", CASES / "quick.prm", *TINY, *bonds(**entries), *options, "--output-dir", tmp_path / "bad", expect=2)
-    assert part in ended.stderr
+    run = latcon("fracture", CASES / "quick.prm", *TINY, *bonds(**entries), *options, "--output-dir", tmp_path / "bad", expect=2)
+    assert part in run.stderr
     assert not (tmp_path / "bad").exists()
 
 
-def library(tmp_path, name, *flags, text=None):
+def library(tmp_path, name, *flags, text=GENT_LAW):
     source = tmp_path / f"{name}.c"
-    source.write_text(text or (SOURCE / "examples/own-laws/gent_law.c").read_text())
+    source.write_text(text)
     library = tmp_path / f"{name}.so"
     subprocess.run(["cc", "-O1", "-shared", "-fPIC", "-I", SOURCE, *flags, source, "-o", library, "-lm"], check=True)
     return library
@@ -86,8 +86,8 @@ def test_claims_need_the_law_up_to_their_largest_stretch(tmp_path):
             "--set", "Fracture/breaking stretch=2.9", *bonds(**law), "--output-dir", tmp_path / "bad")
     sweep = ("--sweep", "Sheet/height=1 cm,1.5 cm", *case)
     for command in (("fracture", *case), ("verify", "energy", "--quick", "--case", *case), ("study", *sweep), ("batch", "--slurm", *sweep)):
-        ended = latcon(*command, expect=2)
-        assert "claims evaluate the law at stretches up to 3.5: psi is nan at stretch 3.2" in ended.stderr
+        run = latcon(*command, expect=2)
+        assert "claims evaluate the law at stretches up to 3.5: psi is nan at stretch 3.2" in run.stderr
         assert not (tmp_path / "bad").exists()
     for command in (("fracture", *case), ("study", *sweep)):
         latcon(*command, "--skip-verification", "--dry-run")
@@ -101,9 +101,8 @@ def test_claims_hold(tmp_path):
 
 
 def test_force_is_compared_with_the_derivatives(tmp_path):
-    text = (SOURCE / "examples/own-laws/gent_law.c").read_text()
-    wrong = text.replace("  return mu * (lam", "  return (1. + 1e-3 * (lam > 2.3)) * mu * (lam")
-    assert text != wrong
+    wrong = GENT_LAW.replace("  return mu * (lam", "  return (1. + 1e-3 * (lam > 2.3)) * mu * (lam")
+    assert GENT_LAW != wrong
     refused(tmp_path, "psi' is", law="library", library=library(tmp_path, "wrong", text=wrong), parameters=GENT)
 
 
@@ -114,11 +113,10 @@ def test_library_is_part_of_the_case(tmp_path):
         latcon("lattice", CASES / "quick.prm", "--set", "Sheet/length=8 mm", "--set", "Sheet/height=6 mm",
                *bonds(law="library", library=gent, parameters=GENT), "--output-dir", tmp_path / name)
         return json.loads((tmp_path / name / "run.json").read_text())["case_hash"]
-
     first = case_hash("first")
     library(tmp_path, "gent", "-DANOTHER=1", "-O0")  # in its place
-    ended = latcon("lattice", tmp_path / "first" / "case.prm", "--output-dir", tmp_path / "second", expect=2)
-    assert "Nearest neighbours/library sha256" in ended.stderr
+    run = latcon("lattice", tmp_path / "first" / "case.prm", "--output-dir", tmp_path / "second", expect=2)
+    assert "Nearest neighbours/library sha256" in run.stderr
     assert re.search(r"library sha256 *= [0-9a-f]{64}", (tmp_path / "first" / "case.prm").read_text())
     assert case_hash("third") != first
 
@@ -134,16 +132,14 @@ def test_all_ranks_need_the_same_library(tmp_path):
             *bonds(law="library", library="gent.so", parameters=GENT)]
     for other in ("two", "none"):
         ranks = [["-n", 1, "--wdir", tmp_path / folder, LATCON, *case] for folder in ("one", other)]
-        command = ["mpirun", "--oversubscribe", *ranks[0], ":", *ranks[1]]
-        ended = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=600)
-        assert ended.returncode == 2, ended.stderr
-        assert "the ranks find different libraries, or some none" in ended.stderr
+        command = map(str, ["mpirun", "--oversubscribe", *ranks[0], ":", *ranks[1]])
+        run = ended(subprocess.run(list(command), capture_output=True, text=True, timeout=600), expect=2)
+        assert "the ranks find different libraries, or some none" in run.stderr
         assert not (tmp_path / "ranks").exists()
 
 
 def test_large_library(tmp_path):
-    large = library(tmp_path, "large", text=(SOURCE / "examples/own-laws/gent_law.c").read_text() +
-                         "\nconst char ballast[20 << 20] = {1};\n")
+    large = library(tmp_path, "large", text=GENT_LAW + "\nconst char ballast[20 << 20] = {1};\n")
     assert large.stat().st_size > 20 << 20
     latcon("fracture", CASES / "quick.prm", *TINY, "--dry-run", *bonds(law="library", library=large, parameters=GENT))
 
@@ -154,10 +150,8 @@ def test_large_library(tmp_path):
     # The entries a, b and modulus belong to other laws.
     ("the library needs 'modulus'", '"mu Jm"', '"modulus Jm"', "Jm = 120")])
 def test_unusable_libraries_are_refused(tmp_path, message, part, other, parameters):
-    text = (SOURCE / "examples/own-laws/gent_law.c").read_text()
-    assert part in text
-    refused(tmp_path, message, law="library", library=library(tmp_path, "wrong", text=text.replace(part, other)),
-            parameters=parameters)
+    assert part in GENT_LAW
+    refused(tmp_path, message, law="library", library=library(tmp_path, "wrong", text=GENT_LAW.replace(part, other)), parameters=parameters)
 
 
 @pytest.mark.parametrize("message, parameters", [

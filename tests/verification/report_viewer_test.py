@@ -131,10 +131,8 @@ class TestViewer:
             site, *numbers, first, second, stretch = match.groups()
             X, Y, x, y, speed, damage = map(float, numbers)
             point = file.point[int(site)]
-            for shown, value in zip((X, Y), file.reference[point]):
-                assert shown / 100 == pytest.approx(value, abs=1.001 * PLACE[0])
-            for shown, value in zip((x, y), file.place[point]):
-                assert shown / 100 == pytest.approx(value, abs=1.001 * sum(PLACE))
+            assert (X / 100, Y / 100) == pytest.approx(tuple(file.reference[point]), abs=1.001 * PLACE[0])
+            assert (x / 100, y / 100) == pytest.approx(tuple(file.place[point]), abs=1.001 * sum(PLACE))
             assert speed == pytest.approx(file.speed[point], abs=1.001 * (SPEED + speed_step))
             pointers.append(pointer)
             places.append((file.reference if configuration == "undeformed" else file.place)[point])
@@ -217,7 +215,6 @@ def test_both_sheets_show_the_same_time(tmp_path, browser):
 
     def shown():
         return browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.frame)")
-
     for moved in (0, 1):
         for frame, time in enumerate(times[moved]):
             browser.value(f"(() => {{ const s = document.querySelectorAll('.viewer .slider')[{moved}];"
@@ -262,6 +259,5 @@ def test_a_sheet_takes_no_more_than_it_may(tmp_path):
     fewer = sheet_data.sheet_data(run, motion, most)
     assert len(fewer.text) <= most
     assert len(fewer.contents["times"]) >= sheet_data.FEWEST_FRAMES
-    for end in (0, -1):
-        assert fewer.contents["times"][end] == motion.frames[end].time
+    assert [fewer.contents["times"][end] for end in (0, -1)] == [motion.frames[end].time for end in (0, -1)]
     assert sheet_data.sheet_data(run, motion, most // 20) is None

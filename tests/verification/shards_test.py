@@ -38,7 +38,7 @@ class TestShards(Studies):
         assert wait_for(lambda: list((self.out / "runs").glob("*[0-9]")), shard)
         shard.send_signal(signal.SIGTERM)
         assert shard.wait(120) == 130
-        measured = [path for path in (self.out / "runs").glob("*[0-9]")]
+        measured = list((self.out / "runs").glob("*[0-9]"))
         assert len(measured) in range(1, RUNS)
         before = measured[0].stat().st_mtime_ns
         printed = self.study("--collect", expect=2)
@@ -100,8 +100,7 @@ class TestShards(Studies):
         tools.mkdir()
         (tools / "scontrol").write_text(f'#!/bin/sh\necho "$@" >>{self.folder}/requeued\n')
         (tools / "scontrol").chmod(0o755)
-        environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "SLURM_ARRAY_JOB_ID": "42",
-                       "SLURM_ARRAY_TASK_ID": "1"}
+        environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "SLURM_ARRAY_JOB_ID": "42", "SLURM_ARRAY_TASK_ID": "1"}
         part = self.out / "runs" / "base-1.part"
         with subprocess.Popen(["bash", self.out / "batch/runs.sh"], env=environment) as task:
             assert wait_for((part / "lattice-0000.vtp").exists, task)

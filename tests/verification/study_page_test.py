@@ -22,8 +22,7 @@ QUANTITIES = {quantity: None for quantity, *_ in MEASURED + NEAR_TIP} | {"speed_
 def made_up_seed(run, seed, pattern, state="measured", **values):
     """A seed in the format of study.json."""
     return {"run": run, "seed": seed, "folder": f"runs/{run}-{seed}", "state": state, "problem": "", "exit_code": 0,
-            "pattern": pattern, "reason": "", "sites": 96,
-            "values": {**QUANTITIES, **values}}
+            "pattern": pattern, "reason": "", "sites": 96, "values": {**QUANTITIES, **values}}
 
 
 def made_up_row(runs, quantity, verdict="reported", against=None, **more):

@@ -92,8 +92,7 @@ class TestStudy(Studies):
     def test_resume_repeats_nothing_and_gives_the_same_files(self, ended):
         before, first = self.times(), {name: self.text(name) for name in ("study.json", "study.csv", "results.json")}
         assert "0 runs, 4 are finished already" in self.study("--resume")
-        assert self.times() == before
-        assert {name: self.text(name) for name in first} == first
+        assert (self.times(), {name: self.text(name) for name in first}) == (before, first)
 
     def test_claims_are_no_part_of_the_runs(self, ended):
         def change(document):  # a straight crack has no wavelength
@@ -130,12 +129,11 @@ class TestStudy(Studies):
     def test_resume_repeats_what_would_come_out_differently(self, ended):
         before = self.times()
 
-        def change(document):
-            document["runs"]["low"]["set"]["Sheet/height"] = "1.1 cm"
         info = self.out / "runs" / "thin-1" / "run.json"
         document = json.loads(info.read_text())
         info.write_text(json.dumps(dict(document, program_hash="0" * 64)))
-        assert "2 runs, 2 are finished already" in self.study("--resume", change=change)
+        assert "2 runs, 2 are finished already" in self.study(
+            "--resume", change=lambda document: document["runs"]["low"]["set"].update({"Sheet/height": "1.1 cm"}))
         after = self.times()
         assert [name for name in FOLDERS if after[name] != before[name]] == ["low-1", "thin-1"]
 
@@ -185,8 +183,7 @@ class TestStudy(Studies):
             most_at_once = max(most_at_once, len(runs))
             seen |= {tuple(words) for words in runs}
             time.sleep(0.01)
-        assert process.returncode == 0
-        assert most_at_once == 2
+        assert (process.returncode, most_at_once) == (0, 2)
         assert len(seen) == 4 and all(words[words.index("--threads") + 1] == "1" for words in seen)
         for name in FOLDERS:
             case = self.text(f"runs/{name}/case.prm")
@@ -198,23 +195,17 @@ class TestStudy(Studies):
         printed = self.study("--quick", skip=False, expect=3, change=lambda document: document.update({"set": BOTH_NEIGHBOURS}))
         assert re.search("claims: (checked now|verdicts of .*, reused)", printed)
         document = json.loads(self.text("study.json"))
-        assert document["quick"]
-        assert document["left_out"] == ["thin"]
+        assert (document["quick"], document["left_out"]) == (True, ["thin"])
         assert "base case alone" in document["verification"]
-        info = json.loads(self.text("runs/low-1/run.json"))
-        assert info["skip_verification"]
-        assert not json.loads(self.text("run.json"))["skip_verification"]
+        assert [json.loads(self.text(name))["skip_verification"] for name in ("runs/low-1/run.json", "run.json")] == [True, False]
 
     def test_quick_study_of_a_refused_base_runs_nothing(self):
-        def change(document):
-            document["set"].update(BUCKLED)
-        self.study("--quick", change=change, skip=False, expect=3)
+        self.study("--quick", change=lambda document: document["set"].update(BUCKLED), skip=False, expect=3)
         assert not (self.out / "runs").exists()
 
     def test_dry_run_lists_the_runs(self):
         printed = self.study("--dry-run")
-        for name in FOLDERS:
-            assert name in printed
-        assert "4 runs" in printed
+        for part in (*FOLDERS, "4 runs"):
+            assert part in printed
         assert not self.out.exists()
         assert "fig1-15" in latcon("study", "paper", "--dry-run").stdout

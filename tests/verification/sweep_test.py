@@ -9,7 +9,7 @@ from pathlib import Path
 import PIL
 import pytest
 
-from program import CASES, LATCON
+from program import CASES, LATCON, ended
 from studies import TINY, Studies, files_in, run, write_study
 
 SMALL = [word for entry, value in TINY["set"].items() for word in ("--set", f"{entry}={str(value).lower()}")]
@@ -22,9 +22,8 @@ class Small(Studies):
         words = [command, *arguments, "--skip-verification", *["--no-report"] * (command == "study" and not page)]
         if not launcher:
             return run(*words, expect=expect, **keywords)
-        ended = subprocess.run([*launcher, LATCON, *map(str, words)], capture_output=True, text=True, timeout=600, check=False)
-        assert ended.returncode == expect, ended.stdout + ended.stderr
-        return ended.stdout + ended.stderr
+        done = ended(subprocess.run([*launcher, LATCON, *map(str, words)], capture_output=True, text=True, timeout=600, check=False), expect)
+        return done.stdout + done.stderr
 
     def write_study(self, change=lambda document: None):
         def one_run(document):
@@ -77,7 +76,6 @@ class TestSweeps(Small):
         assert "0 runs, 4 are finished already" in self.run_study("sweep.json", "--resume", cwd=self.out)
         assert (self.out / "study.json").read_bytes() == result
         assert not (self.out / "output").exists()
-
         before = files_in(self.out)
         printed = self.run_study("quick", *SWEEP, "-o", self.out, expect=2)
         assert f"{self.out}/sweep.json differs from this sweep; to run the stored sweep: latcon study {self.out}" in printed
@@ -151,9 +149,7 @@ class TestTroubles(Small):
 
     @pytest.mark.usefixtures("needs_mount")
     def test_full_disk_loses_nothing(self):
-        def longer(document):
-            document["runs"]["high"] = {}
-        study = self.write_study(longer)
+        study = self.write_study(lambda document: document["runs"].update(high={}))
         self.run_study(study, "-o", self.out, "--quiet", "--threads", "1")
         expected = (self.out / "study.csv").read_bytes()
         high, low = (sum(-(-len(content) // 4096) * 4 for content in files_in(self.out / "runs" / name).values())
@@ -163,10 +159,8 @@ class TestTroubles(Small):
         # Room for the first run, which is the more expensive one, for its case and lists, and for half of the other.
         script = (f"mount -t tmpfs -o size={high + low // 2 + 100}k none {disk} || exit 77; \"$@\"; status=$?; "
                   f"cp -r {disk}/out {kept}; exit $status")
-        run = subprocess.run(["unshare", "-m", "sh", "-c", script, "sh", LATCON, "study", study, "-o", disk / "out",
-                              "--skip-verification", "--no-report", "--quiet", "--threads", "1"],
-                             capture_output=True, text=True, timeout=600, check=False)
-        assert run.returncode == 5, run.stdout + run.stderr
+        command = [LATCON, "study", study, "-o", disk / "out", "--skip-verification", "--no-report", "--quiet", "--threads", "1"]
+        run = ended(subprocess.run(["unshare", "-m", "sh", "-c", script, "sh", *command], capture_output=True, text=True, timeout=600), 5)
         assert "No space left on device" in run.stderr
         measured = list(kept.glob("runs/*-1/crack.json"))
         assert len(measured) == 1

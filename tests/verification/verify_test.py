@@ -12,12 +12,10 @@ import pytest
 import verification_page
 from documented import undocumented
 from made_up_claims import write_claims
-from program import CASES, FULL, claims_where, latcon, read_csv
+from program import CASES, FULL, claims_where, latcon, read_csv, settings
 
 quick_only = pytest.mark.skipif(FULL, reason="the quick versions are enough")
-
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "verification.csv"
-
 TABLES = ("wave_speeds", "attenuation", "dispersion", "dispersion_runs", "edge_layer", "hole", "notch", "sinusoidal_energy",
           "travelling_waves", "steady_crack")
 
@@ -48,8 +46,7 @@ def test_every_claim_holds(verified, tmp_path):
     # A tolerance without its reason says nothing; a crack waits for all rows that are judged.
     assert [row["quantity"] for row in rows if row["tolerance"] is not None and not row["reason"]] == []
     assert [row["quantity"] for row in rows if row["gate"] != (row["tolerance"] is not None)] == []
-    claims = json.loads((out / "claims.json").read_text())["claims"]
-    assert {claim["name"] for claim in claims} == claims_where("default")
+    assert {claim["name"] for claim in json.loads((out / "claims.json").read_text())["claims"]} == claims_where("default")
     for name in TABLES:
         assert len((out / f"{name}.csv").read_text().splitlines()) > 3, name
     # What holds for the program alone is kept as a crack keeps it, which then need not check it again.
@@ -74,9 +71,8 @@ def test_every_claim_holds(verified, tmp_path):
 
 
 # A sheet of nearest neighbours, compressed along x until the speed of shear waves along x vanishes: it buckles.
-BUCKLED = [word for setting in (
-    "Loading/strain x=-0.11", "Loading/strain y=0.75", "Next-nearest neighbours/present=false",
-    "Nearest neighbours/viscosity=0", "Next-nearest neighbours/viscosity=0") for word in ("--set", setting)]
+BUCKLED = settings("Loading/strain x=-0.11", "Loading/strain y=0.75", "Next-nearest neighbours/present=false",
+                   "Nearest neighbours/viscosity=0", "Next-nearest neighbours/viscosity=0")
 
 
 @quick_only
