@@ -96,10 +96,11 @@ def run_(out, *arguments, expect=0):
 def test_is_that_of_each_run(out):
     first = run_(out)
     assert log(out)[1:] == first.stdout.splitlines()
-    second = run_(out, "--set", "Loading/strain y=1.7")
+    other = ["--set", "Loading/strain y=1.7", "--set", "Checkpoints/steps=16"]
+    second = run_(out, *other)
     assert log(out)[1:] == second.stdout.splitlines()
     assert (out / "earlier-run/log.txt").read_text().splitlines()[1:] == first.stdout.splitlines()
-    third = run_(out, "--set", "Loading/strain y=1.7", "--resume")
+    third = run_(out, *other, "--resume")
     assert len([line for line in log(out) if line.startswith("$ ")]) == 2
     assert log(out)[-len(third.stdout.splitlines()):] == third.stdout.splitlines()
 
