@@ -54,7 +54,7 @@ Sums over_free_sites(const State &state, const TriangularLattice &lattice, const
 double relax(State &state, const TriangularLattice &lattice, const Material &material, double tolerance,
              std::size_t max_iterations)
 {
-  support::require(std::all_of(state.rollers.begin(), state.rollers.end(), [](std::uint8_t along) { return along == 0; }),
+  support::require(std::all_of(state.rollers.begin(), state.rollers.end(), [](auto along) { return along == 0; }),
                    "relaxation does not know rollers");
   // Constants of the cited paper.
   constexpr double initial_mixing = 0.1, mixing_decay = 0.99, speed_up = 1.1, slow_down = 0.5;

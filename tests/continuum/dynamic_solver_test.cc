@@ -232,6 +232,21 @@ TEST(DynamicSolver, ThrowsWithHistoryAndStaysWhenAStepFails)
     EXPECT_NE(std::string(failure.what()).find("not finite at X = (0.15, 0.05) m"), std::string::npos)
       << failure.what();
   }
+  // Each iteration is one of its own attempt.
+  DynamicSettings hasty = quadratic(1e-4);
+  hasty.max_newton_iterations = 0;
+  hasty.max_step_halvings = 1;
+  DynamicSolver hasty_solver(refusing.mesh, law, BoundaryConditions(), Inertia{density}, hasty);
+  start(hasty_solver, nullptr, Problem::velocity());
+  try
+  {
+    hasty_solver.step();
+    FAIL() << "no iteration was enough";
+  }
+  catch (const SolverFailed &failure)
+  {
+    EXPECT_EQ(failure.report().iterations.back().load_step, 2u) << failure.report().text();
+  }
 }
 
 // Both predictors of a whole step are refused. Its halves are solved, whole steps follow, and the energy balance over
