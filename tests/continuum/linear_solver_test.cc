@@ -68,9 +68,9 @@ struct Problem
                            [&](const continuum::Contribution &contribution)
                            {
                              dealii::FullMatrix<double> local = contribution.tangent;
-                             for (unsigned int a = 0; a < local.m(); ++a)
-                               for (unsigned int b = 0; b < local.n(); ++b)
-                                 local(a, b) *= scale(contribution.dofs[b]);
+                             for (unsigned int i = 0; i < local.m(); ++i)
+                               for (unsigned int j = 0; j < local.n(); ++j)
+                                 local(i, j) *= scale(contribution.dofs[j]);
                              sheet->homogeneous_constraints().distribute_local_to_global(local, contribution.dofs, K);
                            });
       K.compress(dealii::VectorOperation::add);

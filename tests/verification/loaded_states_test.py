@@ -7,7 +7,7 @@ import pathlib
 import pytest
 
 from lattice_states import ACCEPTED, Lattice, rod, spring
-from program import CASES, FULL, latcon, settings
+from program import CASES, FULL, claims_where, latcon, settings
 
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "limits.md"
 STRAINS_X = (-0.3, -0.15, 0.0, 0.3, 0.8, 1.3, 2.0, 3.0)
@@ -61,11 +61,12 @@ def test_states_of_the_fixture_are_accepted_or_refused_for_what_they_are(name, x
 
 @pytest.mark.skipif(not FULL, reason="long")
 def test_states_are_accepted_or_refused_for_what_they_are(out):
-    """The whole map with all claims; the sheets with a hole or a notch depend on the material alone."""
+    """The whole map with the claims that a crack waits for; the sheets with a hole or a notch depend on the material alone."""
+    claims = claims_where("before_fracture") - {"steady-crack"}
     for material, x, y in itertools.product(MATERIALS, STRAINS_X, STRAINS_Y):
         law, entries = MATERIALS[material]
         state = settings(f"Loading/strain x={x}", f"Loading/strain y={y}", "Fracture/breaking stretch=auto", *entries)
-        run = latcon("verify", "--quick", "--quiet", "--case", CASES / "quick.prm", "--output-dir", out, *state, expect=(0, 3))
+        run = latcon("verify", *claims, "--quick", "--quiet", "--case", CASES / "quick.prm", "--output-dir", out, *state, expect=(0, 3))
         assert check(out, law, x, y) == (run.returncode == 3), (material, x, y)
 
 

@@ -99,8 +99,7 @@ void record_exit_code(support::ExitCode exit_code, const std::string &message)
   const std::shared_ptr<Run::Record> record = std::exchange(Run::last, nullptr);
   if (!record)
     return;
-  if (!message.empty())
-    record->log_end = message;
+  record->log_end += message;
   if (record->exit_code != exit_code)
     record->write(exit_code);
   else

@@ -123,8 +123,7 @@ class Run
 {
 public:
   /// Creates and locks the directory, moves files of an earlier run aside (see output_file.h) unless this one continues
-  /// from a checkpoint, and writes case.prm and run.json, which names the checkpoint. To be constructed once the input
-  /// is known to be valid.
+  /// from a checkpoint, and writes case.prm and run.json. To be constructed once the input is known to be valid.
   /// @param parameters of its case; null: none, and no case.prm @param checkpoints null: it has none
   /// @throws InputError if another process writes to the directory, or case.prm would replace the user's own case:
   /// nothing is written then @throws OutputError

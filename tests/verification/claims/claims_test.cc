@@ -153,6 +153,14 @@ TEST(Claims, HoldInStatesWithLittleToCompare)
   }
   input.shear = 0.2;
   EXPECT_TRUE(checked("wave-speeds", input).all_hold());
+  // Polarisations in the middle between those of longitudinal and of shear waves.
+  input = subjects::paper_case();
+  input.has_next_nearest = false;
+  input.nearest.a = 0.;
+  input.strain_x = 0.8;
+  input.strain_y = 0.3;
+  const Results between = checked("wave-speeds", input);
+  EXPECT_TRUE(between.all_hold()) << between.verdict_text(5);
 }
 
 TEST(Claims, JudgeTheScatteredStencilOfTheCase)

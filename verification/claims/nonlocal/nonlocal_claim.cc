@@ -341,8 +341,7 @@ std::vector<NonlocalStencil> fixed_stencils(const bridge::Subject &subject)
        {std::pair(lattice::Grid::Kind::square, "square"), std::pair(lattice::Grid::Kind::triangular, "triangular")})
     for (const auto &[m, text] : {std::pair(1.5, "1.5"), std::pair(2., "2"), std::pair(3., "3")})
       list.push_back({std::string(name) + " grid, m = " + text, {kind, subject.spacing / m, subject.orientation}});
-  // With the third shell, points of a finer grid would have too many bonds.
-  const bool is_coarse = subject.material.third_nearest.has_value();
+  const bool is_coarse = subject.material.third_nearest.has_value(); // finer points would have too many bonds
   lattice::Grid square = list[0].grid, triangular = list[is_coarse ? 3 : 4].grid;
   square.scatter = triangular.scatter = {0.5, 1};
   list.push_back({"scattered points of a square grid, m = 1.5", square});

@@ -303,10 +303,9 @@ ClaimOutcome check_wave_speeds(const ClaimInput &input)
   const bridge::Subject &subject = input.subject;
   WaveSpeedsOptions options;
   options.states = wave_states(subject, input.quick);
-  // In a sheared sheet the dashpots couple the two waves along x.
-  for (const Eigen::Matrix2d &F : wave_states(subject, true))
-    if (F.isDiagonal(0.))
-      options.damped_states.push_back(F);
+  options.damped_states = wave_states(subject, true);
+  if (!subject.deformation.isDiagonal(0.)) // the dashpots couple the two waves along x
+    options.damped_states.resize(1);
   options.integrator = input.entries.integrator;
   if (input.quick)
   {
