@@ -38,7 +38,6 @@ Failure describe(const std::exception &error)
       dynamic_cast<const continuum::LinearSolverFailed *>(&error) != nullptr)
     return {support::ExitCode::solver_failed, error.what()};
   if (dynamic_cast<const continuum::InvalidInput *>(&error) != nullptr ||
-      dynamic_cast<const continuum::InvalidInput *>(&error) != nullptr ||
       dynamic_cast<const continuum::NonPhysicalState *>(&error) != nullptr)
     return {support::ExitCode::bad_input, error.what()};
   if (dynamic_cast<const continuum::OutputFailed *>(&error) != nullptr ||
