@@ -46,8 +46,8 @@ double norm_over_free(const Sheet &sheet, const Square &square)
 }
 
 /// Returns the round-off of a residual [N/m], eqs. (C.19) and (C.45). Factor 4: computing a stress adds several
-/// rounding errors to those of the displacement. Collective. @param magnitude sum of the absolute values of its terms
-/// [N/m]
+/// rounding errors to those of the displacement. Collective.
+/// @param magnitude sum of the absolute values of its terms [N/m] @param u nodal displacement [m]
 /// @param tangent,elastic entry (i, i) of the matrix and of its elastic part for unknown i [N/m^2]
 template <class Tangent, class Elastic>
 double residual_round_off(const Sheet &sheet, const Sheet::Vector &magnitude, const Sheet::Vector &u,

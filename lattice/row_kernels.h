@@ -119,8 +119,8 @@ struct Loops
                double *velocity);
 
   /// The first stage of a Runge-Kutta-Chebyshev step (theory.md, eq. (L.18)) for one component of n sites, after
-  /// `duration` [s]; positions and velocities before it go to `start` and `previous`. `from` may be either of the
-  /// others.
+  /// `duration` [s]; positions and velocities before it go to `start` and `previous`. `from` may be the
+  /// fields at `position` and `velocity`, or those at `previous`.
   void (*first_stage)(double duration, std::size_t n, const double *acceleration, const double *from_position,
                       const double *from_velocity, double *position, double *velocity, double *start_position,
                       double *start_velocity, double *previous_position, double *previous_velocity);

@@ -11,7 +11,7 @@ namespace latcon::output
 {
 
 /// Replaces the file `path` by `text` and synchronises it with the disk; see support::AtomicFile. First adds the file
-/// to the list of its folder, if the folder has one.
+/// to the list of its folder, if the folder has one; a file that was not listed is moved to a folder `earlier-run`.
 /// @throws OutputError with `path` and the reason given by the system; the old file is unchanged
 void write_file(const std::string &path, const std::string &text);
 
@@ -28,7 +28,8 @@ inline constexpr const char *output_list_name = ".latcon-files";
 /// Returns true if a file is in the list of its folder.
 [[nodiscard]] bool is_listed_output(const std::filesystem::path &file);
 
-/// Creates the list of an output directory with the names of frames and fields, or keeps an existing one.
+/// Creates the list of an output directory with the names of frames and fields, or adds them. Files of these
+/// names that were not listed are moved aside.
 /// @throws OutputError
 void begin_output_list(const std::filesystem::path &folder);
 
