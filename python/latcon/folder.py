@@ -10,6 +10,7 @@ import secrets
 import shutil
 import socket
 import stat
+import sys
 import time
 from collections.abc import Callable, Iterator
 
@@ -176,29 +177,44 @@ def _listed(folder: str) -> set[str]:
         return set()
 
 
+def _write_list(folder: str, names: set[str]) -> None:
+    write_atomically(os.path.join(folder, _LIST), "".join(f"{name}\n" for name in sorted(names)))
+
+
 def add_to_list(folder: str, names: list[str]) -> None:
-    """Adds files to the list of a folder, or creates it."""
-    path, listed = os.path.join(folder, _LIST), _listed(folder)
-    if not listed.issuperset(names) or not os.path.exists(path):
-        write_atomically(path, "".join(f"{name}\n" for name in sorted(listed.union(names))))
+    """Adds files to the list of a folder, or creates it. Files of names that were not listed are moved aside."""
+    listed = _listed(folder)
+    further = set(names) - listed
+    if aside := _move_aside(folder, further):
+        print(f"latcon: files in {folder} that latcon did not write are now in {aside}", file=sys.stderr, flush=True)
+    if further or not os.path.exists(os.path.join(folder, _LIST)):
+        _write_list(folder, listed | further)
+
+
+def _is_in(names: set[str], name: str) -> bool:
+    return any(re.fullmatch(re.escape(listed).replace(r"\*", "[0-9.]+", 1), name) for listed in names)
 
 
 def is_listed(folder: str, name: str) -> bool:
     """Whether a file is in the list of its folder, where ``*`` is the number of a frame."""
-    return any(re.fullmatch(re.escape(listed).replace(r"\*", "[0-9.]+", 1), name) for listed in _listed(folder))
+    return _is_in(_listed(folder), name)
 
 
 def archive(folder: str) -> str:
     """Moves the listed files of a folder to its subfolder ``earlier-run``, ``earlier-run-2``, ...; empty if there are none."""
-    names = [entry.name for entry in os.scandir(folder) if entry.is_file(follow_symlinks=False) and is_listed(folder, entry.name)]
-    if not names:
+    return _move_aside(folder, _listed(folder))
+
+
+def _move_aside(folder: str, names: set[str]) -> str:
+    files = [entry.name for entry in os.scandir(folder) if entry.is_file(follow_symlinks=False) and _is_in(names, entry.name)]
+    if not files:
         return ""
     aside, number = os.path.join(folder, EARLIER), 1
     while os.path.lexists(aside):
         number += 1
         aside = os.path.join(folder, f"{EARLIER}-{number}")
     os.mkdir(aside)
-    for name in names:
+    for name in files:
         os.rename(os.path.join(folder, name), os.path.join(aside, name))
-    add_to_list(aside, sorted(_listed(folder)))
+    _write_list(aside, names)
     return aside

@@ -202,13 +202,14 @@ def test_files_of_the_run_before_are_moved_aside(out):
 
 def test_files_of_others_are_moved_aside(out):
     out.mkdir()
-    names = ("lattice-0000.vtp", "results.csv")
+    names = ("lattice-0000.vtp", "results.csv", "report.html")
     for name in names:
         (out / name).write_text("mine")
     run = latcon("lattice", *TINY, "--output-dir", out)
-    for name, aside in zip(names, ("earlier-run", "earlier-run-2")):
-        assert (out / aside / name).read_text() == "mine" and (out / name).read_bytes() != b"mine"
     assert run.stderr.count("that latcon did not write are now in") == 2
+    assert "that latcon did not write are now in" in latcon("report", out).stderr  # written by Python
+    for name, aside in zip(names, ("earlier-run", "earlier-run-2", "earlier-run-3")):
+        assert (out / aside / name).read_text() == "mine" and (out / name).read_bytes() != b"mine"
 
 
 def test_case_in_its_own_folder_is_not_overwritten(out):
