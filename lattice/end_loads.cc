@@ -64,6 +64,15 @@ bool waves_run_along_x(const TriangularLattice &lattice, const Material &materia
   return support::symmetric_eigenvalues(tangent_along_x(lattice, material, F))[0] > 0.;
 }
 
+Eigen::Matrix2d end_impedance(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F)
+{
+  const support::SymmetricModes modes =
+    support::symmetric_modes(material.density * tangent_along_x(lattice, material, F, true));
+  const bool along = lattice.orientation() == Orientation::rows_along_crack;
+  return (along ? std::sqrt(3.) / 2. : 1.) * lattice.spacing() *
+         (modes.vectors * modes.values.cwiseSqrt().asDiagonal() * modes.vectors.transpose());
+}
+
 EndLoads::EndLoads(const RowPartition &band, const Material &material, const State &state, const Eigen::Matrix2d &F,
                    End left, End right)
   : impedance_(Eigen::Matrix2d::Zero())
@@ -88,11 +97,7 @@ EndLoads::EndLoads(const RowPartition &band, const Material &material, const Sta
   support::require(lattice.is_triangular(), "only ends of the triangular lattice absorb waves");
   support::require(waves_run_along_x(lattice, material, F),
                    "no waves run along x in the loaded sheet, so that an end cannot absorb them");
-  const support::SymmetricModes modes =
-    support::symmetric_modes(material.density * tangent_along_x(lattice, material, F, true));
-  const bool along = lattice.orientation() == Orientation::rows_along_crack;
-  impedance_ = (along ? std::sqrt(3.) / 2. : 1.) * lattice.spacing() *
-               (modes.vectors * modes.values.cwiseSqrt().asDiagonal() * modes.vectors.transpose());
+  impedance_ = end_impedance(lattice, material, F);
 }
 
 const std::vector<SiteForce> &EndLoads::evaluate(State &, VectorField &velocity)

@@ -16,6 +16,10 @@ Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material
 /// definite. An absorbing end requires it.
 bool waves_run_along_x(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F);
 
+/// Impedance of an absorbing end per site of it and sheet thickness [Pa s], p sqrt(rho A) (theory.md, eq. (L.16)), with
+/// the row pitch p and A = tangent_along_x, which must be positive definite, of fast motion.
+Eigen::Matrix2d end_impedance(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F);
+
 /// Loads that represent the rest of an endless sheet at its short ends, on the sites there that are not held
 /// (theory.md, eqs. (L.15) and (L.16)).
 ///

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "lattice/chebyshev_stages.h"
+#include "support/dense.h"
 
 namespace latcon::lattice
 {
@@ -77,9 +78,14 @@ TimeStepLimits limits(const TriangularLattice &lattice, const Material &material
 } // namespace
 
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
-                                const std::optional<ContactLaw> &contact)
+                                const std::optional<ContactLaw> &contact, const Eigen::Matrix2d &end_impedance)
 {
-  return limits(lattice, material, SmallestStretch::Constant(smallest_stretch), contact);
+  const SmallestStretch smallest = SmallestStretch::Constant(smallest_stretch);
+  const TimeStepLimits inside = limits(lattice, material, smallest, contact);
+  const Rates bonds = bound_of_bonds(lattice, material, smallest);
+  const double of_end = support::symmetric_eigenvalues(end_impedance)[1] / site_mass(material, lattice);
+  const TimeStepLimits at_end = limits(0.5 * bonds.omega_square, 0.5 * bonds.gamma + of_end);
+  return {inside.elastic, std::min(inside.viscous, at_end.viscous), std::min(inside.combined, at_end.combined)};
 }
 
 double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch,

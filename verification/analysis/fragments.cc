@@ -11,6 +11,12 @@ namespace latcon::analysis
 namespace
 {
 
+// Also of sites that may slide along an edge.
+bool on_held_edge(const lattice::State &state, std::size_t place)
+{
+  return (state.held[place] | state.rollers[place]) != 0;
+}
+
 struct Piece
 {
   std::vector<std::size_t> places;
@@ -34,7 +40,7 @@ std::vector<Piece> pieces(const lattice::State &state, const lattice::Triangular
     if (number == all.size())
       all.emplace_back();
     all[number].places.push_back(place);
-    all[number].held = all[number].held || state.held[place] != 0;
+    all[number].held = all[number].held || on_held_edge(state, place);
   }
   return all;
 }
@@ -61,13 +67,16 @@ Fragments find_fragments(const lattice::State &state, const lattice::TriangularL
 }
 
 std::size_t n_overstretched_bonds(const lattice::State &state, const lattice::TriangularLattice &lattice,
-                                  double breaking_stretch)
+                                  const lattice::BreakingRule &rule)
 {
   std::size_t n = 0;
   for_each_bond(state, lattice,
-                [&](const lattice::Bond &bond) {
-                  n +=
-                    stretch(state, lattice, bond) > breaking_stretch * state.strength.of(bond.near, bond.kind) ? 1 : 0;
+                [&](const lattice::Bond &bond)
+                {
+                  const double strength = state.strength.of(bond.near, bond.kind),
+                               stiffness = state.stiffness.of(bond.near, bond.kind);
+                  if (stretch(state, lattice, bond) > rule.limit({lattice.shell(bond.kind), 1., strength, stiffness}))
+                    ++n;
                 });
   return n;
 }
@@ -94,7 +103,7 @@ double bridged_length(const lattice::State &state, const lattice::TriangularLatt
     for (std::size_t place = 0; place < lattice.n_places(); ++place)
     {
       const double Y = lattice.reference(place).y();
-      if (!lattice.is_site(place) || state.held[place] == 0 || !(above ? Y > 0. : Y < 0.))
+      if (!lattice.is_site(place) || !on_held_edge(state, place) || !(above ? Y > 0. : Y < 0.))
         continue;
       const std::ptrdiff_t strip = strip_of(place);
       if (!above)

@@ -38,6 +38,7 @@ NearTipGrid make_grid(const lattice::TriangularLattice &lattice, const NearTipOp
   const bool along = lattice.orientation() == lattice::Orientation::rows_along_crack;
   grid.pitch_X = along ? d : across;
   grid.pitch_Y = along ? across : d;
+  grid.spacing = lattice.lattice_spacing();
   const auto points = [](double extent, double pitch)
   {
     if (!(extent >= pitch && extent < 1e9 * pitch))

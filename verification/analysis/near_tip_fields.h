@@ -17,6 +17,7 @@ namespace latcon::analysis
 struct NearTipGrid
 {
   double pitch_X = 0., pitch_Y = 0.; ///< [m]
+  double spacing = 0.;               ///< d of the lattice [m]
   int behind = 0;                    ///< points behind the tip
   int ahead = 0;                     ///< points ahead of it
   int half_height = 0;               ///< points on either side of it

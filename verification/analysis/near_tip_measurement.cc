@@ -181,7 +181,7 @@ std::optional<double> circulation(const NearTipField &field, const Eigen::Vector
 std::vector<Vortex> vortices(const NearTipField &field, double slowest, double within)
 {
   const NearTipGrid &grid = field.grid;
-  const double radius = vortex_radius * std::max(grid.pitch_X, grid.pitch_Y);
+  const double radius = vortex_radius * grid.spacing;
   const Eigen::Vector2d pitch(grid.pitch_X, grid.pitch_Y);
   // This offset assigns a zero in a corner to one of the cells around it.
   const Eigen::Vector2d nudge = 1e-12 * fastest(field) * Eigen::Vector2d(1., std::sqrt(2.));
@@ -267,12 +267,11 @@ std::vector<double> speeds_behind_tip(const NearTipField &field)
 {
   constexpr double from = 3., to = 14., half_height = 3., rounding = 1e-9; // [d]
   const NearTipGrid &grid = field.grid;
-  const double d = std::max(grid.pitch_X, grid.pitch_Y);
   std::vector<double> speeds;
   for (int j = -grid.half_height; j <= grid.half_height; ++j)
     for (int i = -grid.behind; i <= 0; ++i)
     {
-      const Eigen::Vector2d X = grid.reference(i, j) / d;
+      const Eigen::Vector2d X = grid.reference(i, j) / grid.spacing;
       if (X.x() > -to - rounding && X.x() < -from + rounding && std::abs(X.y()) < half_height + rounding &&
           field.holds(i, j))
         speeds.push_back(field.velocity[grid.point(i, j)].x());

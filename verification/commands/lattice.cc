@@ -48,7 +48,8 @@ double exchange_steps(const input::Case &input, double time)
   const double step = input.automatic().lattice_time_stepping().step;
   if (input.noise_amplitude == 0.)
     return time / step;
-  const Eigen::Vector2d K(0., 2. * M_PI / (std::sqrt(3.) * input.spacing));
+  const Eigen::Vector2d K =
+    2. * M_PI / (std::sqrt(3.) * input.spacing) * input.lattice().grid().from_row_frame(0., 1.).normalized();
   const auto waves = bridge::plane_waves(
     bridge::bloch_matrices(input.lattice(), input.material(), input.deformation(), K), K.normalized());
   const double rate = waves[0].decay + waves[1].decay;

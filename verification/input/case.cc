@@ -6,6 +6,7 @@
 
 #include "lattice/contact.h"
 #include "lattice/cutout.h"
+#include "lattice/end_loads.h"
 #include "support/dense.h"
 #include "verification/input/files.h"
 
@@ -265,8 +266,11 @@ lattice::TimeStepping Case::time_stepping(const bool breaks) const
 
 lattice::TimeStepLimits Case::time_step_limits(const bool breaks) const
 {
+  Eigen::Matrix2d end_impedance = Eigen::Matrix2d::Zero();
+  if (breaks && (left_end == End::absorbing || right_end == End::absorbing))
+    end_impedance = lattice::end_impedance(sheet(), material(), deformation());
   return lattice::time_step_limits(sheet(), material(), smallest_stable_stretch,
-                                   breaks && has_contact ? std::optional(contact_law()) : std::nullopt);
+                                   breaks && has_contact ? std::optional(contact_law()) : std::nullopt, end_impedance);
 }
 
 std::string case_lines(const Parameters &parameters)

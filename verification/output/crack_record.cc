@@ -232,7 +232,7 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   json["detached_sites"] = std::accumulate(fragments.sizes.begin(), fragments.sizes.end(), std::size_t{0});
   json["detached_fragments"] = fragments.sizes.size();
   json["largest_fragment"] = fragments.sizes.empty() ? 0 : fragments.sizes.front();
-  json["overstretched_bonds"] = analysis::n_overstretched_bonds(state, simulation_.lattice(), *input.breaking_stretch);
+  json["overstretched_bonds"] = analysis::n_overstretched_bonds(state, simulation_.lattice(), *input.breaking_rule());
   if (const auto bond = simulation_.nearest_to_breaking())
   {
     const lattice::TriangularLattice &sheet = simulation_.lattice();

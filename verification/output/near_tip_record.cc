@@ -37,6 +37,12 @@ constexpr double vortices_within = 16.;
 // belongs to the process zone, for its length and its share.
 constexpr double process_zone_part = 0.5;
 
+// Deformation of the sheet in which the crack runs: the last one of a history.
+Eigen::Matrix2d loaded(const input::Case &input)
+{
+  return input.history.deformations(input.deformation()).back();
+}
+
 analysis::NearTipOptions sampler_options(const input::Case &input, double X_begin, double X_end)
 {
   const auto extent = [&](double stated, double spacings) { return stated > 0. ? stated : spacings * input.spacing; };
@@ -45,7 +51,7 @@ analysis::NearTipOptions sampler_options(const input::Case &input, double X_begi
           extent(input.near_tip_half_height, default_half_height),
           X_begin,
           X_end,
-          input.deformation()};
+          loaded(input)};
 }
 
 // Returns the number of `speeds` above a limit.
@@ -126,12 +132,12 @@ Eigen::Matrix2d stress_of_loaded_sheet(const input::Case &input)
 {
   input::Case piece = input;
   piece.length = piece.height = 12. * input.spacing;
+  piece.nonlocal.scatter = 0.; // of the mean over all points
   const lattice::TriangularLattice sheet = piece.sheet();
   lattice::Material material = input.material();
   material.disorder = {};
   const lattice::RowPartition whole(sheet);
-  const lattice::State state =
-    lattice::homogeneous_state(whole, material, input.deformation(), {true, true, true, true});
+  const lattice::State state = lattice::homogeneous_state(whole, material, loaded(input), {true, true, true, true});
   const std::size_t row = sheet.rows() / 2;
   return lattice::site_values(state, sheet, material, sheet.index(row, sheet.sites_in_row(row) / 2)).cauchy_stress;
 }
@@ -155,7 +161,9 @@ std::array<double, 2> wave_speeds_along_crack(const input::Case &input)
 {
   constexpr double kd = 1e-3; // relative error of about kd^2 / 10
   const double k = kd / input.spacing;
-  const auto waves = bridge::bloch_waves(input.sheet(), input.material(), input.deformation(), {k, 0.});
+  input::Case regular = input;
+  regular.nonlocal.scatter = 0.;
+  const auto waves = bridge::bloch_waves(regular.sheet(), input.material(), loaded(input), {k, 0.});
   return {waves[0].frequency / k, waves[1].frequency / k};
 }
 
@@ -174,7 +182,7 @@ double near_tip_window(const input::Case &input)
 }
 
 NearTipRecord::NearTipRecord(const input::Case &input, lattice::Simulation &simulation, double seed_tip_X)
-  : simulation_(simulation), interval_(near_tip_interval(input)), deformation_(input.deformation()),
+  : simulation_(simulation), interval_(near_tip_interval(input)), deformation_(loaded(input)),
     far_opening_stress_(stress_of_loaded_sheet(input)(1, 1)), wave_speeds_(wave_speeds_along_crack(input)),
     X_begin_(seed_tip_X + sampled_from * (input.stop_position * simulation.lattice().length() - seed_tip_X)),
     X_end_(seed_tip_X + sampled_to * (input.stop_position * simulation.lattice().length() - seed_tip_X)),

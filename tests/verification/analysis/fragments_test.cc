@@ -1,5 +1,6 @@
 #include "verification/analysis/fragments.h"
 
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -105,20 +106,21 @@ TEST(Fragments, GoOnAcrossAPeriodicEdge)
   EXPECT_EQ(find_fragments(state, sheet).sizes, std::vector<std::size_t>{2});
 }
 
-// Bonds beyond lam_f count, regardless of toughening.
+// Bonds beyond the limit of their shell count, regardless of toughening.
 TEST_F(Cut, OverstretchedBondsAreThoseThatOnlyTougheningKept)
 {
-  EXPECT_EQ(n_overstretched_bonds(state, sheet, 2.), 0u);
+  EXPECT_EQ(n_overstretched_bonds(state, sheet, CriticalStretch(2.)), 0u);
   // One site is moved far up: its bonds are long, independent of their breaking stretch.
   const std::size_t place = sheet.index(8, 8);
   state.position.y[place] += 6. * sheets::spacing;
   std::size_t n = 0;
   for_each_bond_of_site(state, sheet, place, [&](const Bond &) { ++n; });
   EXPECT_EQ(n, 12u);
-  EXPECT_EQ(n_overstretched_bonds(state, sheet, 2.), 12u);
-  EXPECT_EQ(n_overstretched_bonds(state, sheet, 20.), 0u);
+  EXPECT_EQ(n_overstretched_bonds(state, sheet, CriticalStretch(2.)), 12u);
+  EXPECT_EQ(n_overstretched_bonds(state, sheet, CriticalStretch(std::array{2., 20., 2.})), 6u); // of the nearest neighbours
+  EXPECT_EQ(n_overstretched_bonds(state, sheet, CriticalStretch(20.)), 0u);
   cut_around({place});
-  EXPECT_EQ(n_overstretched_bonds(state, sheet, 2.), 0u);
+  EXPECT_EQ(n_overstretched_bonds(state, sheet, CriticalStretch(2.)), 0u);
 }
 
 // A crack between two rows, from X = 2 d to 14 d: three strips. The sheet is 16 d long.
@@ -145,6 +147,8 @@ TEST_F(Cut, FibrilsBridgeTheStripsTheyAreIn)
   for (const auto &[near, kind] : cut)
     state.bonds.remove(near, kind);
   EXPECT_EQ(bridged_length(state, sheet, 2. * d, 14. * d), 0.);
+  std::swap(state.held, state.rollers); // edges on rollers count as held ones do
+  EXPECT_TRUE(find_fragments(state, sheet).sizes.empty());
   // One bond between sites of the strip from 6 d to 10 d bridges only this strip.
   for (const auto &[near, kind] : cut)
   {

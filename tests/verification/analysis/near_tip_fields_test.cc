@@ -206,7 +206,7 @@ TEST(NearTipSampler, FoldsWhereThePathDescends)
 // Two reflections have no effect; under one reflection the sign of a component is that of its number of indices y.
 TEST(NearTipSums, MirrorComponents)
 {
-  NearTipGrid grid{d, d, 2, 2, 2};
+  NearTipGrid grid{d, d, d, 2, 2, 2};
   NearTipSums one(grid), once(grid), twice(grid);
   const NearTipSums::Values motion = NearTipSums::Values::LinSpaced(6, 1., 6.);
   const NearTipSums::Values tensors = NearTipSums::Values::LinSpaced(12, 7., 18.);
@@ -239,7 +239,7 @@ TEST(NearTipSums, MirrorComponents)
 // Samples without tensors do not affect the means over samples with tensors.
 TEST(NearTipSums, TensorsAreMeansOverTheSamplesThatHaveThem)
 {
-  NearTipGrid grid{d, d, 2, 2, 2};
+  NearTipGrid grid{d, d, d, 2, 2, 2};
   NearTipSums with(grid), without(grid), all(grid);
   const NearTipSums::Values tensors = NearTipSums::Values::LinSpaced(12, 7., 18.);
   with.add_sample();

@@ -24,9 +24,10 @@ constexpr double slow = 0.1;  // slower rotations are not vortices [m/s]
 /// Returns a field with given velocities (functions of the reference position relative to the tip), and material
 /// deformed by F.
 template <typename Velocity>
-NearTipField field_of(const Velocity &velocity, const Eigen::Matrix2d &F = Eigen::Matrix2d::Identity())
+NearTipField field_of(const Velocity &velocity, const Eigen::Matrix2d &F = Eigen::Matrix2d::Identity(),
+                      const NearTipGrid &grid_of_points = {d, std::sqrt(0.75) * d, d, 30, 30, 30})
 {
-  NearTipField field(NearTipGrid{d, std::sqrt(0.75) * d, 30, 30, 30});
+  NearTipField field(grid_of_points);
   const NearTipGrid &grid = field.grid;
   field.samples = 1;
   for (int j = -grid.half_height; j <= grid.half_height; ++j)
@@ -159,6 +160,11 @@ TEST(Vortices, AreFoundWithPlaceAndSense)
   EXPECT_NEAR(a.speed, a.circulation / (4. * M_PI * d), 1e-12 * a.speed);
   EXPECT_EQ(vortices(field, slow, 15 * d).size(), 2u); // they are at 13.2 d
   EXPECT_EQ(vortices(field, slow, 11 * d).size(), 0u);
+  // On a grid of half the spacing the circle is as large.
+  const Eigen::Vector2d centre(-5.2 * d, 0.1 * d);
+  const auto turning = [&](const Eigen::Vector2d &X) -> Eigen::Vector2d { return turn(X - centre); };
+  const NearTipField fine = field_of(turning, Eigen::Matrix2d::Identity(), {0.5 * d, 0.5 * d, d, 60, 60, 60});
+  EXPECT_NEAR(vortices(fine, 0.).at(0).circulation, 8. * M_PI * d * d, 0.05 * d * d);
 }
 
 TEST(Vortices, AreNeitherNodesNorSaddlesNorSlowNorInTheOpening)
@@ -223,13 +229,10 @@ TEST(SpeedsBehindTip, AreThoseOfTheMaterialInTheBox)
   open_crack(cracked, 4. * d);
   EXPECT_TRUE(speeds_behind_tip(cracked).empty());
   // With the lattice rotated by 30 degrees the pitches are exchanged, and the same box has thirteen by seven points.
-  NearTipField turned(NearTipGrid{std::sqrt(0.75) * d, d, 30, 30, 30});
-  for (std::size_t point = 0; point < turned.grid.size(); ++point)
-  {
-    turned.occupancy[point] = 1.;
-    turned.velocity[point].setZero();
-  }
-  EXPECT_EQ(speeds_behind_tip(turned).size(), 13u * 7u); // X from -16 to -4 pitches
+  const NearTipGrid turned{std::sqrt(0.75) * d, d, d, 30, 30, 30}, fine{0.5 * d, 0.5 * d, d, 60, 60, 60};
+  const Eigen::Matrix2d identity = Eigen::Matrix2d::Identity();
+  EXPECT_EQ(speeds_behind_tip(field_of(crescent, identity, turned)).size(), 13u * 7u); // X from -16 to -4 pitches
+  EXPECT_EQ(speeds_behind_tip(field_of(crescent, identity, fine)).size(), 23u * 13u);
 }
 
 // The peak of sigma_yy = 1 + c sin^2(t) sin^2(3 t / 2) is that of the product, determined on a fine grid of angles.

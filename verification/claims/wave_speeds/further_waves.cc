@@ -53,9 +53,10 @@ double reflected_share(const bridge::Subject &subject, const Eigen::Vector2d &po
     return sum;
   };
   const double before = integral(state);
-  lattice::Simulation simulation(
-    sheet, material, std::move(state),
-    0.9 * lattice::time_step_limits(sheet, material, 0.99 * smallest_stretch(sheet, F)).combined);
+  const Eigen::Matrix2d impedance = lattice::end_impedance(sheet, material, F);
+  const double limit =
+    lattice::time_step_limits(sheet, material, 0.99 * smallest_stretch(sheet, F), {}, impedance).combined;
+  lattice::Simulation simulation(sheet, material, std::move(state), 0.9 * limit);
   simulation.load_ends(F, lattice::EndLoads::End::absorbing, lattice::EndLoads::End::absorbing);
   simulation.set_velocities(velocity);
   while (simulation.state().time < 2. * distance * d / speed)
