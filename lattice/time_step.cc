@@ -67,12 +67,13 @@ Rates bound_of_contacts(const TriangularLattice &lattice, const Material &materi
 }
 
 TimeStepLimits limits(const TriangularLattice &lattice, const Material &material,
-                      const SmallestStretch &smallest_stretch, const std::optional<ContactLaw> &contact)
+                      const SmallestStretch &smallest_stretch, const std::optional<ContactLaw> &contact,
+                      double end_damping = 0.)
 {
   const Rates bonds = bound_of_bonds(lattice, material, smallest_stretch);
   const Rates contacts = contact ? bound_of_contacts(lattice, material, *contact) : Rates{};
   return limits(std::max(bonds.omega_square, 0.5 * bonds.omega_square + contacts.omega_square),
-                std::max(bonds.gamma, 0.5 * bonds.gamma + contacts.gamma));
+                std::max(bonds.gamma, 0.5 * bonds.gamma + std::max(contacts.gamma, end_damping)));
 }
 
 } // namespace
@@ -80,12 +81,8 @@ TimeStepLimits limits(const TriangularLattice &lattice, const Material &material
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
                                 const std::optional<ContactLaw> &contact, const Eigen::Matrix2d &end_impedance)
 {
-  const SmallestStretch smallest = SmallestStretch::Constant(smallest_stretch);
-  const TimeStepLimits inside = limits(lattice, material, smallest, contact);
-  const Rates bonds = bound_of_bonds(lattice, material, smallest);
-  const double of_end = support::symmetric_eigenvalues(end_impedance)[1] / site_mass(material, lattice);
-  const TimeStepLimits at_end = limits(0.5 * bonds.omega_square, 0.5 * bonds.gamma + of_end);
-  return {inside.elastic, std::min(inside.viscous, at_end.viscous), std::min(inside.combined, at_end.combined)};
+  return limits(lattice, material, SmallestStretch::Constant(smallest_stretch), contact,
+                support::symmetric_eigenvalues(end_impedance)[1] / site_mass(material, lattice));
 }
 
 double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
