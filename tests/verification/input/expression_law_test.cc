@@ -119,7 +119,9 @@ TEST(ExpressionLaw, RefusesLawsThatNoBondCanHave)
   for (const auto &[psi, part] : {std::pair(std::string("(l-1)^2 + l"), "psi'(1) is 1 Pa"),
                                   {"-(l-1)^2", "psi''(1) is -2 Pa"},
                                   {"(l-1)^4", "psi''(1) is 0 Pa"},
-                                  {locks, "nan at stretch 2.5"}})
+                                  {locks, "nan at stretch 2.5"},
+                                  {"(l-1)^2/(2-l)", "psi is not continuous between stretches 1.9"},
+                                  {"(l-1)^2/(2-l)^2", "psi' is not continuous between stretches 1.9"}})
     EXPECT_NE(problem(psi).find(part), std::string::npos) << psi << ": " << problem(psi);
   EXPECT_EQ(problem(locks, 2.4), "");
 }
