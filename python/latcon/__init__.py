@@ -13,7 +13,8 @@ from .errors import OUTPUT_FAILED, LatconError, optional_package
 
 if sys.argv[:2] == ["-m", "--parsed"]:  # a command of the program, before __main__.py, which comes after this file
     try:
-        optional_package("numpy", "this command needs", "numpy (Debian: python3-numpy)")
+        for module in ("numpy", "scipy") if sys.argv[2] in ("compare", "study") else ("numpy",):
+            optional_package(module, "this command needs", f"{module} (Debian: python3-{module})")
     except LatconError as missing:
         print(f"latcon: {missing}", file=sys.stderr)
         sys.exit(OUTPUT_FAILED)

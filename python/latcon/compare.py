@@ -55,8 +55,7 @@ def compare(program: Program, printed: Printed, options: Mapping[str, Any]) -> i
         raise InputError(", ".join(f"{name} holds a crack (crack.json)" if is_crack else f"{name} holds no crack.json"
                                    for name, is_crack in zip(names, cracks))
                          + "; give two output directories of cracks, or a lattice frame and a continuum frame in this order")
-    for module, package in (("vtkmodules.vtkIOXML", "vtk (Debian: python3-vtk9)"), ("scipy.spatial", "scipy (Debian: python3-scipy)")):
-        optional_package(module, "the comparison of frames needs", package)
+    optional_package("vtkmodules.vtkIOXML", "the comparison of frames needs", "vtk (Debian: python3-vtk9)")
     from .compare_frames import compare_frames
     return compare_frames(program, printed, options)
 

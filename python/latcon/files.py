@@ -86,15 +86,15 @@ def checked_number(path: pathlib.Path, what: str, value: Any) -> float | None:
     raise UnreadableFile(path, f"{what} is {value!r}, not a number")
 
 
-def read_table(path: pathlib.Path, units: Mapping[str, str]) -> pd.DataFrame:
-    """Returns the table in a CSV file of numbers; columns of whole numbers are integers. The units of the columns that it has
-    become ``attrs["units"]``.
+def read_table(path: pathlib.Path, units: Mapping[str, str], other: str = "") -> pd.DataFrame:
+    """Returns the table in a CSV file of numbers; columns of whole numbers are integers. The units of the columns, of those
+    without one `other`, become ``attrs["units"]``.
     """
     import pandas as pd
     columns = read_columns(path, None, finite=False)
     whole = [name for name, values in columns.items() if (values == np.floor(values)).all() and (np.abs(values) < 2**53).all()]
     table = pd.DataFrame(columns).astype(dict.fromkeys(whole, np.int64))
-    table.attrs["units"] = {name: units[name] for name in table if name in units}
+    table.attrs["units"] = {name: units.get(name, other) for name in table if other or name in units}
     return table
 
 

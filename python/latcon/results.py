@@ -19,12 +19,8 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray
 
-_ENERGIES = ("elastic", "kinetic", "micro_inertia", "viscous", "broken", "boundary_work", "contact", "imbalance")
 _PATH_UNITS = {"t": "s", "X": "m", "Y": "m", "x": "m", "y": "m", "speed": "m/s", "bonds_broken": "1"}
 _BROKEN_UNITS = {"t": "s", "site": "1", "other_site": "1", "X": "m", "Y": "m", "stretch": "1"}
-_BRANCHES = tuple(f"{shell}_{mechanism}_{what}" for shell in ("nearest", "next_nearest", "third_nearest")
-                  for mechanism in ("plastic", *(f"branch_{number}" for number in range(1, 17))) for what in ("stored", "dissipated"))
-_ENERGY_UNITS = {"t": "s", "load_factor": "1", **{name: "J/m" for name in (*_ENERGIES, *_BRANCHES)}}
 _RESULT_COLUMNS = ("claim", "quantity", "unit", "lattice", "continuum", "theory", "error", "tolerance", "verdict")
 
 
@@ -106,7 +102,7 @@ class Run:
         Columns of a lattice: ``elastic``, ``kinetic``, ``viscous``, ``broken``, ``boundary_work``, ``contact``, ``imbalance``;
         for those of Maxwell branches and of finite elements see docs/reference-files.md. Units in ``attrs["units"]``.
         """
-        return read_table(self.directory / "energy.csv", _ENERGY_UNITS)
+        return read_table(self.directory / "energy.csv", {"t": "s", "load_factor": "1"}, "J/m")
 
     @functools.cached_property
     def results(self) -> pd.DataFrame:

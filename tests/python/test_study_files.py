@@ -85,7 +85,8 @@ def problems():
     lines = [line for line in pathlib.Path(__file__).with_name("study_problems.txt").read_text().splitlines() if line and line[0] != "#"]
     for case, part in zip(lines[::2], lines[1::2], strict=True):
         yield pytest.param(*case.split(" ", 1), part[2:], id=case)
-    for text, part in (("[" * 99999, "nested deeper"), ("{}\0", "s.json:1: not a text file"), ("[" * 100 + "]" * 100, "nested deeper than 64")):
+    for text, part in (("[" * 99999, "nested deeper"), ("{}\0", "s.json:1: not a text file"), ("[" * 100 + "]" * 100, "nested deeper than 64"),
+                       ('{"runs": {"%s": {}}}' % ("a" * 209), "must consist of at most 208 letters")):
         yield pytest.param("text", text, part, id=part)
 
 

@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 from program import CASES, LATCON, latcon, latcon_on_ranks
@@ -78,3 +79,9 @@ def test_commands_in_python_say_that_numpy_is_missing(tmp_path):
     for command in (["init", tmp_path / "new"], ["entries"], ["report", tmp_path], ["compare", "a", "b"], ["study", "paper"], ["batch", "paper", "--slurm"]):
         run = latcon(*command, env=os.environ | {"LATCON_PYTHON": str(python)}, expect=OUTPUT_FAILED)
         assert run.stderr == "latcon: this command needs the Python package numpy (Debian: python3-numpy): No module named 'numpy'\n"
+    (tmp_path / "modules").mkdir()
+    (tmp_path / "modules" / "numpy").symlink_to(os.path.dirname(np.__file__))
+    python.write_text(f'#!/bin/sh\nPYTHONPATH=$PYTHONPATH:{tmp_path}/modules exec {sys.executable} -S "$@"\n')
+    for command in (["compare", "a", "b"], ["study", "patterns", "--dry-run"]):
+        run = latcon(*command, env=os.environ | {"LATCON_PYTHON": str(python)}, expect=OUTPUT_FAILED)
+        assert "this command needs the Python package scipy (Debian: python3-scipy): " in run.stderr

@@ -66,7 +66,10 @@ void Parameters::read_text(const std::string &text, const std::string &name)
   std::transform(ending.begin(), ending.end(), ending.begin(), [](const unsigned char c) { return std::tolower(c); });
   for (const auto &item : ending == ".json" ? read_json(text, file_) : read_prm(text, file_))
     if (const auto *problem = std::get_if<SyntaxProblem>(&item))
+    {
       report(problem->place, problem->text);
+      unreadable_ = unreadable_ || problem->text.compare(0, 8, "not JSON") == 0;
+    }
     else if (const auto *start = std::get_if<SectionStart>(&item))
     {
       // Reported once, not for each entry in the section.

@@ -234,7 +234,7 @@ private:
   std::map<std::string, std::size_t> keys_; // to the index in entries_
   std::vector<std::string> problems_;
   std::size_t n_problems_ = 0; // also those beyond what is kept
-  bool unreadable_ = false;    // a file could not be read at all, so missing entries mean nothing
+  bool unreadable_ = false;    // a file could not be read, so missing entries mean nothing
   std::string file_ = "no case file";
 };
 

@@ -83,35 +83,11 @@ def level_probabilities(weights: Sequence[float]) -> list[float]:
     P(l, k; w) of Robertson, Wright, and Dykstra, Order Restricted Statistical Inference, Wiley 1988, section 2.3, estimated from
     20,000 draws of a fixed sequence of random numbers, with a standard deviation of at most 0.004.
     """
-    from scipy.special import ndtri
     n_draws = 20000
-    draws = _mersenne_twister(19590601, n_draws * len(weights))
-    uniform = ((draws >> np.uint64(11)).astype(float) + 0.5) * 2.0**-53
-    z = ndtri(uniform).reshape(n_draws, -1) / np.sqrt(np.asarray(weights, float))
-    counts = [0] * len(weights)
-    for row in z.tolist():
-        counts[len(isotonic_blocks(row, weights)) - 1] += 1
-    return [count / n_draws for count in counts]
-
-
-def _mersenne_twister(seed: int, n: int) -> Any:
-    """Returns n numbers of the 64-bit Mersenne twister (T. Nishimura, ACM Trans. Model. Comput. Simul. 10, 348 (2000))."""
-    mask = 2**64 - 1
-    state = [seed]
-    for i in range(1, 312):
-        state.append((6364136223846793005 * (state[-1] ^ state[-1] >> 62) + i) & mask)
-    numbers: list[int] = []
-    upper = mask ^ 0x7FFFFFFF
-    while len(numbers) < n:
-        for i in range(312):
-            x = state[i] & upper | state[(i + 1) % 312] & 0x7FFFFFFF
-            state[i] = state[(i + 156) % 312] ^ x >> 1 ^ (0xB5026F5AA96619E9 if x & 1 else 0)
-        numbers += state
-    y = np.array(numbers[:n], np.uint64)
-    y ^= y >> np.uint64(29) & np.uint64(0x5555555555555555)
-    y ^= y << np.uint64(17) & np.uint64(0x71D67FFFEDA60000)
-    y ^= y << np.uint64(37) & np.uint64(0xFFF7EEE000000000)
-    return y ^ y >> np.uint64(43)
+    # RandomState, since no later version of numpy changes its numbers.
+    draws = np.random.RandomState(19590601).standard_normal((n_draws, len(weights))) / np.sqrt(weights)
+    n_blocks = [len(isotonic_blocks(row, weights)) for row in draws.tolist()]
+    return [n_blocks.count(n) / n_draws for n in range(1, len(weights) + 1)]
 
 
 def pooled_variance(samples: Sequence[SampleMean]) -> tuple[float, int] | None:

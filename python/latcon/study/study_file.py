@@ -181,8 +181,9 @@ class _Reader:
         return found
 
     def run(self, name: str, place: JsonPlace) -> None:
-        if not re.fullmatch(r"[A-Za-z0-9_-][A-Za-z0-9._-]*", name):
-            place.problem("the name of a run must consist of letters, digits, '.', '_' and '-', and must not begin with '.'")
+        # With a seed and the ending of an unfinished file it has at most 255 letters.
+        if not re.fullmatch(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,207}", name):
+            place.problem("the name of a run must consist of at most 208 letters, digits, '.', '_' and '-', and must not begin with '.'")
         if name in self.names[:self.n_swept]:
             place.problem("a run of the sweep has this name")
         self.names.append(name)
