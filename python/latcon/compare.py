@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import math
 import os
 import pathlib
@@ -18,8 +19,9 @@ from .quantities import quantity_text
 from .rows import text_table
 from .study.outcome import measured_values, unfit_rows
 from .study.output import csv_text
+from .study.plan import zeta_of
 from .study.program import InputError, Program
-from .study.record import Printed, Record, draw_page, json_text
+from .study.record import Printed, Record, draw_page
 
 SIDES = ("first", "second")
 _PARTS = ("first", "first_uncertainty", "second", "second_uncertainty", "difference", "difference_over_uncertainty")
@@ -69,9 +71,9 @@ def _compare_cracks(program: Program, printed: Printed, options: Mapping[str, An
     directory = options["output_dir"]
     cracks = [_read_crack(program, options[side]) for side in SIDES]
     quantities, paths = _quantities(program, cracks), path_distance(*((crack.X, crack.Y) for crack in cracks))
-    entries = [{"key": key, "unit": (program.entries[key].unit or "") if key in program.entries else "", "first": value,
-                "second": cracks[1].entries.get(key, "")}
-               for key, value in sorted(cracks[0].entries.items()) if cracks[1].entries.get(key) != value]
+    one, other = (crack.entries for crack in cracks)
+    entries = [{"key": key, "unit": (program.entries[key].unit or "") if key in program.entries else "", "first": one.get(key, ""),
+                "second": other.get(key, "")} for key in sorted({**one, **other}) if one.get(key) != other.get(key)]
     printed.say(_text(cracks, quantities, entries, paths))
     if options["dry_run"]:
         return DONE
@@ -84,7 +86,9 @@ def _compare_cracks(program: Program, printed: Printed, options: Mapping[str, An
                 "side": both["side"], "failed_checks": both["problem"], "pattern": both["pattern"], "quantities": quantities,
                 "entries": entries, "paths": paths and paths | {
                     f"{name}_over_d": paths[name] / cracks[0].spacing for name in ("rms_distance", "largest_distance")}}
-    write_file(f"{directory}/compare.json", json_text(document))
+    # Names of folders need not be UTF-8; the page reads them from here, with other bytes as \udcXX.
+    text = json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+    write_file(f"{directory}/compare.json", text.encode("utf-8", "backslashreplace"))
     write_file(f"{directory}/compare.csv", csv_text(
         ["quantity", "unit", *_PARTS], [[row["name"], row["unit"], *(row[part] for part in _PARTS)] for row in quantities]))
     code = record.end([], DONE)
@@ -100,7 +104,7 @@ def _read_crack(program: Program, name: str) -> _Crack:
     if info.get("exit_code") not in (DONE, CLAIM_FAILED) or not isinstance(pattern, str) or not pattern:
         raise InputError(f"{name}: its crack was not measured; crack.json or run.json is damaged, or the run has not ended")
     try:
-        spacing = float(entries["Sheet/spacing"])
+        spacing, zeta = float(entries["Sheet/spacing"]), zeta_of(entries)
     except (KeyError, TypeError, ValueError):
         raise InputError(f"{folder / 'run.json'}: does not hold the entries of the case") from None
     path = read_columns(folder / "crack.csv", ("X", "Y"))
@@ -108,7 +112,8 @@ def _read_crack(program: Program, name: str) -> _Crack:
         raise InputError(f"{folder / 'crack.csv'}: line {back[0] + 3}: damaged: X decreases")
     # Cracks of the lattice do not name their side.
     side, problem = crack.get("side", "lattice"), unfit_rows(info) if info["exit_code"] == CLAIM_FAILED else ""
-    return _Crack(name, pattern, side, problem, entries, spacing, measured_values(program, name, spacing), path["X"], path["Y"])
+    values = measured_values(program, name, spacing) | ({} if zeta is None else {"zeta": zeta})
+    return _Crack(name, pattern, side, problem, entries, spacing, values, path["X"], path["Y"])
 
 
 def _quantities(program: Program, cracks: Sequence[_Crack]) -> list[dict[str, Any]]:

@@ -33,9 +33,12 @@ class UnreadableFile(LatconError):
     """
 
     def __init__(self, path: str | os.PathLike[str], problem: str) -> None:
-        super().__init__(f"{path}: {problem}")
+        super().__init__(path, problem)  # all arguments, with which pickle makes it again
         self.path = pathlib.Path(path)
         self.problem = problem
+
+    def __str__(self) -> str:
+        return f"{self.path}: {self.problem}"
 
 
 def optional_package(module: str, purpose: str, package: str) -> Any:
@@ -50,7 +53,7 @@ class _EndOfProgram(BaseException):
     """Message, exit code and output directory of a program that ended with a non-zero exit code."""
 
     def __init__(self, message: str, exit_code: int, directory: pathlib.Path | None = None) -> None:
-        super().__init__(message)
+        super().__init__(message, exit_code, directory)
         self.message = message
         self.exit_code = exit_code
         self.directory = directory

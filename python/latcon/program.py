@@ -80,7 +80,7 @@ def output_of(command: Sequence[str | os.PathLike[str]]) -> str:
 
 def page_command(kind: str, directory: str | os.PathLike[str]) -> list[str | os.PathLike[str]]:
     """Returns the command that draws a page, see `report/__main__.py`, without modules of the user."""
-    return [sys.executable, "-sP", pathlib.Path(__file__).parent / "report" / "__main__.py", kind, directory, "--quiet"]
+    return [sys.executable, "-sPu", pathlib.Path(__file__).parent / "report" / "__main__.py", kind, directory, "--quiet"]
 
 
 def run(arguments: Sequence[str], directory: pathlib.Path, progress: Progress) -> None:

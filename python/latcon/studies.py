@@ -1,6 +1,7 @@
 """Sweeps and studies: runs of many cases, with their results as a table or a dataset."""
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
 import os
@@ -96,8 +97,9 @@ class Study:
     def to_xarray(self) -> xarray.Dataset:
         """Quantities on the grid of the swept entries and ``seed``; without a sweep, on ``run`` and ``seed``.
 
-        Dimensions have the names of the entries with ``_`` for blanks: ``data["speed_lagrangian"].sel(strain_y=1.7)``. Units are in
-        ``attrs["units"]``; quantities that are not determined and points between those of a refined grid are NaN.
+        Dimensions have the names of the entries with ``_`` for blanks: ``data["speed_lagrangian"].sel(strain_y=1.7)``; those whose
+        name is taken have their section too: ``Disorder_seed``. Units are in ``attrs["units"]``; quantities that are not determined
+        and points between those of a refined grid are NaN.
 
         Raises
         ------
@@ -107,9 +109,11 @@ class Study:
         optional_package("xarray", "to_xarray needs", "xarray (Debian: python3-xarray)")
         table, units = self.table, self.table.attrs["units"]
         swept = [entry for entry in self.info["swept"] if entry in table]
-        table = table[(table[swept] != "").all(axis=1)] if swept else table
-        tails = [entry.partition("/")[2] for entry in swept]
-        names = {entry: (tail if tails.count(tail) == 1 else entry).replace(" ", "_").replace("/", "_")
+        if swept:  # a study may have other runs as well, also at a point of the grid
+            grid = [run["run"] for run in self.info["runs"] if set(run["set"]) == set(self.info["swept"])]
+            table = table[table["run"].isin(grid)].drop_duplicates([*swept, "seed"])
+        tails = [entry.partition("/")[2].replace(" ", "_") for entry in swept]
+        names = {entry: tail if tails.count(tail) == 1 and tail not in table else entry.replace(" ", "_").replace("/", "_")
                  for entry, tail in zip(swept, tails)}
         others = [entry["entry"] for entry in self.info["varied"] if entry["entry"] not in swept]
         axes = list(names.values()) or ["run"]
@@ -205,7 +209,5 @@ def sweep(case: CaseLike, values: Mapping[str, Iterable[Settable]], directory: D
 
 
 def _run_study(words: list[str], place: pathlib.Path, threads: int | None, report: bool, progress: Progress) -> None:
-    try:
+    with contextlib.suppress(ClaimFailed, DidNotConverge):  # runs that failed are in the table
         run([*words, *["--no-report"] * (not report), *common_words(place, threads)], place, progress)
-    except (ClaimFailed, DidNotConverge):
-        pass  # runs that failed are in the table

@@ -1,12 +1,13 @@
 """The search of a fit and its model: points, misfits and uncertainties, on evaluations made up for them."""
 import math
 import types
+from unittest import mock
 
 import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from latcon.fit import Fit, Observation
+from latcon.fit import Fit, Observation, search
 from latcon.fit.misfit import PRIOR, UNDETERMINED, fit_local_model, tabulate
 from latcon.fit.problem import Axis, Problem
 from latcon.fit.record import Evaluation, Outcome
@@ -80,6 +81,9 @@ def test_all_points_are_in_the_box_and_later_ones_around_the_minimum():
     np.testing.assert_allclose(model.center, [0.95, 0.02], atol=1e-6)
     np.testing.assert_allclose(model.covariance, np.eye(2) / (1e4 + 1 / PRIOR**2), rtol=1e-3, atol=1e-9)
     assert model.degree == 2
+    with mock.patch.object(search, "_around", return_value=[]) as around:  # of a shorter batch
+        propose(tabulate(problem, evaluations), 2, 40, 8, 42, 3)
+    assert around.call_args.args[2:4] == (2, (40 - 21) / 8)
     # Of few evaluations 2 n + 1 for n parameters.
     assert sum(stage == "sobol" for stage, _ in propose(tabulate(problem, []), 2, 0, 8, 12, 3)) == 5
 
@@ -103,6 +107,11 @@ def test_undetermined_directions_do_not_depend_on_round_off():
         np.testing.assert_allclose(basis.T @ basis, np.eye(2), atol=1e-12)
         np.testing.assert_allclose(basis @ basis.T, plane @ plane.T, atol=1e-12)
     np.testing.assert_allclose(found[0][:, 0], [0, 1, 0, 0], atol=1e-12)  # the parameter that is free
+
+
+def test_a_fit_of_failed_points_has_none_near_the_best(tmp_path):
+    problem = made_problem(1, [Observation("a", 0.5, 0.01)], seeds=1)
+    assert Fit(tmp_path, problem, [Evaluation(0, "sobol", {"p0": 0.5}, (Outcome(0, "failed", "", {}),))]).near_equal.empty
 
 
 def test_directions_within_round_off_are_equally_undetermined(tmp_path):

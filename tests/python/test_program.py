@@ -2,6 +2,7 @@
 import io
 import os
 import pathlib
+import pickle
 import shutil
 import signal
 import subprocess
@@ -12,7 +13,8 @@ import time
 import pytest
 
 import latcon
-from latcon import program
+import latcon.study.program
+from latcon import errors, program
 
 PACKAGE = pathlib.Path(latcon.__file__).parent
 FIND = "import latcon; print(latcon.find_program())"
@@ -58,6 +60,15 @@ def test_exit_codes_are_exceptions_with_the_message(stand_in, tmp_path, code, ki
         program.run(["lattice"], tmp_path, False)
     error = caught.value
     assert (type(error), error.exit_code, error.directory) == (kind, code, tmp_path) and str(error) == error.message == "first\nsecond"
+
+
+def test_exceptions_pass_through_a_pool_of_processes():
+    for kind in (kind for module in (errors, latcon.study.program) for kind in vars(module).values()
+                 if isinstance(kind, type) and issubclass(kind, BaseException)):
+        error = kind(*{errors.UnreadableFile: ("file", "damaged"), latcon.study.program.Ended: (3, "message")}.get(
+            kind, ("message", 3, pathlib.Path("out")) if issubclass(kind, errors._EndOfProgram) else ("message",)))
+        passed = pickle.loads(pickle.dumps(error))
+        assert (type(passed), str(passed), vars(passed)) == (kind, str(error), vars(error))
 
 
 def test_loops_that_catch_errors_stop_when_interrupted():

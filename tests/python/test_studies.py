@@ -2,6 +2,7 @@
 import concurrent.futures
 import contextlib
 import itertools
+import json
 import time
 import types
 
@@ -47,6 +48,17 @@ def test_a_sweep_has_the_numbers_of_its_runs(swept):
     table = latcon.open_study(directory).table
     assert len(table) == 4 and table.attrs["units"]["wavelength"] == "m"
     np.testing.assert_array_equal(table["speed_lagrangian"], data["speed_lagrangian"].values.ravel())
+
+
+def test_a_dataset_has_the_grid_of_its_sweep_alone(tmp_path):
+    sets = {"a": {"Disorder/seed": "1"}, "b": {"Disorder/seed": "2"}, "low": {"Sheet/height": "1 cm"}, "again": {"Disorder/seed": "2"}}
+    seeds = [{"run": name, "seed": 1, "folder": "", "state": "measured", "pattern": "straight", "values": {"end_time": place}}
+             for place, name in enumerate(sets)]
+    (tmp_path / "study.json").write_text(json.dumps({
+        "runs": [{"run": name, "set": own} for name, own in sets.items()], "seeds": seeds, "swept": ["Disorder/seed"],
+        "units": {"end_time": "s"}, "varied": [{"entry": "Disorder/seed", "unit": "1", "values": [1, 2, 1, 2]}]}))
+    data = latcon.open_study(tmp_path).to_xarray()
+    assert data["end_time"].dims == ("Disorder_seed", "seed") and data["end_time"].values.tolist() == [[0], [1]]
 
 
 def test_a_repeated_sweep_uses_its_runs_again(swept):

@@ -10,8 +10,8 @@ import pytest
 
 from latcon.study.plan import (PlannedRun, Verification, default_folder, parse_shard, plan_difference, plan_runs, plan_text, runs_of_shard)
 from latcon.study.pool import run_processes
-from latcon.study.program import InputError, Program
-from latcon.study.study_file import read_study
+from latcon.study.program import Ended, InputError, Program
+from latcon.study.study_file import StudyRun, read_study
 from latcon.study.sweep import combinations, parse_sweep, sweep_study
 
 
@@ -20,6 +20,8 @@ def program():
     program = Program({"program": os.fspath(latcon.find_program()), "data": "", "arguments": [], "threads": 1, "yes": False})
     yield program
     program.close()
+    with pytest.raises(Ended, match="1, 'a child process was killed by signal 9'"):
+        program.ask(memory=[])
 
 
 @pytest.mark.parametrize("text, values", [
@@ -32,10 +34,11 @@ def test_sweeps_are_grids_or_lists(program, text, values):
 
 def test_sweeps_give_all_combinations_as_a_study_file(program):
     text = sweep_study(program, ["Loading/strain y=1.5:1.6:2", "Sheet/height=2 cm,3 cm"], "fig1", "base.prm",
-                       {"Material/density": "900"}, 3)
+                       {"Material/density": "900", "Loading/history times": ""}, 3)
     study = read_study(program, "folder/sweep.json", False, text.encode())
     assert (study.title, study.base) == ("Sweep of Loading/strain y, Sheet/height (fig1)", "folder/base.prm")
     assert [run.name for run in study.runs][:2] == ["strain-y-1.5_height-2cm", "strain-y-1.5_height-3cm"]
+    assert study.settings == {"Material/density": "900", "Loading/history times": ""}
     assert study.runs[3].own == {"Loading/strain y": "1.6", "Sheet/height": "3 cm"} and study.runs[3].seeds == [1, 2, 3]
 
 
@@ -50,6 +53,9 @@ def test_a_plan_resolves_every_case(program, tmp_path):
     assert plan[0].value("zeta") == pytest.approx(10.80695, abs=1e-5)
     assert plan[0].size > 1000 and plan[0].seconds > 0
     assert len({run.case_sha256 for run in plan}) == 4
+    study.runs.append(StudyRun("low", own={"Sheet/height": "1 cm"}))
+    (added,) = plan_runs(program, study, {}, Verification.NONE, [StudyRun("between", all={"Loading/strain y": "1.55"}, seeds=[3])])
+    assert (added.folder, added.value("Loading/strain y"), added.value("Sheet/height")) == ("between-3", 1.55, 0.025)
 
 
 def test_runs_of_a_sweep_are_limited_and_have_distinct_names(program):

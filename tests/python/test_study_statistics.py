@@ -173,13 +173,13 @@ def test_numbers_have_readable_units(value, deviation, unit, text):
     assert quantity_text(value, deviation, unit) == text
 
 
-def judged(row, patterns=None, means=None):
-    """Judges a row about runs a, b, ... with three seeds each, at abscissas 1, 2, ..."""
+def judged(row, patterns=None, means=None, at=range(1, 9)):
+    """Judges a row about runs a, b, ... with three seeds each, at abscissas `at`."""
     outcomes, planned = {}, {}
     for i, value in enumerate(patterns or means):
         name = "abcdefgh"[i]
         row.runs.append(name)
-        planned[name] = PlannedRun(name, 1, False, [], {}, "", 1e-3, float(i + 1), 1, 1, 1, 1)
+        planned[name] = PlannedRun(name, 1, False, [], {}, "", 1e-3, float(at[i]), 1, 1, 1, 1)
         seeds = value if patterns else [value - 0.01, value, value + 0.01]
         outcomes[name] = [RunOutcome(name, seed, RunState.MEASURED, pattern=one if patterns else "straight",
                                      values={} if patterns else {"speed": one}) for seed, one in enumerate(seeds)]
@@ -210,6 +210,13 @@ def test_brackets(patterns, verdict, number):
 def test_rules_of_numbers(rule, means, options, verdict):
     against = "zeta" if rule.is_along else ""
     assert judged(StudyRow(quantity="speed", rule=rule, against=against, **options), means=means).verdict is verdict
+
+
+@pytest.mark.parametrize("rule, values", [(Rule.BRACKET, {"patterns": [S, S, O, O]}), (Rule.RISES, {"means": [1, 2, 3, 4]})])
+def test_runs_at_one_abscissa_have_no_order(rule, values):
+    row = StudyRow(quantity="pattern" if rule is Rule.BRACKET else "speed", rule=rule, start="straight", to="oscillating", against="zeta")
+    outcome = judged(row, at=(1, 2, 2, 3), **values)
+    assert (outcome.verdict, outcome.note) == (Verdict.NOT_MEASURED, ["several runs have one value of zeta"])
 
 
 def test_the_table_names_the_rows_that_fail():

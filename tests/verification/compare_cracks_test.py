@@ -1,6 +1,7 @@
 """latcon compare of two cracks: differences in units of their uncertainty, entries that differ, distance of the paths."""
 import json
 import math
+import os
 import re
 import shutil
 
@@ -59,6 +60,7 @@ def test_quantities_are_those_of_the_runs(module_path, pair, compared):
                 continue
             combined = math.hypot(first[name + "_uncertainty"], second[name + "_uncertainty"])
             assert row["difference_over_uncertainty"] == pytest.approx(row["difference"] / combined, abs=1e-12)
+    assert rows["zeta"]["first"] == pytest.approx(10.80695, abs=1e-5)  # theory.md, eq. (L.5)
     assert re.search(r"(?m)^speed_lagrangian  +\S+ ± \S+ m/s  +\S+ ± \S+ m/s  +\S+ m/s  +[+-]\d+\.\d$", text)
     assert re.search(r"(?m)^pattern ", text)
 
@@ -92,8 +94,9 @@ def test_a_run_does_not_differ_from_itself(pair, out):
 
 
 def test_the_page_shows_both_runs_and_which_failed_its_checks(tmp_path, pair, out):
-    failed = shutil.copytree(pair[0], tmp_path / "failed")
+    failed = shutil.copytree(pair[0], tmp_path / os.fsdecode(b"failed\xff"))  # not UTF-8
     info = json.loads((failed / "run.json").read_text())
+    del info["entries"]["Time/end"]
     info |= {"exit_code": 3, "failed_rows": {"fracture: energy imbalance over energy exchanged": "ledger"}}
     (failed / "run.json").write_text(json.dumps(info))
     run = latcon("compare", failed, pair[1], "--output-dir", out)
@@ -102,6 +105,7 @@ def test_the_page_shows_both_runs_and_which_failed_its_checks(tmp_path, pair, ou
     found = json.loads((out / "compare.json").read_text())
     for side, folder in (("first", failed), ("second", pair[1])):
         assert (out / found[f"{side}_folder"]).resolve() == folder.resolve()
+    assert ("Time/end", "", "0.003") in [(entry["key"], entry["first"], entry["second"]) for entry in found["entries"]]
     html = (out / "compare.html").read_text(encoding="utf-8")
     assert html.count('class="viewer"') == 2
     speed = next(row for row in found["quantities"] if row["name"] == "speed_lagrangian")

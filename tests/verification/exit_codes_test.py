@@ -42,7 +42,7 @@ def test_frame_that_cannot_be_written_ends_a_run_that_takes_hours(out, ranks, fr
 
 
 def test_standard_output_that_is_full(out):
-    for command in ([*TINY, "--no-report", "--output-dir", out], [*TINY, "--dry-run"], ["--version"]):
+    for command in ([*TINY, "--no-report", "--output-dir", out], [*TINY, "--dry-run"], ["--version"], ["report", out]):
         with open("/dev/full", "w") as full:
             run = subprocess.run([LATCON, *map(str, command)], stdout=full, stderr=subprocess.PIPE, text=True)
         assert run.returncode == OUTPUT_FAILED, command
@@ -68,9 +68,9 @@ def test_report_does_not_depend_on_settings_of_python(out, tmp_path):
     (tmp_path / "modules").mkdir()
     (tmp_path / "modules" / "numpy.py").write_text("raise ImportError('another numpy')")
     settings = {"MPLBACKEND": "nonsense", "PYTHONSAFEPATH": "1", "PYTHONWARNINGS": "error",
-                "PYTHONPATH": str(tmp_path / "modules")}
-    latcon("report", out, env=dict(os.environ, **settings))
-    assert (out / "report.html").exists()
+                "PYTHONPATH": str(tmp_path / "modules"), "MPLCONFIGDIR": "fonts"}
+    latcon("report", out, env=dict(os.environ, **settings), cwd=tmp_path)
+    assert (out / "report.html").exists() and (tmp_path / "fonts").exists()
 
 
 def test_commands_in_python_say_that_numpy_is_missing(tmp_path):

@@ -3,6 +3,7 @@ import hashlib
 import json
 import re
 from dataclasses import replace
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -195,7 +196,8 @@ def report_ranges(folder):
 
 def test_both_sheets_show_the_same_time(tmp_path, browser):
     folder = tmp_path
-    for run in ("one", "other"):
+    first = "<b>one<!--<script>"
+    for run in (first, "other"):
         write_torn_sheet(folder / run)
     record = folder / "other" / "run.json"
     record.write_text(record.read_text().replace('"3"', '"3.5"'))  # the breaking stretch
@@ -203,8 +205,8 @@ def test_both_sheets_show_the_same_time(tmp_path, browser):
     frames = re.findall(r"<DataSet[^>]*>", listed.read_text())
     fewer = [frame for i, frame in enumerate(frames) if i % 3 != 1]
     listed.write_text("<VTKFile><Collection>" + "".join(fewer) + "</Collection></VTKFile>")
-    times = [[time for time, _ in read_series(folder / run / "motion.pvd")] for run in ("one", "other")]
-    document = {"first": "one", "second": "other", "first_folder": "../one", "second_folder": "../other",
+    times = [[time for time, _ in read_series(folder / run / "motion.pvd")] for run in (first, "other")]
+    document = {"first": first, "second": "other", "first_folder": f"../{first}", "second_folder": "../other",
                 "failed_checks": {"first": "", "second": ""}, "pattern": {"first": "oscillating", "second": "straight"},
                 "quantities": [], "entries": [], "paths": None}
     (folder / "compare").mkdir()
@@ -225,12 +227,13 @@ def test_both_sheets_show_the_same_time(tmp_path, browser):
                   "s.dispatchEvent(new Event('change', {bubbles: true})); })()")
     assert browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.quantity)") == ["damage", "damage"]
     ranges = browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.sheet.ranges)")
-    own = [report_ranges(folder / run) for run in ("one", "other")]
+    own = [report_ranges(folder / run) for run in (first, "other")]
     assert own[0] != own[1]
     for name, (low, high) in ranges[0].items():
         assert [low, high] == [min(one[name][0] for one in own), max(one[name][1] for one in own)]
         assert ranges[1][name] == [low, high]
     assert f"{len(fewer)} frames" in browser.value("document.body.innerText")
+    assert f"Y of {first} [mm]" in browser.value("document.querySelector('.legend').textContent")
     assert browser.said() == []
 
 
@@ -258,6 +261,9 @@ def test_a_sheet_takes_no_more_than_it_may(tmp_path):
     most = len(all_frames.text) // 3
     fewer = sheet_data.sheet_data(run, motion, most)
     assert len(fewer.text) <= most
+    with mock.patch.object(sheet_data, "contents", wraps=sheet_data.contents) as built:
+        assert sheet_data.sheet_data(run, motion, 9 * sites) is None  # without a try of more frames than there are bytes
+    assert [len(call.args[2]) for call in built.call_args_list] == [len(motion.frames) // 4]
     assert len(fewer.contents["times"]) >= sheet_data.FEWEST_FRAMES
     assert [fewer.contents["times"][end] for end in (0, -1)] == [motion.frames[end].time for end in (0, -1)]
     assert sheet_data.sheet_data(run, motion, most // 20) is None

@@ -83,6 +83,11 @@ class TestStudyPage(MadeUpStudy):
         for png in pictures.glob("wavy-*.png"):
             assert png.stat().st_size <= largest // 2
 
+    def test_a_picture_shows_so_many_paths_as_a_page_can_have(self):
+        with mock.patch.object(study_plots, "MOST_PATHS", 1), mock.patch.object(study_plots, "save") as saved:
+            caption = study_plots.draw_paths(self.read(), ["wavy", "calm"], self.folder / "paths.png")
+        assert caption.endswith("Shown: the first 1 of 2 runs.") and len(saved.call_args.args[0].axes) == 1
+
     def test_numbers_of_runs_are_means_over_seeds(self):
         page, _ = self.page()
         for words in ("2.20 ± 0.14 (2 of 3)", "14.0 ± 1.4 (2 of 3)", "1.75 (1 of 3)", "1.07 (1)", "33 (1)", "0.15 (1 of 3)", "verified: none"):

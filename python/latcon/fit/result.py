@@ -98,8 +98,8 @@ class Fit:
         """Rows of `points` that the observations do not distinguish from the best with 95 % confidence, best first."""
         from scipy.stats import chi2
         points = self.points
-        limit = self.misfit + float(chi2.ppf(_CONFIDENCE, len(self.problem.axes)))
-        return points[points["misfit"] <= limit].sort_values("misfit")
+        limit = float(chi2.ppf(_CONFIDENCE, len(self.problem.axes)))
+        return points[points["misfit"] - self.misfit <= limit].sort_values("misfit")
 
     @functools.cached_property
     def parameters(self) -> pd.DataFrame:

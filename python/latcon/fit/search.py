@@ -15,7 +15,7 @@ import numpy as np
 
 from ..case import Case
 from ..commands import CaseLike, run_words
-from ..errors import BadInput, ClaimFailed, Interrupted, LatconError, OutputFailed, error_of, optional_package
+from ..errors import INTERRUPTED, BadInput, ClaimFailed, LatconError, OutputFailed, error_of, optional_package
 from ..files import content
 from ..folder import FolderLock, absolute, prepare_run
 from ..frames import Floats
@@ -36,13 +36,14 @@ _SPREAD = 1.5
 _WIDEST, _SHRINKING, _NARROWEST = 0.15, 0.8, 0.02
 
 
-def propose(table: Table, parameters: int, first: int, count: int, evaluations: int, seed: int) -> list[tuple[str, Floats]]:
+def propose(table: Table, parameters: int, first: int, batch: int, evaluations: int, seed: int) -> list[tuple[str, Floats]]:
     """Next points to evaluate, with the name of their stage.
 
     They depend on the evaluated points before `first`, the number of the first, and the seed of the search alone: not on how
-    often the fit was interrupted. Of all `evaluations` the first quarter are Sobol points and the second TPE's; `count` is the
-    size of the batch.
+    often the fit was interrupted. Of all `evaluations` the first quarter are Sobol points and the second TPE's; `batch` is the
+    size of a batch, of which the last may be shorter.
     """
+    count = min(batch, evaluations - first)
     sobol = min(evaluations, max(2 * parameters + 1, evaluations // 4))
     tpe = max(sobol, evaluations // 2)
     qmc = optional_package("scipy.stats.qmc", "fits need", "scipy (Debian: python3-scipy)")
@@ -54,7 +55,7 @@ def propose(table: Table, parameters: int, first: int, count: int, evaluations: 
     if left := count - len(points):
         model = fit_local_model(table)
         points += [("tpe", point) for point in _tpe(table, parameters, first, left, seed)] if model is None else [
-            ("local", point) for point in _around(model, first, left, (first - tpe) / count, seed)]
+            ("local", point) for point in _around(model, first, left, (first - tpe) / batch, seed)]
     return points
 
 
@@ -98,7 +99,7 @@ def evaluate(record: Record, points: Iterable[Point], workers: int, keep_runs: b
     """Runs points, and adds each to the record once its runs have ended; calls `added` after each.
 
     An exception, Ctrl-C included, stops all runs; they are continued when the fit is called again. Raises OutputFailed if a run
-    could not write its files, Interrupted if a signal ended one, ValueError if one does not have an observed quantity.
+    could not write its files, Interrupted or ProgramError if a signal ended one, ValueError if one does not have an observed quantity.
     """
     problem = record.problem
     wanted = {number: (stage, values) for number, stage, values in points}
@@ -131,8 +132,10 @@ def evaluate(record: Record, points: Iterable[Point], workers: int, keep_runs: b
 
 def _outcome(problem: Problem, seed: int, folder: pathlib.Path, status: int) -> Outcome:
     message = last_words(content(f"{folder}/log.txt")).removeprefix("latcon: ")
+    if status > INTERRUPTED:  # 128 + the signal, as of a machine without memory: no property of the point
+        message = f"{folder}: killed by signal {status - 128}"
     error = error_of(status, message, folder) if status else None
-    if isinstance(error, (OutputFailed, Interrupted)):
+    if error and (status > 128 or isinstance(error, OutputFailed)):
         raise error
     if isinstance(error, ClaimFailed) and problem.command == "fracture" and (folder / "crack.json").is_file():
         # A crack that differs from the case's own reference values was measured; one whose energies do not balance was not.
@@ -200,9 +203,9 @@ def fit_case(case: CaseLike, parameters: Sequence[Parameter], observations: Sequ
         If the case or a bound is wrong.
     LatconError
         If the directory holds another fit or is in use, optuna or scipy is missing, or no run of the first batch is done.
-    OutputFailed
-        If a run cannot write its files. Other errors of a run are recorded with the point, which gets a misfit worse than
-        that of all others.
+    OutputFailed, ProgramError
+        If a run cannot write its files, or is killed. Other errors of a run are recorded with the point, which gets a misfit
+        worse than that of all others.
     KeyboardInterrupt
         After Ctrl-C, or a signal to a run: all runs are stopped, with checkpoints.
     """
@@ -226,7 +229,7 @@ def fit_case(case: CaseLike, parameters: Sequence[Parameter], observations: Sequ
             numbers = range(first, min(first + batch, evaluations))
             if not all(number in record.evaluations for number in numbers):
                 earlier = tabulate(problem, [evaluation for number, evaluation in record.evaluations.items() if number < first])
-                chosen = propose(earlier, len(problem.axes), first, len(numbers), evaluations, search_seed)
+                chosen = propose(earlier, len(problem.axes), first, batch, evaluations, search_seed)
                 points = [(number, stage, problem.values(at)) for number, (stage, at) in zip(numbers, chosen)
                           if number not in record.evaluations]
                 evaluate(record, points, workers or len(os.sched_getaffinity(0)), keep_runs, show)

@@ -66,7 +66,7 @@ def main(words=None):
         print(f"error: {error}", file=sys.stderr)
         return BAD_INPUT
     except OSError as error:
-        print(f"error: cannot write {error.filename}: {error.strerror}", file=sys.stderr)
+        print(f"error: cannot write {error.filename or 'standard output'}: {error.strerror}", file=sys.stderr)
         return IO_FAILED
 
 
@@ -74,6 +74,9 @@ if __name__ == "__main__":
     # Without a home, matplotlib keeps its list of fonts in a temporary folder; its advice would be in the log of every run.
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     # A `matplotlibrc` of the current folder would take precedence: the folder of a run may belong to somebody else.
+    for _name in ("MPLCONFIGDIR", "XDG_CACHE_HOME", "XDG_CONFIG_HOME"):
+        if os.environ.get(_name):  # relative to the folder of the user
+            os.environ[_name] = os.path.abspath(os.environ[_name])
     _here = os.open(".", os.O_PATH)
     os.chdir(Path(__file__).resolve().parent)
     require_packages()

@@ -73,5 +73,5 @@ _ENVIRONMENT = Environment(loader=FileSystemLoader(TEMPLATES), autoescape=True, 
 _ENVIRONMENT.globals.update({"asset": _asset, "zip": zip})
 _ENVIRONMENT.filters.update({
     "data_url": _data_url, "first_sentence": first_sentence,
-    "json": lambda value: Markup(json.dumps(value, separators=(",", ":")).replace("</", "<\\/")),  # of a script element
+    "json": lambda value: Markup(json.dumps(value, separators=(",", ":")).replace("<", "\\u003c")),  # of a script element
     "lines": lambda text: text if isinstance(text, Markup) else Markup("<br>").join(text.split("\n"))})

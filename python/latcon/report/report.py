@@ -3,7 +3,7 @@ import json
 import os
 import signal
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from markupsafe import Markup
@@ -137,9 +137,9 @@ def report(folder, output_dir=None, quiet=False, animated=False, dry_run=False):
         with_plots=has_dygraphs() and bool(cracks), with_viewer=any(sheet is not None for sheet in sheets.values()))
     for one in unreadable:
         print(f"error: {one.problem}", file=sys.stderr)
-    if not quiet:
-        print(text_summary(runs, unreadable))
-        print(f"\n{os.path.join(output_dir or folder, 'report.html')}")
+    with suppress(BrokenPipeError):  # the reader does not want more
+        if not quiet:
+            print(text_summary(runs, unreadable), os.path.join(output_dir or folder, "report.html"), sep="\n\n")
     if unreadable:
         return 2
     return 3 if any(c.verdict == "fails" for run in runs for c in run.checks) else 0

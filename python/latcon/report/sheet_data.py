@@ -46,12 +46,14 @@ def sheet_data(run, motion, most):
 
     Every second frame is dropped until the data fit; the first and the last frame are kept.
     """
-    frames = motion.frames
+    frames, sites = motion.frames, len(motion.whole.reference)
     while True:
-        sheet = Sheet(contents(run, motion, frames))
-        if len(sheet.text) <= most:
-            return sheet
-        if len(frames) < 2 * FEWEST_FRAMES:
+        is_short = len(frames) < 2 * FEWEST_FRAMES
+        if is_short or len(frames) * sites <= most:  # a site takes more than a byte per frame
+            sheet = Sheet(contents(run, motion, frames))
+            if len(sheet.text) <= most:
+                return sheet
+        if is_short:
             return None
         frames = [frames[i] for i in np.round(np.linspace(0, len(frames) - 1, (len(frames) + 1) // 2)).astype(int)]
 

@@ -86,8 +86,9 @@ def study_page(folder):
     for number, claim in enumerate(study.claims):
         names = list(dict.fromkeys(name for row in claim["rows"] for name in row["runs"] if name in study.runs))
         paths = folder / f"paths-{number + 1}.png"
+        caption = draw_paths(study, names, paths)
         claims.append({**claim, "rows": [claim_row(judged) for judged in claim["rows"]],
-                       "sweeps": draw_sweeps(study, number, claim, folder), "paths": paths if draw_paths(study, names, paths) else None})
+                       "pictures": [*draw_sweeps(study, number, claim, folder), *([(caption, paths)] if caption else [])]})
     shown = [(name, next((seed for seed in study.runs[name][2] if seed.is_measured), None))
              for name in study.document["pictures"] if name in study.runs]
     speeds = folder / "speeds.png"

@@ -101,14 +101,17 @@ def draw_map(study, path):
             f"another, the boundary with its uncertainty. Contours, where neighbouring cells have one: {label}, mean over the seeds.")
 
 
+MOST_PATHS = 60  # panels of a picture, whose height has a limit
+
+
 def draw_paths(study, names, path):
-    """Draws paths of the tip, one panel per run with its seeds superimposed. @return whether there are any"""
+    """Draws paths of the tip, one panel per run with its seeds superimposed. @return caption, or None if there are none"""
     tables = {name: [(seed, if_present(read_columns, seed.folder / "crack.csv", ("X", "Y"))) for seed in study.runs[name][2]]
-              for name in names}
+              for name in names[:MOST_PATHS]}
     paths = {name: ways for name, found in tables.items()
              if (ways := [(seed, tip) for seed, tip in found if tip is not None and len(tip["X"]) > 1])}
     if not paths:
-        return False
+        return None
     tips = [tip for ways in paths.values() for _, tip in ways]
     right = 105 * max(tip["X"].max() for tip in tips)
     half = 115 * max(max(np.abs(tip["Y"]).max() for tip in tips), 1e-3)
@@ -121,7 +124,8 @@ def draw_paths(study, names, path):
                  xlabel="X [cm]", ylabel="Y [cm]")
         axes.title.set_fontsize(9.5)
     save(figure, path)
-    return True
+    return ("Paths of the crack tip in the undeformed sheet, with the seeds of a run superimposed. Y is exaggerated."
+            + (f" Shown: the first {MOST_PATHS} of {len(names)} runs." if len(names) > MOST_PATHS else ""))
 
 
 def pattern_text(seeds):
@@ -132,13 +136,11 @@ def pattern_text(seeds):
 def draw_sweep(study, row, quantities, path, onsets=None):
     """Draws quantities against the abscissa of a row, one panel each, with the power laws that were fitted to them,
     {quantity: "onset" of a row}. @return whether any run was measured"""
-    points = [(value["against"], study.runs[value["run"]][2]) for value in row["values"]
-              if value["against"] is not None]
+    unit, name = entry_axis(row["against"], row["against_unit"])
+    points = [(unit * value["against"], study.runs[value["run"]][2]) for value in row["values"] if value["against"] is not None]
     points = [(x, seeds) for x, seeds in points if patterns_of(seeds)]
     if not points:
         return False
-    unit, name = entry_axis(row["against"], row["against_unit"])
-    points = [(unit * x, seeds) for x, seeds in points]
     columns = min(3, len(quantities))
     figure, grid = panels(len(quantities), columns, 2.2 if columns == 3 else 2.6)
     for axes, quantity in zip(grid, quantities):

@@ -6,7 +6,7 @@ from pathlib import Path
 from ..errors import UnreadableFile
 from ..files import if_present, read_json
 from ..quantities import number_text
-from ..study.outcome import RunOutcome, RunState, number_of, statistics
+from ..study.outcome import RunOutcome, RunState, group_by_run, number_of, statistics
 
 
 @dataclass
@@ -61,8 +61,8 @@ def read_study(folder):
                       values={name: value for name, value in s["values"].items() if value is not None},
                       wall_time=number_of(if_present(read_json, folder / s["folder"] / "run.json") or {}, "wall_time_total_s", 0.0),
                       folder=folder / s["folder"]) for s in document["seeds"]]
-        runs = {run["run"]: (run["about"], run["set"], [seed for seed in seeds if seed.run == run["run"]])
-                for run in document["runs"]}
+        by_run = group_by_run(seeds)
+        runs = {run["run"]: (run["about"], run["set"], by_run.get(run["run"], [])) for run in document["runs"]}
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise UnreadableFile(path, f"lacks {error}") from error
     return Study(folder, document, runs)

@@ -81,7 +81,7 @@ def write_batch(program: Program, printed: Printed, options: Mapping[str, Any]) 
             requested.write_sweep()
     # The same choices, from any folder.
     study = requested.file if requested.kept else options["study"]
-    words = [options["program"], "study", os.path.abspath(study) if os.path.exists(study) else study]
+    words = [options["program"], "study", os.path.abspath(study) if os.path.isfile(study) else study]
     words += [*set_options(requested.overrides), *(f"--{name.replace('_', '-')}" for name in ("quick", "skip_verification", "no_report", "yes") if options[name])]
     command = shlex.join([*words, "--output-dir", os.path.abspath(directory)])
     runs, collect = os.path.join(folder, "runs.sh"), os.path.join(folder, "collect.sh")

@@ -136,8 +136,6 @@ class _StudyCommand:
                           any(one.on_continuum for one in requested.study.runs))
         self.signals.deferred = True  # from here on a signal ends the runs, and the results are written
         complete = self.signals.pending is None and (options["collect"] or self.run_children(selected) and self.refine())
-        if complete:
-            self.signals.resume()
         if options["shard"]:
             return record.end([], self.exit_code() if complete else INTERRUPTED)
         return self.judge(record, complete)
@@ -223,10 +221,8 @@ class _StudyCommand:
         study, results = self.results.study, self.results
         for level in range(1, study.refine + 1):
             added = refined_runs(study, results.plan, results.outcomes, level)
-            everything, claims = study.runs, study.claims
-            study.runs, study.claims = added, []
-            plan = plan_runs(self.program, study, self.requested.overrides, self.verification)
-            study.runs, study.claims = everything + added, claims
+            study.runs += added
+            plan = plan_runs(self.program, study, self.requested.overrides, self.verification, added)
             self.printed.say(f"refinement {level}: {len(added)} cases between neighbours that differ")
             if not self.run_children(self.add_runs(plan)):
                 return False
@@ -247,7 +243,8 @@ class _StudyCommand:
         rows = [row.result(claim.claim.claim) for claim in results.claims for row in claim.rows]
         self.printed.say(result_table(program, results))
         code = record.end([row for row in rows if row is not None], self.exit_code() if complete else INTERRUPTED)
-        # A page of an earlier run may remain.
+        if complete:  # a page takes a while, and one of an earlier run may remain
+            self.signals.resume()
         if complete and not self.options["no_report"] and draw_page(
                 "study", self.directory, "study.html", "repeat the command with --resume, or with --collect after shards,"):
             self.printed.say(f"{self.directory}/study.html")

@@ -19,7 +19,7 @@ from ..files import object_in
 from ..folder import write_atomically
 from ..schema import SEED_ENTRY
 from .program import InputError, Program, printable, read_input
-from .study_file import Settings, Study, read_study
+from .study_file import Settings, Study, StudyRun, read_study
 from .sweep import sweep_study
 
 
@@ -97,11 +97,16 @@ def base_text(program: Program, study: Study, overrides: Settings) -> str:
     return program.ask(changes=changes, seeds=[], checks_laws=True, wants_text=True)
 
 
-# Entries of zeta = (eta / a) / (d / sqrt(a / rho)), theory.md, eq. (L.5).
 _OF_ZETA = ("Nearest neighbours/law", "Nearest neighbours/a", "Nearest neighbours/viscosity", "Material/density", "Sheet/spacing")
 
 
-def _value(text: str) -> Any:
+def zeta_of(values: Mapping[str, Any]) -> float | None:
+    """Returns zeta = (eta / a) / (d / sqrt(a / rho)), theory.md, eq. (L.5), for values of entries; None for linear bonds."""
+    law, a, viscosity, density, spacing = (_value(values[key]) for key in _OF_ZETA)
+    return viscosity / a * math.sqrt(a / density) / spacing if law == "mooney-rivlin" and a > 0 else None
+
+
+def _value(text: Any) -> Any:
     """Returns the value of an entry: a number or, if it is none, its text."""
     with contextlib.suppress(ValueError):
         if math.isfinite(number := float(text)):
@@ -109,8 +114,9 @@ def _value(text: str) -> Any:
     return text
 
 
-def plan_runs(program: Program, study: Study, overrides: Settings, verification: Verification) -> list[PlannedRun]:
-    """Returns all runs of a study with all their seeds, in the order of the file, with the first and the last frame alone.
+def plan_runs(program: Program, study: Study, overrides: Settings, verification: Verification,
+              added: Sequence[StudyRun] | None = None) -> list[PlannedRun]:
+    """Returns the runs of a study, or those `added` to it, with all their seeds, in their order, with the first and the last frame alone.
 
     Raises InputError with the problems of all cases, of rows whose `against` is not a number in any of their runs, and of
     settings of entries that the study sweeps.
@@ -124,7 +130,7 @@ def plan_runs(program: Program, study: Study, overrides: Settings, verification:
     frames = {"Output/frame interval": "0", "Output/motion frames": "0"}
     runs: list[PlannedRun] = []
     problems: list[str] = []
-    for run in study.runs:
+    for run in study.runs if added is None else added:
         changes = [f"{key}={value}" for key, value in (run.all | overrides | frames).items()]
         try:
             reply = program.ask(changes=changes, seeds=run.seeds, on_continuum=run.on_continuum, keys=sorted(keys | set(_OF_ZETA)),
@@ -135,12 +141,10 @@ def plan_runs(program: Program, study: Study, overrides: Settings, verification:
                          if not any(known.endswith(": " + problem) for known in problems)]
         if not problems:
             digests, values = reply.pop("sha256"), {key: _value(text) for key, text in reply.pop("values").items()}
-            law, a, viscosity, density, spacing = (values[key] for key in _OF_ZETA)
-            zeta = viscosity / a * math.sqrt(a / density) / spacing if law == "mooney-rivlin" and a > 0 else None
-            values = {key: values[key] for key in sorted(keys)}
-            runs += [PlannedRun(run.name, seed, run.on_continuum, changes, values, digest, zeta=zeta, **reply)
+            runs += [PlannedRun(run.name, seed, run.on_continuum, changes, {key: values[key] for key in sorted(keys)}, digest,
+                                zeta=zeta_of(values), **reply)
                      for seed, digest in zip(run.seeds, digests)]
-    if not problems:
+    if not problems and added is None:
         problems = [f"{row.place}/against: {row.against} is not a number in any of these runs"
                     for claim in study.claims for row in claim.rows
                     if row.against and not set(row.runs) <= set(study.left_out)
@@ -192,7 +196,7 @@ def read_requested_study(program: Program, options: Mapping[str, Any]) -> Reques
         raise InputError("--seeds is an option of --sweep; a study file lists its seeds")
     studies = program.shipped("studies", ".json")
     file = options["study"]
-    if file in studies and not os.path.exists(file):
+    if file in studies and not os.path.isfile(file):
         file = studies[file]
     text, problem = read_input(file)
     if problem:

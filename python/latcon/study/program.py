@@ -1,6 +1,7 @@
 """The program, which resolves the cases of a study; exit codes, messages and signals as its own."""
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import json
 import os
@@ -32,6 +33,11 @@ class Ended(Exception):
 
     exit_code: int
     message: str = ""
+
+
+def end_of(status: int) -> Ended:
+    """Returns the end for the status of a child, which has printed what is wrong unless a signal killed it."""
+    return Ended(status) if status > 0 else Ended(INTERNAL_ERROR, f"a child process was killed by signal {-status}")
 
 
 class Interrupted(BaseException):
@@ -113,8 +119,9 @@ class Program:
         machine has too little memory.
         """
         assert self._resolver.stdin
-        self._resolver.stdin.write(json.dumps(question).encode("ascii") + b"\n")
-        self._resolver.stdin.flush()
+        with contextlib.suppress(BrokenPipeError):  # it has ended: no answer
+            self._resolver.stdin.write(json.dumps(question).encode("ascii") + b"\n")
+            self._resolver.stdin.flush()
         answer = self._answer()
         if isinstance(answer, dict) and "problems" in answer:
             raise InputError(*answer["problems"])
@@ -124,7 +131,7 @@ class Program:
         assert self._resolver.stdout
         if line := self._resolver.stdout.readline():
             return json.loads(line)
-        raise Ended(max(self._resolver.wait(), INTERNAL_ERROR))
+        raise end_of(self._resolver.wait())
 
     def close(self) -> None:
         """Ends the process that answers."""

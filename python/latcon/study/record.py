@@ -20,7 +20,7 @@ from ..files import read_json, read_text
 from ..folder import FolderLock, add_to_list, archive, is_listed, write_atomically, write_file
 from ..program import page_command
 from ..rows import text_table
-from .program import Ended, InputError, Program
+from .program import Ended, InputError, Program, end_of
 from .pool import start_child
 from .output import csv_text
 
@@ -146,7 +146,7 @@ class Record:
                 raise
         self._printed.print(printed.decode("utf-8", "surrogateescape"))
         if child.returncode not in (DONE, CLAIM_FAILED):
-            raise Ended(max(child.returncode, 1))
+            raise end_of(child.returncode)
         found = read_json(pathlib.Path(folder, "run.json"))
         self.add(**{key: found[key] for key in ("verification", "verification_of_program", "failed_rows", "verdict") if key in found})
         self._document["wall_time_s"] |= found["wall_time_s"]

@@ -173,7 +173,7 @@ class _Reader:
             elif key == SEED_ENTRY:
                 value.problem('is set by "seeds"')
             elif isinstance(value.value, str):
-                found[key] = value.text()
+                found[key] = value.value  # empty: no numbers
             elif isinstance(value.value, (int, float)):
                 found[key] = value.dump()
             else:

@@ -164,6 +164,8 @@ def judge(row: StudyRow, planned: Mapping[str, PlannedRun], outcomes: Mapping[st
             outcome.is_test and outcome.has_bound and outcome.bound is None):
         if len(outcome.runs) == 1:
             outcome.number = outcome.runs[0].mean
+    elif row.rule.is_along and len({run.abscissa for run in _points(outcome)}) < len(_points(outcome)):
+        outcome.note.append(f"several runs have one value of {row.against}")
     elif row.rule is Rule.BRACKET:
         _judge_bracket(outcome)
     elif row.rule is Rule.ONSET_EXPONENT:

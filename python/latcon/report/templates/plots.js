@@ -24,7 +24,8 @@ function stacked(plot) {
 
 function drawPlot(figure, viewer) {
   const plot = JSON.parse(document.getElementById(figure.dataset.plot).textContent);
-  const labels = plot.labels;
+  // The legend is HTML, and names of folders are not.
+  const labels = plot.labels = plot.labels.map((label) => label.replace(/[&<]/g, (letter) => `&#${letter.charCodeAt()};`));
   let cursor = null;
   const look = () => ({
     colors: plot.colours.map(themed),
