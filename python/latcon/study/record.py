@@ -20,7 +20,7 @@ from ..files import object_in, read_json, read_text
 from ..folder import FolderLock, add_to_list, archive, is_listed, write_atomically, write_file
 from ..program import page_command
 from ..rows import text_table
-from .program import Ended, InputError, Program
+from .program import Ended, InputError, Program, require_access
 from .pool import start_child
 from .output import csv_text
 
@@ -204,6 +204,7 @@ def draw_page(kind: str, directory: str, page: str, repeat: str) -> bool:
 def report(_: Program, __: Printed, options: Mapping[str, Any]) -> int:
     """Draws pictures and page of a run, or of a folder of several; a dry run lists the runs."""
     folder, out = options["word"], options["output_dir"]
+    require_access(folder)
     if not os.path.isdir(folder):
         raise InputError(f"{folder} is not a directory")
     command = page_command("report", folder) + ["--animation"] * options["animation"]
