@@ -20,7 +20,7 @@ from .rows import text_table
 from .study.outcome import measured_values, unfit_rows
 from .study.output import csv_text
 from .study.plan import zeta_of
-from .study.program import InputError, Program
+from .study.program import InputError, Program, require_access
 from .study.record import Printed, Record, draw_page
 
 SIDES = ("first", "second")
@@ -45,6 +45,8 @@ class _Crack:
 def compare(program: Program, printed: Printed, options: Mapping[str, Any]) -> int:
     """Compares two cracks or two frames. Returns the exit code; raises LatconError for invalid options or files."""
     names = options["first"], options["second"]
+    for name in names:
+        require_access(name)
     cracks = [os.path.isfile(os.path.join(name, "crack.json")) for name in names]
     if all(cracks):
         if any(options[name] for name in ("time", "lattice_time", "continuum_time", "tolerances", "excluded", "overlap")):

@@ -201,7 +201,14 @@ def is_listed(folder: str, name: str) -> bool:
 
 
 def archive(folder: str) -> str:
-    """Moves the listed files of a folder to its subfolder ``earlier-run``, ``earlier-run-2``, ...; empty if there are none."""
+    """Moves the listed files of a folder to its subfolder ``earlier-run``, ``earlier-run-2``, ...; empty if there are none.
+
+    First moves checkpoints to ``checkpoints.old``, so that none is ever without the frames before it.
+    """
+    checkpoints = os.path.join(folder, "checkpoints")
+    if any(pathlib.Path(checkpoints).glob("*.h5")):
+        remove(checkpoints + ".old")
+        os.rename(checkpoints, checkpoints + ".old")
     return _move_aside(folder, _listed(folder))
 
 

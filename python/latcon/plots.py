@@ -44,7 +44,8 @@ def draw_sheet(frame: Frame, color: str, ax: matplotlib.axes.Axes | None, **styl
                            **{"linewidths": 0.5, "rasterized": True, **style})
     ax.add_collection(lines)
     ax.autoscale_view()
-    ax.set(aspect="equal", xlabel="x [cm]", ylabel="y [cm]", title=f"t = {1e3 * frame.time:.4g} ms")
+    is_relaxed = frame.time == 1 and not np.any(frame.fields.get("velocity", np.empty(0)))  # its 1 is no time
+    ax.set(aspect="equal", xlabel="x [cm]", ylabel="y [cm]", title="" if is_relaxed else f"t = {1e3 * frame.time:.4g} ms")
     unit = frame.units.get(color.split(" ")[0], "1")
     ax.figure.colorbar(lines, ax=ax, label=f"{color.replace('_', ' ')} [{unit}]")
     return ax
@@ -57,7 +58,7 @@ def bond_values(frame: Frame, color: str) -> Floats:
     Raises ValueError if the frame has no bonds or no such field, or if the component does not match the field.
     """
     if not len(frame.bonds):
-        raise ValueError("the frame has no bonds; use a frame of run.frames")
+        raise ValueError("the frame has no bonds; frames of a lattice have them, but for the reduced ones of run.motion")
     name, _, component = color.partition(" ")
     on_bonds = name in frame.bond_fields
     if not on_bonds and name not in frame.fields:

@@ -62,7 +62,11 @@ class Simulation:
         self.case = as_case(case)
         self._sheet = _module().Sheet(self.case.text(), side == "continuum")
         if checkpoint is not None:
-            self._sheet.load(os.fspath(checkpoint))
+            try:
+                open(checkpoint, "rb").close()  # the reason of the system
+                self._sheet.load(os.fspath(checkpoint))
+            except (OSError, ValueError) as error:
+                raise ValueError(f"{os.fspath(checkpoint)}: {getattr(error, 'strerror', error)}") from error
         self.sites = self._sheet.sites()
         self.reference: Floats = self._sheet.reference()[self.sites]
         self.broken: list[tuple[float, int, int, float, float, float]] = []

@@ -292,6 +292,11 @@ def test_a_directory_holds_one_fit_at_a_time(small_fit, crack, base, tmp_path):
     (tmp_path / "fit" / "evaluations.jsonl").write_text('{"number": 0}\n')
     with pytest.raises(latcon.UnreadableFile, match="line 1 is no evaluated point"):
         small_fit(tmp_path / "fit", evaluations=4)
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "run.json").write_text("{}")
+    with pytest.raises(latcon.LatconError, match="run: holds a run"):
+        small_fit(tmp_path / "run")
+    assert not (tmp_path / "run" / "case.prm").exists()
 
 
 def test_wrong_arguments_are_refused_before_anything_runs(small_fit, crack, tmp_path):

@@ -57,8 +57,10 @@ def test_a_checkpoint_continues_with_the_same_bits(sim, tmp_path):
     for one in (sim, other):
         one.step(300)
     assert sim.broken[n_before:] == other.broken and (sim.x == other.x).all() and (sim.vy == other.vy).all()
-    with pytest.raises(ValueError, match="of another size"):
+    with pytest.raises(ValueError, match="state.h5: .*of another size"):
         Simulation(tiny_case().set("Sheet/length", "2 cm"), tmp_path / "state.h5")
+    with pytest.raises(ValueError, match="other.h5: No such file"):
+        Simulation(tiny_case(), tmp_path / "other.h5")
 
 
 def test_forces_add_their_impulse(sim):

@@ -65,6 +65,7 @@ def commands(study, out):
     yield ["verify", "energy", "--quick", "--output-dir", out]
     yield ["report", out]
     yield ["study", study, "--skip-verification", "--output-dir", out]
+    yield ["batch", study, "--slurm", "--skip-verification", "--output-dir", out]
 
 
 def test_second_command_is_refused_and_writes_nothing(start, out, tmp_path, study):

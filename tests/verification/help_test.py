@@ -64,14 +64,14 @@ def test_help_on_an_entry_has_all_of_it():
 
 
 def test_init_makes_a_case_that_runs(tmp_path):
-    run = latcon("init", "strip/", cwd=tmp_path)
-    case = tmp_path / "strip" / "strip.prm"
-    assert "run it:       latcon fracture strip/strip.prm\n" in run.stdout
+    run = latcon("init", "my strip/", cwd=tmp_path)
+    case = tmp_path / "my strip" / "my strip.prm"
+    assert "run it:       latcon fracture 'my strip/my strip.prm'\n" in run.stdout
     assert case.read_bytes() == (CASES / "start.prm").read_bytes()
-    assert [path.name for path in case.parent.iterdir()] == ["strip.prm"]
-    assert refused("init", "strip", cwd=tmp_path) == "latcon: strip/strip.prm exists; give another folder"
-    latcon("fracture", "strip/strip.prm", *SHORT, cwd=tmp_path)
-    assert (tmp_path / "output/strip/crack.json").exists()
+    assert [path.name for path in case.parent.iterdir()] == ["my strip.prm"]
+    assert refused("init", "my strip", cwd=tmp_path) == "latcon: my strip/my strip.prm exists; give another folder"
+    latcon("fracture", "my strip/my strip.prm", *SHORT, cwd=tmp_path)
+    assert (tmp_path / "output/my strip/crack.json").exists()
 
 
 def test_absurd_cost_needs_yes(out):

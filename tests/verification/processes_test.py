@@ -82,6 +82,9 @@ def test_threads_are_those_of_the_environment():
         case = subprocess.run([LATCON, "lattice", CASES / "quick.prm", "--dry-run", "--set", "Lattice/solution=motion"],
                               capture_output=True, text=True, timeout=600, env=environment(OMP_NUM_THREADS=threads))
         assert f"{threads} threads of each rank" in case.stdout
+    refused = subprocess.run([LATCON, "lattice", CASES / "quick.prm", "--dry-run"], capture_output=True, text=True, timeout=600,
+                             env=environment(OMP_NUM_THREADS="4097"))
+    assert (refused.returncode, refused.stderr) == (2, "latcon: OMP_NUM_THREADS is 4097; allowed: 1 to 4096\n")
 
 
 def test_threads_that_wait_sleep_unless_they_are_told_otherwise(tmp_path):

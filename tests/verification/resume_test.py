@@ -16,6 +16,7 @@ import h5py
 import pytest
 
 from program import CASES, LATCON, checkpoints, expect_same, files, frames, latcon, numbers, read
+from verdicts_fixture import REFUSED
 
 STRIP = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report", "--set", "Sheet/length=2.5 cm", "--set",
          "Sheet/height=1.25 cm", "--set", "Output/frame interval=0.1 ms", "--set", "Checkpoints/steps=160", "--set",
@@ -154,12 +155,18 @@ def test_those_of_another_case_are_refused_with_the_difference(out, ended):
     assert "written by `latcon fracture`" in run.stderr
 
 
-def test_new_start_keeps_those_of_the_run_before(out, ended):
+@pytest.mark.parametrize("words, code", [
+    (STRIP, (0, 3)), (["lattice", *STRIP[1:2], *STRIP[4:8]], 0), (["compare", None, None, "--no-report"], 0),
+    (["fracture", *STRIP[1:2], "--no-report", *STRIP[4:8], *REFUSED], 3)])
+def test_new_start_keeps_those_of_the_run_before(out, ended, words, code):
+    """Whatever is started, its frames are not those of the checkpoints, and an end before its first one is no reason to lose them."""
     shutil.copytree(ended, out)
     before = [path.name for path in checkpoints(out)]
-    run_to_end(out)
-    assert sorted(path.name for path in (out / "checkpoints.old").glob("*.h5")) == before
-    assert [path.name for path in checkpoints(out)] == before
+    for _ in range(1 if words is STRIP else 2):
+        latcon(*(word or ended for word in words), "--output-dir", out, expect=code)
+        assert sorted(path.name for path in (out / "checkpoints.old").glob("*.h5")) == before
+        assert [path.name for path in checkpoints(out)] == (before if words is STRIP else [])
+        (out / "checkpoints").mkdir(exist_ok=True)
 
 
 def test_by_wall_time(out):

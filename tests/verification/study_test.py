@@ -94,6 +94,14 @@ class TestStudy(Studies):
         assert "0 runs, 4 are finished already" in self.study("--resume")
         assert (self.times(), {name: self.text(name) for name in first}) == (before, first)
 
+    def test_resume_keeps_the_run_of_another_command(self, ended):
+        latcon("lattice", CASES / "quick.prm", "--set", "Sheet/length=10 mm", "--set", "Sheet/height=6 mm", "-o", self.out)
+        others = self.text("run.json"), self.text("results.csv")
+        for _ in range(2):  # the second time the run is that of the study
+            assert "0 runs, 4 are finished already" in self.study("--resume")
+            assert (self.text("earlier-run-2/run.json"), self.text("earlier-run-2/results.csv")) == others
+        assert not (self.out / "earlier-run-3").exists()
+
     def test_claims_are_no_part_of_the_runs(self, ended):
         def change(document):  # a straight crack has no wavelength
             first, = document["claims"]

@@ -26,13 +26,18 @@ namespace
 using Json = nlohmann::ordered_json;
 using Words = std::vector<std::string>;
 
+constexpr unsigned int max_threads = 4096;
+
 // Sets the threads of each rank; by default OMP_NUM_THREADS, or as many as there are cores for it. Throws for an
-// environment variable that names no instruction set of the lattice.
+// environment variable that asks for too many, or names no instruction set of the lattice.
 void set_up_threads(const input::Options &options)
 {
   const unsigned int available = support::available_cores_per_rank(); // on all ranks, whatever their variables
   if (const unsigned int threads = has_default_threads(options) ? available : options.threads; threads > 0)
     omp_set_num_threads(static_cast<int>(threads));
+  else if (omp_get_max_threads() > static_cast<int>(max_threads))
+    throw support::InputError("OMP_NUM_THREADS is " + std::to_string(omp_get_max_threads()) + "; allowed: 1 to " +
+                              std::to_string(max_threads));
   try
   {
     lattice::kernels::instruction_sets();
@@ -120,7 +125,7 @@ support::ExitCode run_program(int argc, char **argv)
     ->check(no_tilde)
     ->type_name("DIR");
   app.add_option("--threads", options.threads, "threads of the lattice on each rank; default: all cores")
-    ->check(CLI::Range(1u, 4096u))
+    ->check(CLI::Range(1u, max_threads))
     ->type_name("N");
   app.add_flag("--quiet", options.quiet, "print errors only");
   app.add_flag("--no-report", options.no_report, "of cracks, studies and comparisons: draw neither pictures nor page");
@@ -251,7 +256,7 @@ support::ExitCode run_program(int argc, char **argv)
        "tasks of the array; default: one per run, at most 1000")
     ->check(CLI::Range(1u, 100000u));
   keep(batch_command, batch_chosen, "cpus_per_task", "--cpus-per-task", "N", 1u, "runs at once in each task")
-    ->check(CLI::Range(1u, 4096u))
+    ->check(CLI::Range(1u, max_threads))
     ->default_str("1");
   keep(batch_command, batch_chosen, "time", "--time", "TIME", std::string("1-00:00:00"),
        "limit per task, [days-]hours:minutes:seconds")

@@ -80,8 +80,7 @@ support::ExitCode run_continuum(const input::Options &options)
   try
   {
     const output::Results results =
-      moves ? motion(input, model, *sheet_in_motion, checkpoints, run)
-            : equilibrium(input, model, checkpoints, run);
+      moves ? motion(input, model, *sheet_in_motion, checkpoints, run) : equilibrium(input, model, run);
     return run.finish(results);
   }
   catch (const output::UnusableCheckpoint &)

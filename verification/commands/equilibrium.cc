@@ -6,7 +6,6 @@
 #include "continuum/errors.h"
 #include "continuum/field_writer.h"
 #include "continuum/static_solver.h"
-#include "verification/output/checkpoints.h"
 #include "verification/output/continuum_record.h"
 
 namespace latcon::commands
@@ -38,10 +37,8 @@ void note(Run &run, const continuum::SolverReport &report)
 
 } // namespace
 
-output::Results equilibrium(const input::Case &input, bridge::ContinuumModel &model, output::Checkpoints &checkpoints,
-                            Run &run)
+output::Results equilibrium(const input::Case &input, bridge::ContinuumModel &model, Run &run)
 {
-  checkpoints.resume([](auto &) {}); // it writes none
   output::ContinuumRecord record;
   continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
   auto set_up = run.info().stopwatch().phase("set-up");

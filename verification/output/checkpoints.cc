@@ -164,10 +164,7 @@ std::string Checkpoints::problem_of(const fs::path &path, CheckpointPlace &place
 bool Checkpoints::resume(const std::function<void(CheckpointReader &)> &parts) const
 {
   if (!found_)
-  {
-    archive_stale_checkpoints();
     return false;
-  }
   try
   {
     const Hdf5File file(found_->file.string());
@@ -232,18 +229,6 @@ void Checkpoints::write(std::size_t step, double time, const std::function<void(
         fs::remove(all[i], error);
   }
   last_written_ = std::chrono::steady_clock::now();
-}
-
-void Checkpoints::archive_stale_checkpoints() const
-{
-  if (!first_rank_ || files().empty())
-    return;
-  const fs::path aside = folder_.string() + ".old";
-  std::error_code error;
-  fs::remove_all(aside, error);
-  fs::rename(folder_, aside, error);
-  if (error)
-    throw support::OutputError(aside.string(), error.message());
 }
 
 } // namespace latcon::output

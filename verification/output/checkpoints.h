@@ -56,9 +56,8 @@ public:
   /// Returns the checkpoint from which the run resumes; none if it starts from the beginning.
   const std::optional<CheckpointPlace> &found() const { return found_; }
 
-  /// Loads the parts of a run, which must be set up as for its first step, from the checkpoint that was found. Without
-  /// a checkpoint, only moves checkpoints of an earlier run to `checkpoints.old`. Collective.
-  /// @return true if there was a checkpoint. @throws UnusableCheckpoint if the parts do not match it, OutputError
+  /// Loads the parts of a run, which must be set up as for its first step, from the checkpoint that was found, if any.
+  /// Collective. @return true if there was one. @throws UnusableCheckpoint if the parts do not match it
   bool resume(const std::function<void(CheckpointReader &)> &parts) const;
 
   /// Returns true if a checkpoint is due, by the number of steps or by the wall time since the last one. To be called
@@ -71,7 +70,6 @@ public:
 
 private:
   std::string problem_of(const std::filesystem::path &path, CheckpointPlace &place) const;
-  void archive_stale_checkpoints() const;
   std::vector<std::filesystem::path> files() const;
 
   std::filesystem::path folder_;

@@ -130,6 +130,17 @@ void write_files(const TextFiles &files)
 
 fs::path archive_earlier_output(const fs::path &folder, const fs::path &keep)
 {
+  const fs::path checkpoints = folder / "checkpoints", aside = folder / "checkpoints.old";
+  std::error_code error;
+  fs::directory_iterator files(checkpoints, error);
+  // First, so that a run that is killed between leaves no checkpoint without the frames before it.
+  if (std::any_of(begin(files), end(files), [](const auto &file) { return file.path().extension() == ".h5"; }))
+  {
+    fs::remove_all(aside, error);
+    fs::rename(checkpoints, aside, error);
+    if (error)
+      throw support::OutputError(aside.string(), error.message());
+  }
   return move_aside(folder, names_in(folder), keep);
 }
 

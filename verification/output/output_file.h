@@ -33,10 +33,10 @@ inline constexpr const char *output_list_name = ".latcon-files";
 /// @throws OutputError
 void begin_output_list(const std::filesystem::path &folder);
 
-/// Moves the listed files of an output directory to its subfolder `earlier-run`, or if that exists to `earlier-run-2`
-/// and so on. Files that are not listed are not moved.
+/// Moves the checkpoints in an output directory to its subfolder `checkpoints.old`, which they replace, and the listed
+/// files to `earlier-run`, or if that exists to `earlier-run-2` and so on. Files that are not listed are not moved.
 /// @param keep file that is not moved, listed or not; may be empty
-/// @return the folder, or an empty path if there was nothing to move
+/// @return the folder of the files, or an empty path if there were none
 /// @throws OutputError
 std::filesystem::path archive_earlier_output(const std::filesystem::path &folder, const std::filesystem::path &keep);
 

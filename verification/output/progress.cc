@@ -24,7 +24,8 @@ bool is_dumb_terminal()
 int descriptor_of_viewer()
 {
   const char *const text = std::getenv("LATCON_PROGRESS");
-  return text != nullptr && *text != '\0' ? std::atoi(text) : -1;
+  const std::size_t n_digits = text != nullptr ? std::strspn(text, "0123456789") : 0;
+  return n_digits > 0 && n_digits < 10 && text[n_digits] == '\0' ? std::atoi(text) : -1;
 }
 
 } // namespace

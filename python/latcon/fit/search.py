@@ -202,7 +202,7 @@ def fit_case(case: CaseLike, parameters: Sequence[Parameter], observations: Sequ
     BadInput
         If the case or a bound is wrong.
     LatconError
-        If the directory holds another fit or is in use, optuna or scipy is missing, or no run of the first batch is done.
+        If the directory holds a run or another fit, or is in use, optuna or scipy is missing, or no run of the first batch is done.
     OutputFailed, ProgramError
         If a run cannot write its files, or is killed. Other errors of a run are recorded with the point, which gets a misfit
         worse than that of all others.

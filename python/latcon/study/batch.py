@@ -75,19 +75,19 @@ def write_batch(program: Program, printed: Printed, options: Mapping[str, Any]) 
         raise InputError(f"--output-dir '{printable(folder)}': sbatch does not support folders with blanks, quotes, % or \\ "
                          "for its log files")
     require_folder_of(requested.study, directory)
-    os.makedirs(folder, exist_ok=True)
-    if requested.kept:
-        with FolderLock(directory):
-            requested.write_sweep()
     # The same choices, from any folder.
     study = requested.file if requested.kept else options["study"]
-    words = [options["program"], "study", os.path.abspath(study) if os.path.isfile(study) else study]
+    words = [options["program"], "study", os.path.abspath(study) if requested.kept or os.path.isfile(study) else study]
     words += [*set_options(requested.overrides), *(f"--{name.replace('_', '-')}" for name in ("quick", "skip_verification", "no_report", "yes") if options[name])]
     command = shlex.join([*words, "--output-dir", os.path.abspath(directory)])
     runs, collect = os.path.join(folder, "runs.sh"), os.path.join(folder, "collect.sh")
-    write_file(runs, _directives(options, "latcon-runs", f"{folder}/runs-%a.log") + _ARRAY.format(
-        n_tasks=n_tasks, cpus_per_task=options["cpus_per_task"], command=command))
-    write_file(collect, _directives(options, "latcon-collect", f"{folder}/collect.log") + f"\nexec {command} --collect\n")
+    os.makedirs(directory, exist_ok=True)
+    with FolderLock(directory):
+        os.makedirs(folder, exist_ok=True)
+        requested.write_sweep()
+        write_file(runs, _directives(options, "latcon-runs", f"{folder}/runs-%a.log") + _ARRAY.format(
+            n_tasks=n_tasks, cpus_per_task=options["cpus_per_task"], command=command))
+        write_file(collect, _directives(options, "latcon-collect", f"{folder}/collect.log") + f"\nexec {command} --collect\n")
     counts = f"{len(plan)} runs in {n_tasks} tasks"
     if not options["submit"]:
         printed.say(f"{counts}. To submit them:\n  runs=$(sbatch --parsable {shlex.quote(runs)})\n"

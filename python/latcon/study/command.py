@@ -13,7 +13,7 @@ import numpy as np
 
 from ..compare import compare
 from ..errors import BAD_INPUT, CLAIM_FAILED, DONE, INTERNAL_ERROR, INTERRUPTED, OUTPUT_FAILED, SOLVER_FAILED, LatconError
-from ..folder import FolderLock, prepare_run, remove, require_in_place, write_file
+from ..folder import FolderLock, prepare_run, remove, require_in_place, write_atomically, write_file
 from .batch import write_batch
 from .explain import explain, init
 from .outcome import RunOutcome, RunState, is_begun, read_outcome
@@ -127,10 +127,10 @@ class _StudyCommand:
             selected = []
         elif os.path.exists(os.path.join(self.directory, PLAN_FILE)):
             raise InputError(f"{self.directory} has the runs of a study in shards; give --collect, or another folder (--output-dir)")
-        record = self.record = Record(program, self.printed, own_directory, options, self.resume)
+        record = self.record = Record(program, self.printed, own_directory, options, self.resume,
+                                      skip_verification=options["skip_verification"], study=requested.study.title)
         if not options["shard"]:
             requested.write_sweep()
-        record.add(skip_verification=options["skip_verification"], study=requested.study.title)
         if self.verification is Verification.BASE_CASE and not options["collect"]:
             record.verify(program, base_text(program, requested.study, requested.overrides),
                           any(one.on_continuum for one in requested.study.runs))
@@ -257,7 +257,7 @@ class _StudyCommand:
         with FolderLock(self.directory, _PATIENCE_WITH_SHARDS):
             file = os.path.join(self.directory, PLAN_FILE)
             if not os.path.exists(file):
-                write_file(file, text)
+                write_atomically(file, text)  # not listed: it stays where files of another command are moved aside
             self.require_plan(text)
             self.requested.write_sweep()
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -47,7 +48,8 @@ def init(program: Program, printed: Printed, options: Mapping[str, Any]) -> int:
     if not options["dry_run"]:
         os.makedirs(folder, exist_ok=True)
         write_atomically(case, content)
-        printed.say(f"{case}\n\nrun it:       latcon fracture {case}\ncheck it:     latcon fracture {case} --dry-run\n"
+        quoted = shlex.quote(case)
+        printed.say(f"{case}\n\nrun it:       latcon fracture {quoted}\ncheck it:     latcon fracture {quoted} --dry-run\n"
                     "its entries:  latcon entries")
     return DONE
 
@@ -67,7 +69,8 @@ def _line(entry: Entry) -> str:
 
 def _whole(entry: Entry) -> str:
     value = _text(entry.default)
-    unit = "none" if entry.unit == "1" else f"{entry.unit}; a value may carry its unit, with any prefix"
+    others = "or deg" if entry.unit == "rad" else "with a prefix n, u, m, c, d, k, M or G"
+    unit = "none" if entry.unit == "1" else f"{entry.unit}; a value may carry its unit, {others}"
     default, value = ("none, the entry is required", "...") if entry.required else (value or "empty", value)
     return (f"{entry.key}\n{_hanging('  ', entry.documentation)}" + (f"  unit:     {unit}\n" if entry.unit else "")
             + (_hanging("  allowed:  ", entry.allowed) if entry.allowed else "") + f"  default:  {default}\n"

@@ -80,6 +80,16 @@ def printable(text: str, longest: int = 80) -> str:
                   lambda letter: "".join(f"\\x{byte:02x}" for byte in letter[0].encode("utf-8", "surrogateescape")), text)
 
 
+def require_access(folder: str) -> None:
+    """Raises InputError if the system denies access to a folder, so that it seems to be absent or empty."""
+    try:
+        os.close(os.open(os.path.join(folder, "."), os.O_RDONLY))
+    except PermissionError as error:
+        raise InputError(f"{printable(folder)} cannot be read: {error.strerror}") from None
+    except OSError:
+        pass
+
+
 def read_input(path: str) -> tuple[bytes, str]:
     """Returns the content of a file of the user, and why it cannot be used."""
     largest = 1 << 24

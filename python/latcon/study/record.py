@@ -16,11 +16,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..errors import BAD_INPUT, CLAIM_FAILED, DONE, INTERRUPTED, OUTPUT_FAILED, PACKAGES_MISSING
-from ..files import read_json, read_text
+from ..files import object_in, read_json, read_text
 from ..folder import FolderLock, add_to_list, archive, is_listed, write_atomically, write_file
 from ..program import page_command
 from ..rows import text_table
-from .program import Ended, InputError, Program, end_of
+from .program import Ended, InputError, Program, end_of, require_access
 from .pool import start_child
 from .output import csv_text
 
@@ -61,13 +61,16 @@ def json_text(document: Any) -> str:
 class Record:
     """Locked output directory of a command; `run.json` has the exit code however the command ends.
 
-    With `resume` earlier files stay; otherwise they are moved to a subfolder.
+    With `resume` earlier files of a study stay; otherwise they are moved to a subfolder. `facts` are those of `run.json`.
     """
 
-    def __init__(self, program: Program, printed: Printed, directory: str, options: Mapping[str, Any], resume: bool) -> None:
+    def __init__(self, program: Program, printed: Printed, directory: str, options: Mapping[str, Any], resume: bool,
+                 **facts: Any) -> None:
         self.directory, self._printed, self._options = directory, printed, options
         os.makedirs(directory, exist_ok=True)
         self._lock = FolderLock(directory)
+        begun = object_in(f"{directory}/run.json")
+        resume = resume and (not begun or "study" in begun)  # not the run of another command
         if not resume and (aside := archive(directory)):
             printed.say(f"The files of an earlier run in {directory} are now in {aside}")
         add_to_list(directory, [])
@@ -81,7 +84,7 @@ class Record:
             with open(log, encoding="utf-8", errors="surrogateescape") as file:
                 self._log = file.read()
         self._log += "$ " + " ".join(options["arguments"]) + "\n"
-        self._document: dict[str, Any] = program.facts | {"wall_time_s": {}}
+        self._document: dict[str, Any] = program.facts | {"wall_time_s": {}} | facts
         printed.record = self
         self.write(None)
 
@@ -201,6 +204,7 @@ def draw_page(kind: str, directory: str, page: str, repeat: str) -> bool:
 def report(_: Program, __: Printed, options: Mapping[str, Any]) -> int:
     """Draws pictures and page of a run, or of a folder of several; a dry run lists the runs."""
     folder, out = options["word"], options["output_dir"]
+    require_access(folder)
     if not os.path.isdir(folder):
         raise InputError(f"{folder} is not a directory")
     command = page_command("report", folder) + ["--animation"] * options["animation"]
