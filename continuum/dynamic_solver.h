@@ -48,7 +48,6 @@ struct DynamicSettings
   NewmarkParameters rule = NewmarkParameters::average_acceleration();
   double relative_tolerance = 1e-10;       ///< residual relative to the acting forces [-], in (0, 1)
   unsigned int max_newton_iterations = 20; ///< per time step
-  unsigned int max_halvings = 10;          ///< per Newton step that leads to det F <= 0
   unsigned int max_step_halvings = 4;      ///< per time step that does not converge; 0: fail immediately
   bool keeps_tangent = false; ///< between steps too, while residuals fall fast; bits after archive() differ then
   LinearSettings linear = LinearSettings();

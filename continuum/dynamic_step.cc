@@ -262,17 +262,13 @@ std::string DynamicSolver::attempt(const Step &step, Vector &u)
       return NewtonStep{iterations, 0.};
     };
     const NewtonSolver<Residual> newton{
-      {settings_.relative_tolerance, settings_.max_newton_iterations, settings_.max_halvings, largest_forcing},
+      {settings_.relative_tolerance, settings_.max_newton_iterations, largest_forcing},
       {[&](const Vector &at) { return evaluate(step, at); },
        [this](const Residual &at, const Vector &there) { return round_off(at, there); }, solve, nullptr,
        [this](const Residual &at) { return ", the largest residual is" + location_of_largest(at.residual); }}};
     return newton.solve(u, state, number, 1., 0, report_.iterations);
   }
-  catch (const NonPhysicalState &failure)
-  {
-    return failure.what();
-  }
-  catch (const LinearSolverFailed &failure)
+  catch (const NoSolution &failure)
   {
     return failure.what();
   }

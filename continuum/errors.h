@@ -5,12 +5,19 @@
 
 namespace latcon::continuum
 {
-/// Deformation outside the domain of the law: det F <= 0, or no equilibrium thickness. A solver may retry with a
-/// smaller step.
-class NonPhysicalState : public std::domain_error
+/// Equations without a solution, or one that was not found: NonPhysicalState, LinearSolverFailed, SolverFailed.
+class NoSolution : public std::runtime_error
 {
 public:
-  using std::domain_error::domain_error;
+  using std::runtime_error::runtime_error;
+};
+
+/// Deformation outside the domain of the law: det F <= 0, or no equilibrium thickness. A solver may retry with a
+/// smaller step.
+class NonPhysicalState : public NoSolution
+{
+public:
+  using NoSolution::NoSolution;
 };
 
 /// Invalid arguments: material constants, sizes, boundaries, settings, points outside the sheet.
@@ -28,10 +35,10 @@ inline void require(const bool holds, const std::string &rule)
 }
 
 /// Linear system that could not be solved to its tolerance.
-class LinearSolverFailed : public std::runtime_error
+class LinearSolverFailed : public NoSolution
 {
 public:
-  using std::runtime_error::runtime_error;
+  using NoSolution::NoSolution;
 };
 
 /// File that could not be written completely.

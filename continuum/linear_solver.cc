@@ -19,8 +19,6 @@ LinearSolver::LinearSolver(const Sheet &sheet, const LinearSettings &settings, c
 {
   if (!(settings.relative_tolerance > 0. && settings.relative_tolerance < 1.))
     throw InvalidInput("the relative tolerance of the linear solver must be in (0, 1)");
-  if (!(settings.rebuild_ratio >= 0. && std::isfinite(settings.rebuild_ratio)))
-    throw InvalidInput("rebuild_ratio of the linear solver must be finite and >= 0");
 }
 
 void LinearSolver::update(const Sheet::Vector &u, const Assembler &assemble, const Assembler &assemble_coarser)

@@ -51,9 +51,4 @@ NetworkGradient::NetworkGradient(const std::vector<BondFamily> &families, const 
   : LatticeGradient(in_all_directions(families), length)
 {
 }
-
-double NetworkGradient::smallest_length(const std::vector<BondFamily> &families)
-{
-  return LatticeGradient::smallest_length(merge_families(families));
-}
 } // namespace latcon::continuum

@@ -19,12 +19,9 @@ public:
   static constexpr unsigned int n_directions = 32;
 
   /// Creates the law from `families`, whose directions are ignored, and `length` l_d [m]. Families with the same
-  /// potential are merged into one with their mean squared length, so l_d only needs to satisfy eq. (C.58). Throws
-  /// InvalidInput as LatticeGradient does.
+  /// potential are merged into one with their mean squared length, so l_d only needs to satisfy eq. (C.58): it is at
+  /// least the largest root-mean-square length of bonds with the same potential, over sqrt(12). Throws InvalidInput as
+  /// LatticeGradient does.
   NetworkGradient(const std::vector<BondFamily> &families, double length);
-
-  /// Returns the smallest l_d [m] for which the energy is positive: the largest root-mean-square length of bonds with
-  /// the same potential, over sqrt(12) (theory-continuum.md, eq. (C.58)).
-  static double smallest_length(const std::vector<BondFamily> &families);
 };
 } // namespace latcon::continuum

@@ -21,7 +21,6 @@ struct NewtonSettings
 {
   double relative_tolerance;   ///< residual over reference force [-], in (0, 1)
   unsigned int max_iterations; ///< Newton steps
-  unsigned int max_halvings;   ///< per Newton step in the line search
   /// Loosest tolerance of a linear system, residual relative to the right-hand side [-], in [0, 1); 0: solve each
   /// system to round-off.
   double largest_forcing = 0.;
@@ -153,9 +152,10 @@ private:
       // Along an exact Newton step the residual falls as 1 - length.
       return candidate.free <= (1. - sufficient * length) * state.free;
     };
+    constexpr unsigned int max_halvings = 10;
     length = 1.;
     std::string reason;
-    for (unsigned int halvings = 0; halvings <= settings.max_halvings; ++halvings, length *= 0.5)
+    for (unsigned int halvings = 0; halvings <= max_halvings; ++halvings, length *= 0.5)
       try
       {
         Vector trial = u;

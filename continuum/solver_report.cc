@@ -22,7 +22,7 @@ std::string SolverReport::text() const
 }
 
 SolverFailed::SolverFailed(const std::string &reason, SolverReport report)
-  : std::runtime_error(reason + "\n" + report.text()), report_(std::move(report))
+  : NoSolution(reason + "\n" + report.text()), report_(std::move(report))
 {
 }
 } // namespace latcon::continuum

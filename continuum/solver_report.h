@@ -1,6 +1,7 @@
 #pragma once
 
-#include <stdexcept>
+#include "continuum/errors.h"
+
 #include <string>
 #include <vector>
 
@@ -50,7 +51,7 @@ struct SolverReport
 
 /// Error of a solve that did not reach the full load, or of a time step that failed. Contains the record of all
 /// attempts; what() ends with it as a table.
-class SolverFailed : public std::runtime_error
+class SolverFailed : public NoSolution
 {
 public:
   SolverFailed(const std::string &reason, SolverReport report);

@@ -64,14 +64,14 @@ StaticSolver::Evaluation StaticSolver::evaluate(const Vector &u, const double lo
   state.stored = sheet_.residual(state.displacement, state.residual, state.magnitude, load_factor);
   state.energy = state.stored - load_factor * (loads_ * u);
   state.residual.add(-load_factor, loads_);
-  double free = 0.;
+  state.free = norm_over_free(sheet_, [&](const auto i) { return std::pow(state.residual(i), 2); });
   double given = 0.; // acting forces: reactions and dead loads
   for (const types::global_dof_index i : sheet_.owned())
   {
-    (sheet_.homogeneous_constraints().is_constrained(i) ? given : free) += state.residual(i) * state.residual(i);
+    if (sheet_.homogeneous_constraints().is_constrained(i))
+      given += std::pow(state.residual(i), 2);
     given += std::pow(load_factor * loads_(i), 2);
   }
-  state.free = std::sqrt(dealii::Utilities::MPI::sum(free, sheet_.communicator()));
   state.reference = std::sqrt(dealii::Utilities::MPI::sum(given, sheet_.communicator()));
   return state;
 }
@@ -135,7 +135,7 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     return 4. * std::numeric_limits<double>::epsilon() * std::sqrt(n_points) * std::abs(state.energy);
   };
   const NewtonSolver<Evaluation> newton{
-    {settings_.relative_tolerance, settings_.max_newton_iterations, settings_.max_halvings, settings_.largest_forcing},
+    {settings_.relative_tolerance, settings_.max_newton_iterations, settings_.largest_forcing},
     {evaluate_at, [this](const Evaluation &state, const Vector &u) { return round_off(state, u); },
      [&](const Evaluation &state, const Vector &, const double forcing, const bool keeps_tangent, Vector &step)
      {
@@ -170,11 +170,7 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
       return failure;
     current_ = std::make_shared<const Evaluation>(std::move(state));
   }
-  catch (const NonPhysicalState &failure)
-  {
-    return failure.what();
-  }
-  catch (const LinearSolverFailed &failure)
+  catch (const NoSolution &failure)
   {
     return failure.what();
   }

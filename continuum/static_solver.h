@@ -17,7 +17,6 @@ struct StaticSettings
   unsigned int degree = 3;                 ///< polynomial degree p >= 1 of the elements; p >= 2 with a gradient law
   double relative_tolerance = 1e-10;       ///< residual over reference force [-], in (0, 1)
   unsigned int max_newton_iterations = 20; ///< per load step
-  unsigned int max_halvings = 10;          ///< per Newton step in the line search
   double first_load_step = 1.;             ///< first increment of the load factor [-], in (0, 1]
   double smallest_load_step = 1. / 1024.;  ///< increment below which the solve fails [-]
   /// Loosest tolerance of a linear system, residual relative to the right-hand side [-], in [0, 1). It avoids solving

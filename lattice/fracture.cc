@@ -123,8 +123,8 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
   return removed_energy;
 }
 
-const std::vector<BrokenBond> &Fracture::apply(State &state, const Forces &forces,
-                                               const VectorField &evaluated_velocity, int *number)
+std::vector<BrokenBond> Fracture::apply(State &state, const Forces &forces, const VectorField &evaluated_velocity,
+                                        int *number)
 {
   if (state.breaking_stretch != breaking_stretch_ || state.toughened_stretch != toughened_stretch_ ||
       state.strength.empty() != material_.disorder.strength.is_none())
@@ -141,19 +141,19 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, const Forces &force
                       else if (now == Event::retracted)
                         state.bonds.toughen(bond.near, bond.kind);
                     });
-  broken_ = lose_bonds(state, own, number);
+  std::vector<BrokenBond> lost = lose_bonds(state, own, number);
 
   const std::optional<std::size_t> previous_tip = tip_;
   if (tip_)
     tip_Y_before_ = lattice_.reference(*tip_).y();
-  for (const BrokenBond &bond : broken_)
+  for (const BrokenBond &bond : lost)
   {
     consider_tip(state, bond.near);
     consider_tip(state, bond.far);
   }
   if (tip_ != previous_tip)
     toughen_behind_tip(state);
-  return broken_;
+  return lost;
 }
 
 void Fracture::locate_tip(State &state)

@@ -105,8 +105,8 @@ public:
   /// @param number in: of this rank, out: the largest over all ranks; see RowPartition::all_gather
   /// @return the bonds of the whole sheet that broke now, in the order of storage
   /// @throws std::logic_error for a state that configure() has not set
-  const std::vector<BrokenBond> &apply(State &state, const Forces &forces, const VectorField &evaluated_velocity,
-                                       int *number = nullptr);
+  std::vector<BrokenBond> apply(State &state, const Forces &forces, const VectorField &evaluated_velocity,
+                                int *number = nullptr);
 
   /// Finds the tip among all sites and toughens behind it; for a state that was cut or loaded from outside.
   void locate_tip(State &state);
@@ -160,7 +160,6 @@ private:
   std::optional<std::size_t> tip_;                                 // its place; none before a site was considered
   double tip_Y_before_ = 0.;                                       // reference Y of the tip before this step [m]
   double toughened_to_ = -std::numeric_limits<double>::infinity(); // X [m] behind which all bonds are toughened
-  std::vector<BrokenBond> broken_;
 };
 
 } // namespace latcon::lattice

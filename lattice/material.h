@@ -85,11 +85,6 @@ struct Material
           bonds += lattice.has_bond(bond.near, kind) ? 1 : 0;
     return bonds;
   }
-  /// Mean number of bonds of a site inside a sheet.
-  double mean_coordination(const TriangularLattice &lattice) const
-  {
-    return lattice.scattered() != nullptr ? lattice.scattered()->bonds_of_point : coordination(lattice);
-  }
 };
 
 /// Returns the bonds with their dashpots, but without memories.

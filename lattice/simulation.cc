@@ -260,7 +260,7 @@ void Simulation::advance(double duration, double end)
     return;
   }
 
-  const std::vector<BrokenBond> &broken =
+  const std::vector<BrokenBond> broken =
     fracture_->apply(state_, forces_, integrator_->evaluated_velocity(state_), &parts_);
   if (broken.empty())
     return;

@@ -78,9 +78,7 @@ public:
 
   /// Sends positions, velocities and bonds in some rows to the root rank.
   /// @return state(), complete in these rows on the root rank, unchanged on the others
-  const State &gather(Rows rows);
-  /// Sends the whole sheet to the root rank.
-  const State &gather() { return gather({0, lattice_.rows()}); }
+  const State &gather(Rows rows = TriangularLattice::all);
 
   /// Saves what changes from step to step, or loads it into a simulation that was set up like the one that was saved,
   /// before its first step; that continues with the same bits, on any number of ranks. Collective.

@@ -68,13 +68,8 @@ std::vector<SiteValues> site_fields(const State &state, const TriangularLattice 
   return fields;
 }
 
-const std::optional<StrainGradientFit::Weights> &StrainGradientFit::weights(unsigned int bonds)
+std::optional<StrainGradientFit::Weights> StrainGradientFit::weights(unsigned int bonds) const
 {
-  const auto [found, is_missing] = weights_.try_emplace(bonds);
-  std::optional<Weights> &weights = found->second;
-  if (!is_missing)
-    return weights;
-
   std::vector<std::size_t> neighbours;
   for (std::size_t n = 0; n < n_neighbours; ++n)
     if ((bonds >> n & 1u) != 0)
@@ -82,7 +77,7 @@ const std::optional<StrainGradientFit::Weights> &StrainGradientFit::weights(unsi
   constexpr Eigen::Index unknowns = 5; // F_x, F_y, G_xx, G_xy, G_yy of one component, in units of d
   const auto n_equations = static_cast<Eigen::Index>(neighbours.size());
   if (n_equations < unknowns)
-    return weights;
+    return std::nullopt;
   const double d = lattice_.spacing();
   Eigen::MatrixXd equations(n_equations, unknowns);
   for (Eigen::Index i = 0; i < n_equations; ++i)
@@ -94,10 +89,10 @@ const std::optional<StrainGradientFit::Weights> &StrainGradientFit::weights(unsi
   // Neighbours stand at distances of the order of d, so that a set either fixes all five well or not at all.
   const std::optional<Eigen::MatrixXd> inverse = support::left_inverse(equations, 1e-6);
   if (!inverse)
-    return weights;
-  weights = Weights::Zero();
+    return std::nullopt;
+  Weights weights = Weights::Zero();
   for (Eigen::Index i = 0; i < n_equations; ++i)
-    weights->col(static_cast<Eigen::Index>(neighbours[static_cast<std::size_t>(i)])) =
+    weights.col(static_cast<Eigen::Index>(neighbours[static_cast<std::size_t>(i)])) =
       inverse->col(i).tail<3>() / (d * d);
   return weights;
 }
@@ -120,10 +115,12 @@ std::optional<StrainGradient> StrainGradientFit::at(const State &state, std::siz
                           const double sign = forward ? 1. : -1.;
                           positions.row(static_cast<Eigen::Index>(n)) = sign * state.position.difference(near, far);
                         });
-  const std::optional<Weights> &of_bonds = weights(bonds);
-  if (!of_bonds)
+  const auto [found, is_new] = weights_.try_emplace(bonds);
+  if (is_new)
+    found->second = weights(bonds);
+  if (!found->second)
     return std::nullopt;
-  const Eigen::Matrix<double, 3, 2> G = *of_bonds * positions;
+  const Eigen::Matrix<double, 3, 2> G = *found->second * positions;
   StrainGradient gradient;
   gradient.x << G(0, 0), G(1, 0), G(1, 0), G(2, 0);
   gradient.y << G(0, 1), G(1, 1), G(1, 1), G(2, 1);

@@ -73,7 +73,7 @@ private:
   using Weights = Eigen::Matrix<double, 3, n_neighbours>;
 
   /// None if the bonds do not fix a quadratic.
-  const std::optional<Weights> &weights(unsigned int bonds);
+  std::optional<Weights> weights(unsigned int bonds) const;
 
   const TriangularLattice &lattice_;
   std::unordered_map<unsigned int, std::optional<Weights>> weights_;

@@ -89,12 +89,4 @@ public:
   }
 };
 
-/// Folder that another process writes to.
-class FolderInUse : public std::runtime_error
-{
-public:
-  /// @param owner process and machine according to the lock file; empty if unknown
-  FolderInUse(const std::filesystem::path &folder, const std::string &owner);
-};
-
 } // namespace latcon::support

@@ -96,11 +96,6 @@ bool is_same_file(int descriptor, const std::filesystem::path &path)
 
 } // namespace
 
-FolderInUse::FolderInUse(const std::filesystem::path &folder, const std::string &owner)
-  : std::runtime_error(folder.string() + " is in use by " + (owner.empty() ? "another process" : "process " + owner))
-{
-}
-
 FolderLock::FolderLock(std::filesystem::path folder, std::chrono::milliseconds patience)
   : folder_(std::move(folder)), name_(name_of_folder(folder_))
 {
@@ -119,7 +114,8 @@ FolderLock::FolderLock(std::filesystem::path folder, std::chrono::milliseconds p
     const std::string owner = is_locked ? "" : owner_in(descriptor_);
     ::close(std::exchange(descriptor_, -1));
     if (std::chrono::steady_clock::now() >= deadline)
-      throw FolderInUse(folder_, owner);
+      throw InputError(folder_.string() + " is in use by " + (owner.empty() ? "another process" : "process " + owner) +
+                       "; wait until it has ended, or choose another folder (--output-dir)");
     std::this_thread::sleep_for(poll_interval);
     descriptor_ = open_lock_file(path);
   }

@@ -19,7 +19,8 @@ class FolderLock
 {
 public:
   /// Locks an existing folder. Waits up to `patience` for another process to release the lock.
-  /// @throws FolderInUse @throws OutputError if the lock file cannot be created or is not a regular file
+  /// @throws InputError if that does not happen @throws OutputError if the lock file cannot be created or is not a
+  /// regular file
   explicit FolderLock(std::filesystem::path folder, std::chrono::milliseconds patience = std::chrono::seconds(1));
   ~FolderLock();
 

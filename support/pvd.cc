@@ -11,8 +11,7 @@ std::string pvd_text(const std::vector<PvdFile> &files)
     "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
     "  <Collection>\n";
   for (const PvdFile &file : files)
-    text += "    <DataSet timestep=\"" + full_precision(file.time) + "\" part=\"" + std::to_string(file.part) +
-            "\" file=\"" + file.name + "\"/>\n";
+    text += "    <DataSet timestep=\"" + full_precision(file.time) + "\" part=\"0\" file=\"" + file.name + "\"/>\n";
   return text + "  </Collection>\n</VTKFile>\n";
 }
 

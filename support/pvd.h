@@ -10,9 +10,8 @@ namespace latcon::support
 /// A file of a series, relative to the folder of the .pvd.
 struct PvdFile
 {
-  double time; ///< [s], or another parameter of the series
+  double time; ///< [s], or another parameter of the series; one file for each
   std::string name;
-  unsigned int part = 0; ///< number among the files of one time
 };
 
 /// Returns the text of a .pvd file. Times are in full precision.

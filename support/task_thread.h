@@ -1,21 +1,22 @@
-/// Tasks on a thread of their own.
+/// Tasks on another thread.
 #pragma once
 
-#include <condition_variable>
+#include <chrono>
 #include <cstddef>
 #include <deque>
-#include <exception>
 #include <functional>
-#include <mutex>
-#include <thread>
+#include <future>
+#include <utility>
 
 namespace latcon::support
 {
 
-/// Performs tasks on a thread of its own, in the order in which they were added.
+/// Performs tasks beside the owner's thread, one after the other in the order in which they were added. What a task
+/// holds is freed when it ends, before the next may be added.
 ///
 /// An exception that a task throws is rethrown to the owner by the next call of add(), check() or wait(); tasks that
-/// were added before that call are not performed any more. Only the owner's thread may call these.
+/// were added before that call are not performed any more. Only the owner's thread may call these. The destructor waits
+/// until the pending tasks have been performed; an exception that they throw is lost.
 class TaskThread
 {
 public:
@@ -26,11 +27,18 @@ public:
   TaskThread(const TaskThread &) = delete;
   TaskThread &operator=(const TaskThread &) = delete;
 
-  /// Performs the pending tasks. An exception that they throw is lost.
-  ~TaskThread();
-
-  /// Adds a task; waits until fewer than max_pending are pending. The first call starts the thread.
-  void add(std::function<void()> task);
+  /// Adds a task; waits until fewer than max_pending are pending.
+  void add(std::function<void()> task)
+  {
+    wait_until_pending(max_pending - 1);
+    auto perform = [before = pending_.empty() ? Future() : pending_.back(), task = std::move(task)]() mutable
+    {
+      if (before.valid())
+        std::exchange(before, {}).get(); // throws what an earlier task has thrown
+      std::exchange(task, nullptr)();
+    };
+    pending_.push_back(std::async(std::launch::async, std::move(perform)));
+  }
 
   /// Waits until all tasks have been performed.
   void wait() { wait_until_pending(0); }
@@ -39,19 +47,33 @@ public:
   void check() { wait_until_pending(max_pending); }
 
   /// Returns whether a task is being performed, or about to be.
-  bool is_busy();
+  bool is_busy() const { return !pending_.empty() && !is_done(pending_.back()); }
 
 private:
-  void perform_tasks();
-  void wait_until_pending(std::size_t at_most);
+  using Future = std::shared_future<void>; // its destructor waits for the task
 
-  std::mutex mutex_; // of what follows
-  std::condition_variable changed_;
-  std::deque<std::function<void()>> pending_; // the first is being performed
-  std::exception_ptr error_;
-  bool is_ending_ = false;
+  static bool is_done(const Future &task)
+  {
+    return task.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  }
 
-  std::thread thread_;
+  void wait_until_pending(std::size_t at_most)
+  {
+    while (!pending_.empty() && (pending_.size() > at_most || is_done(pending_.front())))
+      try
+      {
+        const Future first = std::move(pending_.front());
+        pending_.pop_front();
+        first.get();
+      }
+      catch (...)
+      {
+        pending_.clear();
+        throw;
+      }
+  }
+
+  std::deque<Future> pending_; // each waits for the one before
 };
 
 } // namespace latcon::support

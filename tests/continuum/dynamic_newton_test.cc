@@ -101,7 +101,7 @@ TEST(NewtonSolver, ReducesTheResidualWithoutAnEnergy)
   const auto evaluate = [](const Vector &at) { return State{std::abs(std::atan(at(0))), 1., 0.}; };
   std::vector<bool> keeps;
   double tangent_at = 0.;
-  const NewtonSolver<State> newton{{1e-12, 20, 10},
+  const NewtonSolver<State> newton{{1e-12, 20},
                                    {evaluate, [](const State &, const Vector &) { return 0.; },
                                     [&](const State &, const Vector &at, double, const bool keeps_tangent, Vector &step)
                                     {
@@ -140,7 +140,7 @@ TEST(NewtonSolver, AcceptsStepsAndAsksForForcingByItsRules)
   auto next = given.begin();
   std::vector<double> forcings, lengths;
   double slope = -1.;
-  const NewtonSolver<State> newton{{1e-6, 20, 10, 0.6},
+  const NewtonSolver<State> newton{{1e-6, 20, 0.6},
                                    {[&](const Vector &) { return *next++; },
                                     [](const State &, const Vector &) { return 0.; },
                                     [&](const State &, const Vector &, const double forcing, bool, Vector &)

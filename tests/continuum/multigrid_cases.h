@@ -5,8 +5,7 @@
 #include "continuum/multigrid.h"
 #include "sheets.h"
 
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
+#include <deal.II/base/function.h>
 #include <deal.II/lac/solver_cg.h>
 
 namespace multigrid_cases
@@ -21,9 +20,12 @@ using latcon::continuum::SinglePrecisionMatrix;
 inline const auto assemble_at_rest = [](const Sheet &sheet, const Sheet::Vector &, auto &K)
 { sheet.tangent(sheet.make_ghosted(), sheet.homogeneous_constraints(), K); };
 
+/// Prescribes no displacement on all edges, and a body force with different components.
 inline latcon::continuum::BoundaryConditions all_held()
 {
-  return on_all_edges(affine(matrix(1., 0., 0., 1.)));
+  latcon::continuum::BoundaryConditions conditions = on_all_edges(affine(matrix(1., 0., 0., 1.)));
+  conditions.body_force = {std::make_shared<dealii::Functions::ConstantFunction<2>>(std::vector<double>{1., -0.6}), 0.};
+  return conditions;
 }
 
 /// Prescribes no displacement across the left edge.
@@ -44,28 +46,12 @@ inline void refine_towards(Mesh &mesh, const Point<2> &tip, const unsigned int t
   }
 }
 
-/// Returns the nodal forces of a body force with different components, zero at constrained unknowns.
-inline void body_force(const Sheet &sheet, Sheet::Vector &b)
+/// Returns the nodal forces of the body force of all_held(), zero at constrained unknowns.
+inline Sheet::Vector body_force(const Sheet &sheet)
 {
-  b = 0.;
-  dealii::FEValues<2> values(sheet.mapping(), sheet.element(), dealii::QGauss<2>(sheet.degree() + 1),
-                             dealii::update_values | dealii::update_JxW_values);
-  const unsigned int n = sheet.element().n_dofs_per_cell();
-  dealii::Vector<double> cell_b(n);
-  std::vector<dealii::types::global_dof_index> dofs(n);
-  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
-    if (cell->is_locally_owned())
-    {
-      values.reinit(cell);
-      cell_b = 0.;
-      for (unsigned int a = 0; a < n; ++a)
-        for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
-          cell_b(a) += (sheet.element().system_to_component_index(a).first == 0 ? 1. : -0.6) *
-                       values.shape_value(a, q) * values.JxW(q);
-      cell->get_dof_indices(dofs);
-      sheet.homogeneous_constraints().distribute_local_to_global(cell_b, dofs, b);
-    }
-  b.compress(dealii::VectorOperation::add);
+  Sheet::Vector b = sheet.loads();
+  sheet.homogeneous_constraints().set_zero(b);
+  return b;
 }
 
 /// Solves by conjugate gradients preconditioned by `multigrid`, starting from zero; returns the number of iterations.

@@ -25,9 +25,7 @@ struct LinearProblem : HeldSheet
   unsigned int iterations() const
   {
     Sheet::Vector x = sheet->make_owned();
-    Sheet::Vector b = sheet->make_owned();
-    body_force(*sheet, b);
-    return solve(*multigrid, K, x, b);
+    return solve(*multigrid, K, x, body_force(*sheet));
   }
 
   // Returns random numbers at the free degrees of freedom.

@@ -151,12 +151,6 @@ public:
   {
   }
   double value(const Point<2> &X, const unsigned int component) const override { return field_(X)[component]; }
-  void vector_value(const Point<2> &X, dealii::Vector<double> &values) const override
-  {
-    const Tensor<1, 2> u = field_(X);
-    values(0) = u[0];
-    values(1) = u[1];
-  }
 
 private:
   std::function<Tensor<1, 2>(const Point<2> &)> field_;

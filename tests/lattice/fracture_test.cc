@@ -32,7 +32,7 @@ struct TenSites
     EXPECT_EQ(fracture.remove_sites(state, {sheet.index(2, 3)}), 0.); // undeformed bonds hold no energy
   }
 
-  const std::vector<BrokenBond> &apply()
+  std::vector<BrokenBond> apply()
   {
     forces.evaluate(state, state.velocity);
     return fracture.apply(state, forces, state.velocity);

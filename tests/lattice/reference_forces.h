@@ -36,30 +36,6 @@ inline std::vector<std::array<double, 3>> overstressed_branches(const latcon::la
     }
   return branches;
 }
-inline double overstress(const latcon::lattice::State &state, const latcon::lattice::Shell &shell, std::size_t place,
-                         std::size_t kind, double stretch)
-{
-  double sum = 0.;
-  for (const auto &branch : overstressed_branches(state, shell, place, kind, stretch))
-    sum += branch[0];
-  return sum;
-}
-inline double remembered_magnitude(const latcon::lattice::State &state, const latcon::lattice::Shell &shell,
-                                   std::size_t place, std::size_t kind, double stretch)
-{
-  double sum = 0.;
-  for (const auto &branch : overstressed_branches(state, shell, place, kind, stretch))
-    sum += std::abs(branch[0]) + 2. * branch[1] * stretch; // terms of a branch may cancel
-  return sum;
-}
-inline double memory_dissipation(const latcon::lattice::State &state, const latcon::lattice::Shell &shell,
-                                 std::size_t place, std::size_t kind, double stretch)
-{
-  double sum = 0.;
-  for (const auto &[q, modulus, time] : overstressed_branches(state, shell, place, kind, stretch))
-    sum += q * q / (modulus * time);
-  return sum;
-}
 
 /// @param retraction_stretch as in Forces::set_retraction_threshold
 inline ReferenceForces
@@ -83,21 +59,26 @@ reference_forces(const latcon::lattice::State &state, const latcon::lattice::Tri
     const double rate = velocity.dot(r.normalized());
     const double axial = section * (force(shell.law, stretch) + shell.viscosity * rate / rest_length);
     // theory.md, eq. (L.27), no time having passed since the update.
-    const double over = section * overstress(state, shell, near, kind, stretch);
-    const Vector2d on_near = (axial + over) * r.normalized();
+    double over = 0., over_magnitude = 0., dissipation = 0.;
+    for (const auto &[q, modulus, time] : overstressed_branches(state, shell, near, kind, stretch))
+    {
+      over += q;
+      over_magnitude += std::abs(q) + 2. * modulus * stretch; // terms of a branch may cancel
+      dissipation += q * q / (modulus * time);
+    }
+    const Vector2d on_near = (axial + section * over) * r.normalized();
     // Terms of opposite sign may cancel within a bond too: in its law, where the tangent at rest and the stretch bound
     // them, and in the rate.
     const double magnitude = section * (2. * stiffness(shell.law, 1.) * std::max(stretch, std::pow(stretch, -3)) +
                                         shell.viscosity * velocity.norm() / rest_length) +
-                             remembered_magnitude(state, shell, near, kind, stretch) * section;
+                             over_magnitude * section;
     for (const auto &[place, sense] : {std::pair{near, 1.}, std::pair{sheet.canonical_place(far), -1.}})
     {
       result.fx[place] += sense * on_near.x();
       result.fy[place] += sense * on_near.y();
       result.magnitude[place] += magnitude;
     }
-    result.viscous_power += section * shell.viscosity * rate * rate / rest_length +
-                            section * rest_length * memory_dissipation(state, shell, near, kind, stretch);
+    result.viscous_power += section * shell.viscosity * rate * rate / rest_length + section * rest_length * dissipation;
     if (stretch > breaking_stretch_of(state, bond) ||
         (!state.bonds.toughened(near, kind) && stretch < retraction_stretch[kind]))
       result.row_has_events[sheet.row_of(near)] = true;

@@ -124,7 +124,7 @@ TEST(Scatter, CountsTheBondsOfEachPointForTheTip)
   unsigned int bonds = 0;
   for_each_bond_of_site(state, lattice, place, [&](const Bond &) { ++bonds; });
   EXPECT_EQ(material.coordination(lattice, place), bonds);
-  EXPECT_NEAR(material.mean_coordination(lattice), bonds, 0.25 * bonds);
+  EXPECT_NEAR(lattice.scattered()->bonds_of_point, bonds, 0.25 * bonds);
   Fracture fracture(lattice, material, 3., Toughening(), Eigen::Matrix2d::Identity());
   state.lost_bonds[place] = static_cast<std::uint8_t>((bonds + 3) / 4 - 1);
   fracture.locate_tip(state);

@@ -29,7 +29,7 @@ std::string refusal(const std::string &folder)
   {
     const FolderLock lock(folder, 0ms);
   }
-  catch (const FolderInUse &error)
+  catch (const InputError &error)
   {
     return error.what();
   }

@@ -42,19 +42,11 @@ void require_same_libraries(const input::Case &input, input::Parameters &paramet
 // support::OutputError
 std::unique_ptr<support::FolderLock> lock_directory(const std::string &directory)
 {
-  try
-  {
-    auto lock = std::make_unique<support::FolderLock>(directory, std::chrono::seconds(1));
-    if (lock->is_held())
-      for (const std::string &folder : {directory, directory + "/checkpoints"})
-        support::remove_stale_parts(folder, std::filesystem::file_time_type::max());
-    return lock;
-  }
-  catch (const support::FolderInUse &error)
-  {
-    throw support::InputError(std::string(error.what()) +
-                              "; wait until it has ended, or choose another folder (--output-dir)");
-  }
+  auto lock = std::make_unique<support::FolderLock>(directory, std::chrono::seconds(1));
+  if (lock->is_held())
+    for (const std::string &folder : {directory, directory + "/checkpoints"})
+      support::remove_stale_parts(folder, std::filesystem::file_time_type::max());
+  return lock;
 }
 
 } // namespace

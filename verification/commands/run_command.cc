@@ -34,12 +34,11 @@ Failure describe(const std::exception &error)
 {
   if (const auto *known = dynamic_cast<const support::Error *>(&error))
     return {known->exit_code(), error.what()};
-  if (dynamic_cast<const continuum::SolverFailed *>(&error) != nullptr ||
-      dynamic_cast<const continuum::LinearSolverFailed *>(&error) != nullptr)
-    return {support::ExitCode::solver_failed, error.what()};
   if (dynamic_cast<const continuum::InvalidInput *>(&error) != nullptr ||
       dynamic_cast<const continuum::NonPhysicalState *>(&error) != nullptr)
     return {support::ExitCode::bad_input, error.what()};
+  if (dynamic_cast<const continuum::NoSolution *>(&error) != nullptr)
+    return {support::ExitCode::solver_failed, error.what()};
   if (dynamic_cast<const continuum::OutputFailed *>(&error) != nullptr ||
       dynamic_cast<const std::filesystem::filesystem_error *>(&error) != nullptr)
     return {support::ExitCode::output_failed, error.what()};

@@ -188,10 +188,11 @@ analysis::CrackMeasurement CrackRecord::measure(double seed_tip_X) const
   // Of a nonlocal continuum: points are closer, and more bonds cross a crack.
   const lattice::TriangularLattice &sheet = simulation_.lattice();
   const lattice::Material &material = simulation_.material();
-  const double d = options.lattice_spacing;
+  const double d = options.lattice_spacing,
+               bonds = sheet.scattered() != nullptr ? sheet.scattered()->bonds_of_point : material.coordination(sheet);
   options.position_error *= sheet.spacing() / d;
   options.branch_rule.bonds_per_spacing *=
-    lattice::half_sqrt3 * d * d / sheet.site_area() * material.mean_coordination(sheet) / material.coordination();
+    lattice::half_sqrt3 * d * d / sheet.site_area() * bonds / material.coordination();
   options.end_time = simulation_.state().time;
   options.seed_tip_X = seed_tip_X;
   return analysis::measure_crack(tip_.records(), breaks, options);

@@ -192,15 +192,7 @@ std::string no_equilibrium(const std::function<void()> &compute)
   {
     compute();
   }
-  catch (const continuum::SolverFailed &error)
-  {
-    return error.what();
-  }
-  catch (const continuum::LinearSolverFailed &error)
-  {
-    return error.what();
-  }
-  catch (const continuum::NonPhysicalState &error)
+  catch (const continuum::NoSolution &error)
   {
     return error.what();
   }
