@@ -5,7 +5,8 @@
 
 namespace latcon::continuum
 {
-/// Equations without a solution, or one that was not found: NonPhysicalState, LinearSolverFailed, SolverFailed.
+/// Equations that have no solution, or whose solution was not found: NonPhysicalState, LinearSolverFailed,
+/// SolverFailed.
 class NoSolution : public std::runtime_error
 {
 public:

@@ -46,9 +46,9 @@ void check_slope(const std::function<double(double)> &function, const std::funct
   if (!(std::abs(given - difference) <= tolerance)) // also for no number
     throw InvalidBondLaw(name(derivative) + " is " + text(given) + " Pa at stretch " + text(stretch) +
                          ", but differences of " + name(derivative - 1) + " give " + text(difference) + " Pa");
-  // Across a pole or a jump a function may fall though all slopes rise, or rise though they fall.
+  // Across a pole or a jump psi or psi' may fall though all slopes rise, or the other way round; psi'' may jump.
   const double from = std::max(stretch / 1.01, smallest_checked_stretch), rise = function(stretch) - function(from);
-  if (std::abs(rise) > 1e-12 * largest && given * rise < 0. && slope(from) * rise < 0. &&
+  if (derivative <= 2 && std::abs(rise) > 1e-12 * largest && given * rise < 0. && slope(from) * rise < 0. &&
       slope(0.5 * (from + stretch)) * rise < 0.)
     throw InvalidBondLaw(name(derivative - 1) + " is not continuous between stretches " + text(from) + " and " +
                          text(stretch));

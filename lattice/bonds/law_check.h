@@ -22,8 +22,8 @@ public:
 inline constexpr double smallest_checked_stretch = 0.3;
 
 /// Checks the functions of a law: psi, psi', psi'' [Pa] and possibly further derivatives by the stretch, in this order.
-/// From smallest_checked_stretch to `longest` [-] all are finite, and each agrees with differences of the one before
-/// it; psi'(1) = 0 to 1e-12 psi''(1), and psi''(1) > 0.
+/// From smallest_checked_stretch to `longest` [-] all are finite, psi and psi' without poles, and each agrees with
+/// differences of the one before it; psi'(1) = 0 to 1e-12 psi''(1), and psi''(1) > 0.
 /// @throws InvalidBondLaw
 void check_law(const std::vector<std::function<double(double)>> &functions, double longest);
 

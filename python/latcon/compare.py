@@ -88,9 +88,8 @@ def _compare_cracks(program: Program, printed: Printed, options: Mapping[str, An
                 "side": both["side"], "failed_checks": both["problem"], "pattern": both["pattern"], "quantities": quantities,
                 "entries": entries, "paths": paths and paths | {
                     f"{name}_over_d": paths[name] / cracks[0].spacing for name in ("rms_distance", "largest_distance")}}
-    # Names of folders need not be UTF-8; the page reads them from here, with other bytes as \udcXX.
-    text = json.dumps(document, indent=2, ensure_ascii=False) + "\n"
-    write_file(f"{directory}/compare.json", text.encode("utf-8", "backslashreplace"))
+    # Names of folders need not be UTF-8; in ASCII the page finds their other bytes as \udcXX.
+    write_file(f"{directory}/compare.json", json.dumps(document, indent=2) + "\n")
     write_file(f"{directory}/compare.csv", csv_text(
         ["quantity", "unit", *_PARTS], [[row["name"], row["unit"], *(row[part] for part in _PARTS)] for row in quantities]))
     code = record.end([], DONE)

@@ -221,7 +221,7 @@ def _move_aside(folder: str, names: set[str]) -> str:
         number += 1
         aside = os.path.join(folder, f"{EARLIER}-{number}")
     os.mkdir(aside)
-    for name in files:
+    for name in sorted(files, key="run.json".__eq__):  # last, since it tells whose the others are
         os.rename(os.path.join(folder, name), os.path.join(aside, name))
     _write_list(aside, names)
     return aside

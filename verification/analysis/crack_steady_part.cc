@@ -64,9 +64,8 @@ std::optional<double> local_amplitude(const ColumnMeans &path, const Sinusoid &c
 double steady_from(const ColumnMeans &path, const SinusoidFit &fit, double X_begin, double X_end, double fraction)
 {
   const double wavelength = fit.curve.wavelength;
-  const double step = wavelength / 8.;
   std::vector<double> starts, amplitudes;
-  for (double X = X_begin; X + wavelength <= X_end; X += step)
+  for (double X = X_begin; X + wavelength <= X_end; X += wavelength / 8.)
     if (const std::optional<double> amplitude = local_amplitude(path, fit.curve, X))
     {
       starts.push_back(X);

@@ -11,12 +11,6 @@ namespace latcon::analysis
 namespace
 {
 
-// Also of sites that may slide along an edge.
-bool on_held_edge(const lattice::State &state, std::size_t place)
-{
-  return (state.held[place] | state.rollers[place]) != 0;
-}
-
 struct Piece
 {
   std::vector<std::size_t> places;
@@ -40,7 +34,7 @@ std::vector<Piece> pieces(const lattice::State &state, const lattice::Triangular
     if (number == all.size())
       all.emplace_back();
     all[number].places.push_back(place);
-    all[number].held = all[number].held || on_held_edge(state, place);
+    all[number].held = all[number].held || state.held[place] != 0 || state.rollers[place] != 0;
   }
   return all;
 }
@@ -103,7 +97,7 @@ double bridged_length(const lattice::State &state, const lattice::TriangularLatt
     for (std::size_t place = 0; place < lattice.n_places(); ++place)
     {
       const double Y = lattice.reference(place).y();
-      if (!lattice.is_site(place) || !on_held_edge(state, place) || !(above ? Y > 0. : Y < 0.))
+      if (!lattice.is_site(place) || (state.held[place] | state.rollers[place]) == 0 || !(above ? Y > 0. : Y < 0.))
         continue;
       const std::ptrdiff_t strip = strip_of(place);
       if (!above)

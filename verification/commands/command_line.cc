@@ -62,9 +62,12 @@ CLI::Option *keep(CLI::App *command, Json &chosen, const std::string &key, const
                   const std::string &type, const Value &otherwise, const std::string &help)
 {
   chosen[key] = otherwise;
+  // Python takes empty texts for options that are not given.
+  const auto is_given = [](const std::string &text) { return text.empty() ? "the value is empty" : std::string(); };
   return command
     ->add_option_function<Value>(
       name, [&chosen, key](const Value &value) { chosen[key] = value; }, help)
+    ->check(is_given)
     ->allow_extra_args(false)
     ->type_name(type);
 }
@@ -101,9 +104,6 @@ support::ExitCode run_program(int argc, char **argv)
                "latcon");
   app.set_version_flag("--version", "latcon " + output::program_version() + " (" + output::git_commit() + ")");
   app.require_subcommand(1);
-  // Python takes empty texts for options that are not given.
-  const auto not_empty =
-    CLI::Validator([](const std::string &text) { return std::string(text.empty() ? "the value is empty" : ""); }, "");
   // No shell replaces the ~ of `--output-dir=~/run`, and who deletes a folder `~` may lose the home.
   const auto no_tilde = CLI::Validator(
     [](const std::string &folder)
@@ -244,8 +244,7 @@ support::ExitCode run_program(int argc, char **argv)
   CLI::App *study_command = add_study_command("study", "a sweep of cracks, compared with what a source states",
                                               "latcon study paper --quick", study_chosen);
   keep(study_command, study_chosen, "shard", "--shard", "I/N", std::string(),
-       "run one of N shares of the runs, without verdict; then --collect")
-    ->check(not_empty);
+       "run one of N shares of the runs, without verdict; then --collect");
   keep(study_command, study_chosen, "collect", "--collect", "run nothing: judge the runs of all shards");
 
   CLI::App *batch_command = add_study_command("batch", "a study as a job array of a cluster",
@@ -285,13 +284,10 @@ support::ExitCode run_program(int argc, char **argv)
     ->required()
     ->type_name("");
   keep(compare_command, compared, "time", "--time", "TIME", std::string(),
-       "time of both frames, or load factor; default: the last")
-    ->check(not_empty);
-  keep(compare_command, compared, "lattice_time", "--lattice-time", "TIME", std::string(), "time of the lattice frame")
-    ->check(not_empty);
+       "time of both frames, or load factor; default: the last");
+  keep(compare_command, compared, "lattice_time", "--lattice-time", "TIME", std::string(), "time of the lattice frame");
   keep(compare_command, compared, "continuum_time", "--continuum-time", "TIME", std::string(),
-       "time of the continuum frame; with --lattice-time it may differ")
-    ->check(not_empty);
+       "time of the continuum frame; with --lattice-time it may differ");
   keep(compare_command, compared, "tolerances", "--tolerance", "FIELD=VALUE", Words(),
        "FIELD=VALUE, largest relative root-mean-square difference that holds; repeatable");
   keep(compare_command, compared, "overlap", "--overlap",

@@ -67,8 +67,7 @@ double ContinuumRecord::reaction_change() const
 {
   if (meshes_.size() < 2)
     return std::numeric_limits<double>::infinity();
-  const double before = largest_reaction_of(meshes_[meshes_.size() - 2]);
-  return std::abs(largest_reaction() - before) / largest_reaction();
+  return std::abs(largest_reaction() - largest_reaction_of(meshes_[meshes_.size() - 2])) / largest_reaction();
 }
 
 // Writes the first numbers of rows, each followed by the reactions of all edges. @param columns of the numbers

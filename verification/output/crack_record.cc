@@ -125,8 +125,7 @@ void CrackRecord::record_tip()
 
 void CrackRecord::energies()
 {
-  const lattice::EnergyBalance balance = checked_energies();
-  energies_.add(simulation_.state().time, balance, simulation_.mechanism_energies());
+  energies_.add(simulation_.state().time, checked_energies(), simulation_.mechanism_energies());
 }
 
 lattice::EnergyBalance CrackRecord::checked_energies()

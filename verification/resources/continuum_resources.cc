@@ -128,10 +128,9 @@ double continuum_seconds(const input::Case &input, const ContinuumSize &size, co
     unknowns *= 1. + 3. * c.refined_fraction;
     work += of_cycle * unknowns;
   }
-  const double ranks = support::n_ranks();
   return seconds_of_start + (frames * seconds_of_unknown_in_frame * size.final_unknowns +
                              work * (seconds_of_unknown + entries * seconds_of_entry)) /
-                              ranks;
+                              support::n_ranks();
 }
 
 } // namespace latcon::resources

@@ -50,9 +50,8 @@ constexpr double max_steps = 1e15;
 // Current and additional memory of the ranks on this machine.
 std::array<double, 2> on_machine(const MemoryNeed &need)
 {
-  const double ranks = support::n_ranks();
   std::array<double, 2> sums{support::resident_memory(),
-                             need.shared / ranks + (support::is_root_rank() ? need.first_rank : 0.)};
+                             need.shared / support::n_ranks() + (support::is_root_rank() ? need.first_rank : 0.)};
   MPI_Comm machine = MPI_COMM_NULL;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, machine);
@@ -160,8 +159,7 @@ double lattice_seconds(const input::Case &input, const lattice::TimeStepping &st
 
 double expected_steps(const input::Case &input, const lattice::TimeStepping &stepping)
 {
-  const lattice::TriangularLattice sheet = input.sheet();
-  const double way = (input.stop_position - input.seed_position) * sheet.length();
+  const double way = (input.stop_position - input.seed_position) * input.sheet().length();
   const double passage = way / bridge::small_strain(input.lattice(), input.material()).shear_speed;
   return std::ceil(std::min(input.end_time, passage) / stepping.step);
 }

@@ -98,8 +98,9 @@ def report(folder, output_dir=None, quiet=False, animated=False, dry_run=False):
     if not quiet:
         sys.stdout.reconfigure(errors="replace")
     if dry_run:
-        for run in [] if quiet else readable:
-            print(run.folder)
+        with suppress(BrokenPipeError):  # the reader does not want more
+            for run in [] if quiet else readable:
+                print(run.folder)
         for one in unreadable:
             print(f"error: {one.problem}", file=sys.stderr)
         return 2 if unreadable else 0

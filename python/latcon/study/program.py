@@ -37,7 +37,7 @@ class Ended(Exception):
 
 def end_of(status: int) -> Ended:
     """Returns the end for the status of a child, which has printed what is wrong unless a signal killed it."""
-    return Ended(status) if status > 0 else Ended(INTERNAL_ERROR, f"a child process was killed by signal {-status}")
+    return Ended(status or INTERNAL_ERROR) if status >= 0 else Ended(INTERNAL_ERROR, f"a child process was killed by signal {-status}")
 
 
 class Interrupted(BaseException):

@@ -61,7 +61,7 @@ def json_text(document: Any) -> str:
 class Record:
     """Locked output directory of a command; `run.json` has the exit code however the command ends.
 
-    With `resume` earlier files of a study stay; otherwise they are moved to a subfolder. `facts` are those of `run.json`.
+    With `resume` earlier files of a study stay; otherwise they are moved to a subfolder. `facts` are further entries of `run.json`.
     """
 
     def __init__(self, program: Program, printed: Printed, directory: str, options: Mapping[str, Any], resume: bool,

@@ -153,6 +153,18 @@ TEST(LawCheck, ComparesEachDerivativeWithDifferences)
   }
 }
 
+// Laws of a library may have branches: here psi''' jumps down while its slope is 1.
+TEST(LawCheck, LetsHigherDerivativesJump)
+{
+  const auto beyond = [](double l) { return std::max(l - 2.003, 0.); };
+  EXPECT_NO_THROW(lattice::check_law(
+    {[&](double l) { return std::pow(l - 1., 2) / 2. + std::pow(l - 1., 4) / 24. - 0.4 / 6. * std::pow(beyond(l), 3); },
+     [&](double l) { return l - 1. + std::pow(l - 1., 3) / 6. - 0.2 * std::pow(beyond(l), 2); },
+     [&](double l) { return 1. + std::pow(l - 1., 2) / 2. - 0.4 * beyond(l); },
+     [&](double l) { return l - 1. - (beyond(l) > 0. ? 0.4 : 0.); }, [](double) { return 1.; }},
+    3.));
+}
+
 // Stretch 0.3 * 1.01^100 = 0.811 of the check has a value, a neighbour has none.
 TEST(LawCheck, RefusesDifferencesWithoutValue)
 {

@@ -101,8 +101,7 @@ std::vector<Compared> compare(const lattice::TriangularLattice &sheet, const Eig
     stress_scale.add(P.norm());
   }
 
-  const double area = sheet.length() * sheet.height();
-  const double energy_density = solver.total_energy() / area;
+  const double energy_density = solver.total_energy() / (sheet.length() * sheet.height());
   const auto reactions = solver.reactions();
   const double right = reactions.at(continuum::edge::right)[0] / sheet.height();
   const double top = reactions.at(continuum::edge::top)[1] / sheet.length();

@@ -19,6 +19,7 @@
 #include "verification/claims/bonds.h"
 #include "verification/claims/claim_list.h"
 #include "verification/claims/continuum_waves.h"
+#include "verification/claims/states.h"
 
 namespace latcon::claims
 {
@@ -319,8 +320,7 @@ ClaimOutcome relaxation_claim(const bridge::Subject &subject, const RelaxationOp
     {
       constexpr double safety = 0.9;
       const lattice::TimeStepLimits limits = lattice::time_step_limits(sheet, material, 1.);
-      const double stable = is_chebyshev ? lattice::chebyshev_step(sheet, material, 1.) : limits.combined;
-      double step = safety * stable;
+      double step = safety * (is_chebyshev ? lattice::chebyshev_step(sheet, material, 1.) : limits.combined);
       for (const double time : relaxation_times(material))
         step = support::smallest_of({step, longest_step * time});
       if (!is_chebyshev)
