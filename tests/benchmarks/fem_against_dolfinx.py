@@ -28,11 +28,6 @@ def sizes(quick):
     return [(2, 56), (3, 36)] if quick else [(2, 112), (2, 224), (3, 72), (3, 144)]
 
 
-def rows(path):
-    with open(path, newline="") as file:
-        return list(csv.DictReader(file))
-
-
 def displacement_at(path, point):
     """Displacement of the node of a frame nearest to `point` [m]; frames are in single precision."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -54,7 +49,7 @@ def latcon(program, cells, degree, ranks, folder):
     run(words if ranks == 1 else on_ranks(ranks, words), environment=ONE_THREAD)
     info = json.loads((folder / "run.json").read_text())
     results = {claim["quantity"]: claim["continuum"] for claim in json.loads((folder / "results.json").read_text())["claims"]}
-    newton = rows(folder / "newton.csv")
+    newton = list(csv.DictReader((folder / "newton.csv").read_text().splitlines()))
     times = info["wall_time_s"]
     unknowns = int(results["unknowns"])
     return {

@@ -1,10 +1,9 @@
 """Checks that docs/reference-*.md document the contents of an output directory: files, columns, keys, fields."""
 import csv
-import json
 import pathlib
 import re
 
-from program import read
+from program import read, read_json
 
 REFERENCE = sorted((pathlib.Path(__file__).resolve().parents[2] / "docs").glob("reference*.md"))
 
@@ -87,7 +86,7 @@ def undocumented(folder):
         if path.suffix == ".csv":
             inside = [name for name in columns(path) if not named(name, about)]
         elif path.suffix == ".json":
-            inside = [name for name in keys(json.loads(path.read_text())) if not named(name, about)]
+            inside = [name for name in keys(read_json(path)) if not named(name, about)]
         elif path.suffix in (".vtp", ".vtu", ".vti"):
             inside = [name for name in arrays(path) if not reference.field(name)]
         missing |= {f"{path.name}: {name}" for name in inside}

@@ -1,5 +1,4 @@
 """The numbers of the gallery are those of the program: its cracks, run again, to the digits on the page."""
-import json
 import pathlib
 import re
 
@@ -7,7 +6,7 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 import latcon as package
-from program import FULL, latcon
+from program import FULL, latcon, read_json
 
 STUDY = ROOT / "verification" / "studies" / "paper.json"
 SHOWN = re.compile(r"Patterns over its seeds.*?Pictures of seed (\d+): (\w+)\. Measured: speed ([\d.]+) m/s .*?detached sites (\d+) ")
@@ -24,7 +23,7 @@ def test_cracks_are_found():
 @pytest.mark.parametrize("name", [name for name in CRACKS if FULL or name == QUICK])
 def test_numbers_are_those_of_the_program(out, name):
     seed, pattern, speed, detached = CRACKS[name]
-    study = json.loads(STUDY.read_text())
+    study = read_json(STUDY)
     entries = {**study["set"], **study["runs"][name]["set"], "Lattice/noise seed": seed}
     settings = [word for key, value in entries.items() for word in ("--set", f"{key}={str(value).lower() if isinstance(value, bool) else value}")]
     latcon("fracture", STUDY.parent / study["base"], "--skip-verification", "--no-report", "--output-dir", out, *settings, expect=(0, 3))

@@ -1,4 +1,5 @@
 """Fixtures of the tests of the Python package: separate caches, scripts in place of the program, and one small crack."""
+import csv
 import os
 import pathlib
 import sys
@@ -21,6 +22,12 @@ def tiny_case():
     for key, value in TINY.items():
         case = case.set(key, value)
     return case
+
+
+def rows(path):
+    """Rows of a table, {column: text}."""
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
 
 
 @pytest.fixture(scope="session")

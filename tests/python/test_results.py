@@ -1,5 +1,4 @@
 """Tests that the results of a run of the program are read as they were written."""
-import csv
 import itertools
 import json
 import math
@@ -13,13 +12,8 @@ import numpy as np
 import pytest
 
 import latcon
-from conftest import tiny_case
+from conftest import rows, tiny_case
 from latcon.quantities import NAMES, RECORDED
-
-
-def rows(path):
-    with open(path, newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def test_crack_has_values_uncertainties_and_units(crack):

@@ -1,5 +1,4 @@
 """Stepping from Python gives the bits of latcon fracture; forces, moving edges, checkpoints and frames of one's own."""
-import csv
 import os
 import subprocess
 import sys
@@ -8,7 +7,7 @@ import numpy as np
 import pytest
 
 import latcon
-from conftest import tiny_case
+from conftest import rows, tiny_case
 from latcon.frames import read_frame
 from latcon.stepping import Simulation
 
@@ -19,8 +18,7 @@ def sim():
 
 
 def test_steps_are_those_of_the_program(crack, sim):
-    with open(crack.directory / "broken_bonds.csv", newline="") as file:
-        written = [[float(row[name]) for name in ("t", "X", "Y", "stretch")] for row in csv.DictReader(file)]
+    written = [[float(row[name]) for name in ("t", "X", "Y", "stretch")] for row in rows(crack.directory / "broken_bonds.csv")]
     last = crack.frames[-1]
     while sim.time < last.time:
         sim.step()

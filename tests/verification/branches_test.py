@@ -1,12 +1,11 @@
 """Tests of cases with Maxwell branches: energy ledger, restart, step and memory. Files on ranks: same_files_test.py."""
-import json
 import re
 import shutil
 
 import numpy as np
 import pytest
 
-from program import CASES, checkpoints, files, latcon, latcon_on_ranks, numbers, settings
+from program import CASES, checkpoints, files, latcon, latcon_on_ranks, numbers, read_json, settings
 
 SPECTRUM = CASES / "spectrum.prm"
 STRIP = ["fracture", SPECTRUM, "--skip-verification", "--no-report", "--quiet",
@@ -72,7 +71,7 @@ def test_motion_of_finite_elements_records_and_resumes_branches(out, tmp_path):
     for late in checkpoints(stopped)[1:]:
         late.unlink()
     latcon("continuum", SPECTRUM, *MOTION, "--resume", "--output-dir", stopped)
-    assert json.loads((stopped / "run.json").read_text())["resumed_from"]["step"] > 0
+    assert read_json(stopped / "run.json")["resumed_from"]["step"] > 0
     expected, found = files(out), files(stopped)
     for name in ("energy.csv", "results.csv", "results.json"):
         assert found[name] == expected[name], name

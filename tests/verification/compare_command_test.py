@@ -2,7 +2,6 @@
 
 What is refused of frames: tests/python/test_compare_frames.py.
 """
-import json
 import types
 
 import numpy as np
@@ -10,7 +9,7 @@ import pytest
 from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
 from vtkmodules.vtkFiltersCore import vtkProbeFilter
 
-from program import CASES, expect_same, files, frames, latcon, latcon_on_ranks, read, read_csv, settings
+from program import CASES, expect_same, files, frames, latcon, latcon_on_ranks, read, read_csv, read_json, settings
 
 FIELDS = ["displacement", "deformation_gradient", "first_piola_stress", "cauchy_stress", "strain_energy_density"]
 SMALL = settings("Sheet/length=2 cm", "Sheet/height=1.5 cm", "Loading/strain y=0.3", "Loading/strain x=0.1")
@@ -36,8 +35,7 @@ def once(module_path):
             ("continuum", runs / "pieces", 2, []),
             ("lattice", runs / "lattice-moves", 1, ["--set", "Lattice/solution=motion", *MOTION]),
             ("continuum", runs / "continuum-moves", 1, ["--set", "Continuum/solution=motion", *MOTION])]:
-        arguments = [command, CASES / "quick.prm", "--quiet", "--output-dir", out, *SMALL, *entries]
-        latcon(*arguments) if ranks == 1 else latcon_on_ranks(ranks, *arguments)
+        latcon_on_ranks(ranks, command, CASES / "quick.prm", "--quiet", "--output-dir", out, *SMALL, *entries)
     return made
 
 
@@ -64,9 +62,9 @@ def test_equal_sheets_agree(once, out):
     tolerances = [word for name in FIELDS for word in ("--tolerance", f"{name}=1e-6")]
     for continuum in (once.continuum / "continuum_0001.vtu", once.runs / "pieces" / "continuum.pvd"):
         compare(out, once.lattice, continuum, *tolerances)
-        assert json.loads((out / "results.json").read_text())["verdict"] == "holds"
+        assert read_json(out / "results.json")["verdict"] == "holds"
     assert found(out)["sites outside the finite element sheet"]["lattice"] == "0"
-    record = json.loads((out / "run.json").read_text())
+    record = read_json(out / "run.json")
     assert record["lattice_frame"] == str(once.lattice / "lattice-0001.vtp")
     assert record["continuum_frame"] == str(once.runs / "pieces" / "continuum_0001.pvtu")
     assert not [path for path in out.iterdir() if path.suffix == ".part"]

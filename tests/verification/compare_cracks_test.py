@@ -8,7 +8,7 @@ import shutil
 import numpy as np
 import pytest
 
-from program import latcon, read_csv, settings
+from program import latcon, read_csv, read_json, refused, settings
 
 from latcon import UnreadableFile
 from latcon.compare import _read_crack as read_crack
@@ -28,7 +28,7 @@ def pair(module_path):
 
 def compare(out, *arguments):
     run = latcon("compare", *arguments, "--no-report", "--output-dir", out)
-    return run.stdout, json.loads((out / "compare.json").read_text())
+    return run.stdout, read_json(out / "compare.json")
 
 
 @pytest.fixture(scope="module")
@@ -37,19 +37,13 @@ def compared(module_path, pair):
     return compare(module_path / "compared", *pair)
 
 
-def refused(*arguments):
-    run = latcon("compare", *arguments, expect=2)
-    assert run.stdout == ""
-    return run.stderr
-
-
 def test_quantities_are_those_of_the_runs(module_path, pair, compared):
     text, found = compared
     rows = {row["name"]: row for row in found["quantities"]}
     table = {row["quantity"]: row for row in read_csv(module_path / "compared" / "compare.csv")}
     assert list(rows) == list(table)
     for file, names in [("crack.json", ["speed_lagrangian", "speed_laboratory", "bonds_broken"]), ("near_tip.json", ["wedge_angle"])]:
-        first, second = (json.loads((run / file).read_text()) for run in pair)
+        first, second = (read_json(run / file) for run in pair)
         for name in names:
             row = rows[name]
             assert (row["first"], row["second"]) == (first[name], second[name])
@@ -90,19 +84,19 @@ def test_a_run_does_not_differ_from_itself(pair, out):
     assert {row["difference"] for row in found["quantities"]} == {0.}
     assert (found["entries"], found["paths"]["rms_distance"], found["paths"]["largest_distance"]) == ([], 0., 0.)
     assert "The cases have the same entries." in text
-    assert json.loads((out / "run.json").read_text())["exit_code"] == 0
+    assert read_json(out / "run.json")["exit_code"] == 0
 
 
 def test_the_page_shows_both_runs_and_which_failed_its_checks(tmp_path, pair, out):
     failed = shutil.copytree(pair[0], tmp_path / os.fsdecode(b"failed\xff"))  # not UTF-8
-    info = json.loads((failed / "run.json").read_text())
+    info = read_json(failed / "run.json")
     del info["entries"]["Time/end"]
     info |= {"exit_code": 3, "failed_rows": {"fracture: energy imbalance over energy exchanged": "ledger"}}
     (failed / "run.json").write_text(json.dumps(info))
     run = latcon("compare", failed, pair[1], "--output-dir", out)
     assert run.stderr == ""
     assert f"{out}/compare.json, compare.csv, compare.html" in run.stdout
-    found = json.loads((out / "compare.json").read_text())
+    found = read_json(out / "compare.json")
     for side, folder in (("first", failed), ("second", pair[1])):
         assert (out / found[f"{side}_folder"]).resolve() == folder.resolve()
     assert ("Time/end", "", "0.003") in [(entry["key"], entry["first"], entry["second"]) for entry in found["entries"]]
@@ -121,13 +115,13 @@ def test_what_is_no_pair_of_cracks_is_refused(tmp_path, pair):
     empty = tmp_path / "empty"
     empty.mkdir()
     for folders in [(pair[0], empty), (empty, pair[0])]:
-        assert re.search(f"{empty} holds no crack.json.*give two output directories of cracks, or a lattice", refused(*folders))
-    assert "are for frames" in refused(*pair, "--overlap")
-    assert "is one of the runs" in refused(*pair, "--output-dir", pair[1])
+        assert re.search(f"{empty} holds no crack.json.*give two output directories of cracks, or a lattice", refused("compare", *folders))
+    assert "are for frames" in refused("compare", *pair, "--overlap")
+    assert "is one of the runs" in refused("compare", *pair, "--output-dir", pair[1])
     damaged = shutil.copytree(pair[0], tmp_path / "damaged")
     (damaged / "crack.csv").write_text("t,X,Y\n0,1,2\n0,1\n")
-    assert "damaged/crack.csv: line 3 has 2 fields, the header has 3" in refused(pair[0], damaged)
-    info = json.loads((damaged / "run.json").read_text())
+    assert "damaged/crack.csv: line 3 has 2 fields, the header has 3" in refused("compare", pair[0], damaged)
+    info = read_json(damaged / "run.json")
     del info["entries"]
     for file, text, message in (
             ("crack.csv", "t,X,Y\n0,1,2\n0,0.5,2\n", "damaged/crack.csv: line 3: damaged: X decreases"),

@@ -19,7 +19,7 @@ def start():
     started = []
 
     def begin(*arguments, launcher=(), **keywords):
-        process = subprocess.Popen([*launcher, LATCON, *map(str, arguments)], stdout=subprocess.DEVNULL,
+        process = subprocess.Popen([*map(str, (*launcher, LATCON, *arguments))], stdout=subprocess.DEVNULL,
                                    stderr=subprocess.PIPE, text=True, **keywords)
         started.append(process)
         return process

@@ -1,12 +1,11 @@
 """Tests of finite element cases from the command line: closed forms, files, refusals."""
-import json
 import math
 
 import numpy as np
 import pytest
 
 from continuum_run import HOLE, LAYER, MODULUS, SPACING, cells_of, field, last_mesh, points_of, results
-from program import CASES, latcon, numbers, read_csv, settings
+from program import CASES, latcon, numbers, read_csv, read_json, settings
 
 TOP_FORCE = "force on the top edge per thickness, x"
 
@@ -98,14 +97,10 @@ def once(module_path):
     """Folder of the sheet with a hole."""
     run = latcon("continuum", HOLE, "--output-dir", module_path / "out", *settings("Continuum/adaptive cycles=6"))
     assert "cycle 6" in run.stdout
-    return module_path / "out"
-
-
-def test_leaves_every_file(once):
-    names = {path.name for path in once.iterdir()}
-    assert {"case.prm", "run.json", "results.json", "results.csv", "energy.csv", "reactions.csv",
-            "newton.csv", "meshes.csv", "continuum.pvd"} <= names
+    names = {path.name for path in (module_path / "out").iterdir()}
+    assert {"case.prm", "run.json", "results.json"} <= names  # the tests read the others
     assert not [name for name in names if name.endswith(".part")]
+    return module_path / "out"
 
 
 def test_reactions_settle_as_the_mesh_grows(once):
@@ -179,7 +174,7 @@ def test_reaction_that_does_not_settle_is_3(once):
                  *settings("Continuum/adaptive cycles=1", "Continuum/reaction tolerance=1e-12", "Continuum/relative tolerance=1e-6"),
                  expect=3)
     assert "fails" in run.stdout
-    assert json.loads((out / "run.json").read_text())["exit_code"] == 3
+    assert read_json(out / "run.json")["exit_code"] == 3
     # Newton's method stops where the case says, by default at 1e-10.
     given, default = (numbers(folder / "newton.csv")["tolerance"][0] for folder in (out, once))
     assert given / default == pytest.approx(1e4)

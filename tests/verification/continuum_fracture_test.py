@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from program import CASES, files, frames, latcon, read, read_csv
+from program import CASES, files, frames, latcon, read, read_csv, read_json
 
 # A crack of seconds, with frames and checkpoints.
 SHEET = {"Sheet/spacing": "1 mm", "Sheet/length": "30 mm", "Sheet/height": "16 mm", "Fracture/seed sites": 8, "Time/end": "3 ms",
@@ -53,7 +53,7 @@ def test_six_directions_at_the_spacing_of_the_lattice_are_the_lattice(out, tmp_p
 def test_files(whole, out):
     shutil.copytree(whole, out)
     latcon("report", out, "--quiet")
-    crack, run = (json.loads((out / name).read_text()) for name in ("crack.json", "run.json"))
+    crack, run = (read_json(out / name) for name in ("crack.json", "run.json"))
     assert crack["side"] == run["side"] == "continuum"
     assert run["half_bonds"] == 30 and run["grid_spacing_m"] == pytest.approx(0.5e-3)
     assert run["entries"]["Nonlocal/grid"] == "square"
@@ -115,7 +115,7 @@ def test_ends_without_load_and_a_history(out):
 def test_comparison_with_the_lattice(tmp_path, whole, on_lattice):
     latcon("compare", on_lattice, whole, "--output-dir", tmp_path / "both", "--no-report")
     assert [row["quantity"] for row in read_csv(tmp_path / "both" / "compare.csv")].count("speed_lagrangian") == 1
-    compared = json.loads((tmp_path / "both" / "compare.json").read_text())
+    compared = read_json(tmp_path / "both" / "compare.json")
     assert compared["side"] == {"first": "lattice", "second": "continuum"}
 
 
@@ -131,7 +131,7 @@ def test_study_of_both_sides(tmp_path, out):
         return latcon("study", path, "--skip-verification", "--no-report", "--output-dir", out, *more).stdout
 
     def sides():
-        cracks = [json.loads((out / "runs" / f"{name}-1" / "crack.json").read_text()) for name in ("rings", "bonds")]
+        cracks = [read_json(out / "runs" / f"{name}-1" / "crack.json") for name in ("rings", "bonds")]
         return [crack.get("side", "lattice") for crack in cracks]
     study()
     assert sides() == ["continuum", "lattice"]

@@ -1,12 +1,11 @@
 """Tests of motions of finite elements from the command line: energy, dispersion, solvers, steps."""
-import json
 import math
 
 import numpy as np
 import pytest
 
 from continuum_run import DENSITY, LAYER, MODULUS
-from program import CASES, latcon, numbers, read_csv, settings
+from program import CASES, latcon, numbers, read_csv, read_json, settings
 
 # A shear wave in a strip that is periodic both ways.
 AMPLITUDE = 0.01  # of velocity [m/s]
@@ -68,7 +67,7 @@ def test_damped_motion_is_the_same_solved_directly_or_by_iterations(out):
             "Left edge/condition=held", "Right edge/condition=held", "Nearest neighbours/viscosity=50",
             f"Continuum/direct limit={limit}"))
         ledgers.append(numbers(out / "energy.csv"))
-        record = json.loads((out / "run.json").read_text())
+        record = read_json(out / "run.json")
         counts.append((record["newton_iterations"], record["linear_iterations"]))
     direct, iterated = ledgers
     assert direct["viscous"][-1] > 0.01 * direct["kinetic"][0]

@@ -1,8 +1,7 @@
 """A dry run estimates memory and time. What it refuses: refusals_test.py."""
-import json
 import re
 
-from program import CASES, latcon, latcon_on_ranks, settings
+from program import CASES, latcon, latcon_on_ranks, read_json, settings
 
 
 # Dry runs estimate memory and time, and runs that exceed the memory of the machine are refused.
@@ -18,7 +17,7 @@ def assert_foreseen(out, *arguments):
     """Checks the estimate to a factor of two, without the memory of the libraries."""
     peak, own = memory(*arguments)
     latcon(*arguments, "--output-dir", out, "--quiet", expect=(0, 3))
-    taken = json.loads((out / "run.json").read_text())["peak_memory_bytes"]
+    taken = read_json(out / "run.json")["peak_memory_bytes"]
     assert taken - own > 5e7  # large enough for a meaningful difference
     assert 0.5 * (taken - own) < peak - own < 2. * (taken - own)
 

@@ -9,7 +9,8 @@ import time
 
 import pytest
 
-from program import CASES, LATCON, frames, latcon, latcon_on_ranks, wait_for
+from program import CASES, LATCON, frames, latcon, latcon_on_ranks, on_ranks, wait_for
+from studies import files_in
 from verdicts_fixture import REFUSED
 
 from latcon.report.runs import find_runs
@@ -21,10 +22,6 @@ LONG = ["fracture", QUICK, "--skip-verification", "--no-report", "--quiet", "--t
         "--set", "Output/frame interval=0.02 ms", "--set", "Checkpoints/steps=64"]
 ENDLESS = [*LONG, "--set", "Sheet/length=30 cm"]
 LOCK = ".latcon.lock"
-
-
-def contents(folder):
-    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +46,7 @@ def refused_study(study, module_path):
     owner = subprocess.Popen([LATCON, *ENDLESS, "--output-dir", part], stdout=subprocess.DEVNULL)
     assert wait_for((part / "lattice-0000.vtp").exists, owner)
     stop(owner)
-    before = contents(part)
+    before = files_in(part)
     refused = subprocess.Popen([LATCON, "study", study, "--skip-verification", "--output-dir", module_path / "out"],
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     yield part, owner, before, refused
@@ -72,7 +69,7 @@ def test_second_command_is_refused_and_writes_nothing(start, out, tmp_path, stud
     owner = start(*ENDLESS, "--output-dir", out)
     assert wait_for((out / "lattice-0000.vtp").exists, owner)
     stop(owner)
-    before = contents(out)
+    before = files_in(out)
     for refused in [start(*command) for command in commands(study, out)]:  # each waits for a second
         _, said = refused.communicate(timeout=600)
         assert refused.returncode == 2, said
@@ -83,14 +80,14 @@ def test_second_command_is_refused_and_writes_nothing(start, out, tmp_path, stud
     assert latcon("report", out, "--dry-run", "--output-dir", elsewhere).stdout == f"{out}\n" and not elsewhere.exists()
     latcon("report", out, "--animation", "--output-dir", elsewhere, "--quiet")
     assert "has not ended" in (elsewhere / "report.html").read_text()
-    assert contents(out) == before
+    assert files_in(out) == before
     owner.kill()
     owner.communicate()
     latcon("lattice", *TINY, "--output-dir", out)
 
 
 def test_ranks_hold_it_and_respect_it(start, out):
-    ranks = start(*ENDLESS, "--output-dir", out, launcher=("mpirun", "--oversubscribe", "-n", "2"))
+    ranks = start(*ENDLESS, "--output-dir", out, launcher=on_ranks(2))
     assert wait_for((out / "lattice-0000.vtp").exists, ranks)
     run = latcon_on_ranks(2, "lattice", *TINY, "--set", "Lattice/solution=motion", "--output-dir", out, expect=2)
     assert "is in use by process" in run.stderr
@@ -141,7 +138,7 @@ def test_run_whose_folder_is_replaced_leaves_the_other_alone(start, out):
 def test_links_are_not_followed(out, tmp_path):
     crack = ["fracture", *TINY, "--skip-verification", "--quiet", "--set", "Checkpoints/steps=16"]
     latcon(*crack, "--no-report", "--output-dir", out)
-    names = {*contents(out), "report.html", "sheet.png", "energy.png"}
+    names = {*files_in(out), "report.html", "sheet.png", "energy.png"}
     assert any(name.endswith(".h5") for name in names)
     shutil.rmtree(out)
     victim = tmp_path / "victim"
@@ -153,7 +150,7 @@ def test_links_are_not_followed(out, tmp_path):
                 place.symlink_to(victim)
     latcon(*crack, "--output-dir", out)
     assert victim.read_text() == "mine"
-    assert names <= contents(out).keys()
+    assert names <= files_in(out).keys()
     assert not [name for name in names if (out / name).is_symlink()]
 
 
@@ -228,4 +225,4 @@ def test_runs_of_a_study_hold_theirs(refused_study):
     part, owner, before, refused = refused_study
     assert f"{part} is in use by process {owner.pid} on " in refused.communicate(timeout=600)[1]
     assert refused.returncode == 2
-    assert contents(part) == before
+    assert files_in(part) == before

@@ -3,7 +3,6 @@
 The fixture of verdicts has checked the claims. Store and keys: tests/verification/claims/verdict_store_test.cc.
 """
 import hashlib
-import json
 import os
 import pathlib
 import re
@@ -11,7 +10,7 @@ import shutil
 
 import pytest
 
-from program import CASES, LATCON, claims_where, latcon
+from program import CASES, LATCON, claims_where, latcon, read_json
 from verdicts_fixture import REFUSED, TINY
 
 MADE = pathlib.Path(os.environ["LATCON_VERDICTS"])
@@ -22,7 +21,7 @@ class Gate:
 
     def __init__(self, folder, name, more):
         run, self.out, self.cache, self.more = MADE / "runs" / name, folder / "out", folder / "cache", more
-        self.first_text, self.first = (run / "log.txt").read_text(), json.loads((run / "run.json").read_text())
+        self.first_text, self.first = (run / "log.txt").read_text(), read_json(run / "run.json")
         self.first_rows = claims_in(run)
         self.store = self.cache / "latcon" / "verdicts"
         self.store.mkdir(parents=True, mode=0o700)
@@ -33,12 +32,12 @@ class Gate:
         """Runs the crack. @return (what was printed, run.json)"""
         run = latcon("fracture", CASES / "quick.prm", *report, "--output-dir", self.out, *TINY, *self.more, *arguments,
                      env=dict(os.environ, XDG_CACHE_HOME=str(self.cache)), expect=expect)
-        return run.stdout + run.stderr, json.loads((self.out / "run.json").read_text())
+        return run.stdout + run.stderr, read_json(self.out / "run.json")
 
 
 def claims_in(folder):
     """Rows of results.json that are not about the crack."""
-    return [row for row in json.loads((folder / "results.json").read_text())["claims"] if row["claim"] != "fracture"]
+    return [row for row in read_json(folder / "results.json")["claims"] if row["claim"] != "fracture"]
 
 
 @pytest.fixture
@@ -72,7 +71,7 @@ def test_second_run_reuses_and_says_so(accepted):
 
 def test_file_says_what_its_verdicts_hold_for(accepted):
     key = accepted.first["verification"]["hash"]
-    document = json.loads((accepted.store / f"{key}.json").read_text())
+    document = read_json(accepted.store / f"{key}.json")
     assert hashlib.sha256(document["inputs"].encode()).hexdigest() == key
     parts = [pathlib.Path(LATCON), *pathlib.Path(LATCON).parent.glob("latcon_elements.so")]
     hashes = [hashlib.sha256(part.read_bytes()).hexdigest() for part in parts]

@@ -3,16 +3,10 @@ import json
 import re
 import subprocess
 
-from program import CASES, LATCON, latcon
+from program import CASES, LATCON, latcon, refused
 
 SHORT = ["--skip-verification", "--no-report", "--set", "Time/end=0.01 ms"]
 FINE = ["--set", "Sheet/spacing=0.0125 mm"]  # weeks of computing
-
-
-def refused(*arguments, **keywords):
-    run = latcon(*arguments, **keywords, expect=2)
-    assert run.stdout == ""
-    return run.stderr.strip()
 
 
 def test_commands_that_only_the_package_starts_are_not_suggested():

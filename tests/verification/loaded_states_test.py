@@ -1,13 +1,12 @@
 """Checks that the claims accept all stable loaded states before a crack, and no others, as in the table of docs/limits.md."""
 import itertools
-import json
 import os
 import pathlib
 
 import pytest
 
 from lattice_states import ACCEPTED, Lattice, rod, spring
-from program import CASES, FULL, claims_where, latcon, settings
+from program import CASES, FULL, claims_where, latcon, read_json, settings
 
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "limits.md"
 STRAINS_X = (-0.3, -0.15, 0.0, 0.3, 0.8, 1.3, 2.0, 3.0)
@@ -40,7 +39,7 @@ REASON = "stability of the loaded lattice"
 
 def check(folder, law, x, y, shells=("NN+NNN", "NN")):
     """Checks that the verdicts for these sets of shells agree with the stability of the lattice. @return whether the state is refused"""
-    rows = json.loads((folder / "results.json").read_text())["claims"]
+    rows = read_json(folder / "results.json")["claims"]
     is_refused = False
     for of in shells:
         outcome = Lattice(law, of, 1 + x, 1 + y).outcome()

@@ -1,11 +1,10 @@
 """Tests of meshes from Gmsh from the command line."""
-import json
 
 import numpy as np
 import pytest
 
 from continuum_run import HOLE, cells_of, field, last_mesh, results
-from program import latcon, settings
+from program import latcon, read_json, settings
 
 NODES = [(0, 0), (1.7, 0), (3, 0), (0, 1.2), (1.3, 0.8), (3, 0.9), (0, 2), (1.2, 2), (3, 2)]
 QUADS = [(1, 2, 5, 4), (2, 3, 6, 5), (4, 5, 8, 7), (5, 6, 9, 8)]
@@ -65,13 +64,13 @@ def test_mesh_is_part_of_the_case(tmp_path, out):
                                 "Continuum/time step=10 us", "Checkpoints/steps=2"), expect=expect)
     entries = write_mesh(tmp_path)
     move()
-    case_hash = json.loads((out / "run.json").read_text())["case_hash"]
+    case_hash = read_json(out / "run.json")["case_hash"]
     mesh = tmp_path / "four.msh"
     text = mesh.read_text()
     mesh.write_text(text.replace(f"5 {0.01 * 1.3!r} 0.008 0", "5 0.014 0.008 0"))
     assert mesh.read_text() != text
     run = move("--resume", expect=2)
     assert "Continuum/mesh sha256" in run.stderr
-    assert json.loads((out / "run.json").read_text())["case_hash"] == case_hash
+    assert read_json(out / "run.json")["case_hash"] == case_hash
     write_mesh(tmp_path)
     move("--resume")

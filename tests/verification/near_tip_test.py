@@ -1,5 +1,4 @@
 """Tests of the fields near the tip written by `latcon fracture`, on a strip of a few thousand sites."""
-import json
 import math
 import shutil
 
@@ -7,7 +6,7 @@ import numpy as np
 import pytest
 
 from lattice_states import SECTIONS, Lattice, rod
-from program import CASES, latcon, read, read_csv, settings
+from program import CASES, latcon, read, read_csv, read_json, settings
 
 LOADED = Lattice(rod(1e5, 1.5e5), "NN+NNN", 2.3, 2.8)  # the sheet ahead of the crack
 STRIP = ["--skip-verification", "--quiet", "--threads", "1", *settings(
@@ -20,7 +19,7 @@ COMPONENTS = {"displacement": 3, "excess_displacement": 3, "velocity": 3, "defor
 def fracture(folder, *options):
     """A crack in the strip. Its numbers need not be the paper's, so the verdict may be 3."""
     latcon("fracture", CASES / "fig1.prm", "--output-dir", folder, *STRIP, *options, expect=(0, 3))
-    return json.loads((folder / "near_tip.json").read_text())
+    return read_json(folder / "near_tip.json")
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +34,7 @@ def test_writes_numbers_and_fields(module_path, found):
         if not name.endswith("_uncertainty") and name + "_uncertainty" in found and "vortex" not in name:
             assert value is not None, name
     assert 0 <= found["samples_with_vortex"] <= found["vortices_of_samples"] and found["samples_with_vortex"] <= 1
-    crack = json.loads((out / "crack.json").read_text())
+    crack = read_json(out / "crack.json")
     ratio = crack["speed_lagrangian"] / found["shear_speed"]
     assert found["speed_over_shear"] == pytest.approx(ratio, abs=5e-13)
     # The speed of long shear waves along x, from the bonds (theory-comparison.md, eqs. (W.1) and (W.2)).
@@ -88,7 +87,7 @@ def test_samples_as_often_whatever_the_time_step(tmp_path):
         tips = read_csv(folder / "crack.csv")
         entry = [float(tip["t"]) for tip in tips if float(tip["X"]) >= found["sampled_from"]][0]
         last = [float(tip["t"]) for tip in tips if float(tip["X"]) > found["sampled_to"]]
-        end = last[0] if last else json.loads((folder / "crack.json").read_text())["end_time"]
+        end = last[0] if last else read_json(folder / "crack.json")["end_time"]
         # One sample in each interval, of which the first and the last are incomplete.
         assert found["samples"] == pytest.approx((end - entry) / interval, abs=1.01), integrator
         assert found["samples"] > 10

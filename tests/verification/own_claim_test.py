@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from program import CASES, FULL, latcon, settings
+from program import CASES, FULL, latcon, read_json, settings
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 EXAMPLE = ROOT / "examples" / "own-claim"
@@ -23,12 +23,12 @@ def test_patch_changes_at_most_four_files():
 
 def test_is_checked_by_name_and_shown_in_the_report(out):
     latcon("verify", CLAIM, "--quick", "--output-dir", out)
-    results = json.loads((out / "results.json").read_text())
+    results = read_json(out / "results.json")
     assert {row["claim"] for row in results["claims"]} == {CLAIM}
     assert {row["quantity"].split(":")[0] for row in results["claims"]} == {"NN", "NN+NNN"}
     assert {row["verdict"] for row in results["claims"]} == {"holds"}
     assert f"## {CLAIM}\n" in (PATCHED / "docs/verification.md").read_text(encoding="utf-8")
-    claims = json.loads((out / "claims.json").read_text())["claims"]
+    claims = read_json(out / "claims.json")["claims"]
     assert [claim["name"] for claim in claims] == [CLAIM]
     latcon("report", out, "--quiet")
     page = (out / "report.html").read_text()
@@ -49,6 +49,6 @@ def test_crack_is_verified_with_it(out):
     short = settings("Sheet/length=2.5 cm", "Sheet/height=1.5 cm", "Time/end=0.01 ms", "Next-nearest neighbours/present=false")
     for reused in (False, True):
         latcon("fracture", CASES / "quick.prm", "--no-report", "--output-dir", out, *short)
-        assert json.loads((out / "run.json").read_text())["verification"]["reused"] == reused
-        rows = json.loads((out / "results.json").read_text())["claims"]
+        assert read_json(out / "run.json")["verification"]["reused"] == reused
+        rows = read_json(out / "results.json")["claims"]
         assert CLAIM in {row["claim"] for row in rows}

@@ -1,5 +1,4 @@
 """Tests of user-defined bond laws in cases: expressions, and the shared library of examples/own-laws."""
-import json
 import pathlib
 import re
 import shutil
@@ -8,7 +7,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from program import CASES, LATCON, ended, latcon, numbers, settings
+from program import CASES, LATCON, ended, latcon, numbers, read_json, settings
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 GENT_LAW = (SOURCE / "examples/own-laws/gent_law.c").read_text()
@@ -96,7 +95,7 @@ def test_claims_need_the_law_up_to_their_largest_stretch(tmp_path):
 def test_claims_hold(tmp_path):
     latcon("verify", "intrinsic-length", "--quick", "--case", CASES / "quick.prm", "--set",
            "Next-nearest neighbours/present=false", *bonds(**MOONEY_RIVLIN), "--output-dir", tmp_path / "claims")
-    rows = json.loads((tmp_path / "claims" / "results.json").read_text())["claims"]
+    rows = read_json(tmp_path / "claims" / "results.json")["claims"]
     assert sum(row["verdict"] == "holds" for row in rows) > 15
 
 
@@ -112,7 +111,7 @@ def test_library_is_part_of_the_case(tmp_path):
     def case_hash(name):
         latcon("lattice", CASES / "quick.prm", "--set", "Sheet/length=8 mm", "--set", "Sheet/height=6 mm",
                *bonds(law="library", library=gent, parameters=GENT), "--output-dir", tmp_path / name)
-        return json.loads((tmp_path / name / "run.json").read_text())["case_hash"]
+        return read_json(tmp_path / name / "run.json")["case_hash"]
     first = case_hash("first")
     library(tmp_path, "gent", "-DANOTHER=1", "-O0")  # in its place
     run = latcon("lattice", tmp_path / "first" / "case.prm", "--output-dir", tmp_path / "second", expect=2)

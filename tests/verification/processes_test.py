@@ -7,10 +7,11 @@ import subprocess
 
 import pytest
 
-from program import CASES, LATCON, wait_for
+from program import CASES, LATCON, latcon, wait_for
 
 TEST_PROGRAMS = os.environ["LATCON_TEST_PROGRAMS"].split(":")
 
+MOTION = ["lattice", CASES / "quick.prm", "--dry-run", "--set", "Lattice/solution=motion"]
 SMALL = ["--set", "Sheet/length=8 mm", "--set", "Sheet/height=6 mm"]
 LAUNCHED = ("OMPI_", "PMIX_", "PMI_")
 
@@ -69,22 +70,16 @@ def test_leaves_nothing_when_killed(tmp, tmp_path):
 
 def test_default_of_threads_and_of_processes_is_what_may_be_used():
     one = str(min(os.sched_getaffinity(0)))
-    bound = ["taskset", "-c", one, LATCON]
-    study = subprocess.run([*bound, "study", "patterns", "--dry-run"], capture_output=True, text=True, timeout=600)
-    assert "on 1 cores" in study.stdout
-    case = subprocess.run([*bound, "lattice", CASES / "quick.prm", "--dry-run", "--set", "Lattice/solution=motion"],
-                          capture_output=True, text=True, timeout=600)
-    assert "1 threads of each rank" in case.stdout
+    bound = ["taskset", "-c", one]
+    assert "on 1 cores" in latcon("study", "patterns", "--dry-run", launcher=bound).stdout
+    assert "1 threads of each rank" in latcon(*MOTION, launcher=bound).stdout
 
 
 def test_threads_are_those_of_the_environment():
     for threads in ("1", "3"):
-        case = subprocess.run([LATCON, "lattice", CASES / "quick.prm", "--dry-run", "--set", "Lattice/solution=motion"],
-                              capture_output=True, text=True, timeout=600, env=environment(OMP_NUM_THREADS=threads))
-        assert f"{threads} threads of each rank" in case.stdout
-    refused = subprocess.run([LATCON, "lattice", CASES / "quick.prm", "--dry-run"], capture_output=True, text=True, timeout=600,
-                             env=environment(OMP_NUM_THREADS="4097"))
-    assert (refused.returncode, refused.stderr) == (2, "latcon: OMP_NUM_THREADS is 4097; allowed: 1 to 4096\n")
+        assert f"{threads} threads of each rank" in latcon(*MOTION, env=environment(OMP_NUM_THREADS=threads)).stdout
+    run = latcon("lattice", CASES / "quick.prm", "--dry-run", env=environment(OMP_NUM_THREADS="4097"), expect=2)
+    assert run.stderr == "latcon: OMP_NUM_THREADS is 4097; allowed: 1 to 4096\n"
 
 
 def test_threads_that_wait_sleep_unless_they_are_told_otherwise(tmp_path):

@@ -39,11 +39,11 @@ def server():
     return started
 
 
-def latcon(*arguments, expect=0, program=LATCON, timeout=600, **keywords):
+def latcon(*arguments, expect=0, program=LATCON, launcher=(), timeout=600, **keywords):
     """Runs latcon: in a fork of the server, if that is what LATCON is, and nothing but the folder is asked for.
-    @param expect exit code, several of them, or None for any"""
-    command = [program, *map(str, arguments)]
-    if program != LATCON or pathlib.Path(LATCON).name != "fork_server" or not keywords.keys() <= {"cwd"}:
+    @param expect exit code, several of them, or None for any @param launcher words before the program"""
+    command = [*map(str, (*launcher, program, *arguments))]
+    if launcher or program != LATCON or pathlib.Path(LATCON).name != "fork_server" or not keywords.keys() <= {"cwd"}:
         return ended(subprocess.run(command, capture_output=True, text=True, timeout=timeout, **keywords), expect)
     how, _, number = server().run(command[1:], keywords.get("cwd", pathlib.Path.cwd()), timeout).partition(" ")
     if how == "limit":
@@ -62,9 +62,20 @@ def claims_where(property_):
     return {claim["name"] for claim in json.loads(latcon("schema").stdout)["claims"] if claim[property_]}
 
 
+def on_ranks(ranks):
+    """What starts ranks of a program; nothing for one."""
+    return ["mpirun", "--oversubscribe", "-n", ranks] if ranks > 1 else []
+
+
 def latcon_on_ranks(ranks, *arguments, expect=0):
-    return ended(subprocess.run(["mpirun", "--oversubscribe", "-n", str(ranks), LATCON, *map(str, arguments)],
-                                capture_output=True, text=True, timeout=600), expect)
+    return latcon(*arguments, launcher=on_ranks(ranks), expect=expect)
+
+
+def refused(*arguments, **keywords):
+    """What latcon says of bad input, without any other output."""
+    run = latcon(*arguments, **keywords, expect=2)
+    assert run.stdout == ""
+    return run.stderr.strip()
 
 
 def settings(*entries):
@@ -79,6 +90,10 @@ def checkpoints(out):
 def read_csv(path):
     with open(path, newline="") as file:
         return list(csv.DictReader(file))
+
+
+def read_json(path):
+    return json.loads(path.read_text())
 
 
 def numbers(path):

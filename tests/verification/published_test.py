@@ -3,14 +3,13 @@
 With LATCON_FULL ten seeds of Fig. 1 by velocity Verlet, whose means are compared more closely, and all seeds of the patterns.
 docs/limits.md describes how the constants of Fig. 1 were chosen.
 """
-import json
 import re
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
-from program import CASES, FULL, latcon
+from program import CASES, FULL, latcon, read_json
 
 # Published values, and tolerances of the means. The paper does not state whether its amplitude is that of a sinusoid or half
 # the height from trough to crest; the path is a zigzag, which is higher than its best-fitting sinusoid.
@@ -27,7 +26,7 @@ def fig1(out, integrator, seed, *settings):
     entries = (f"Lattice/noise seed={seed}", "Output/frame interval=0", f"Time/integrator={integrator}", *settings)
     run = latcon("fracture", CASES / "fig1.prm", "--quiet", "--threads", 1, "--output-dir", out, "--skip-verification", "--no-report",
                  *(word for entry in entries for word in ("--set", entry)), expect=None)
-    crack, near = (json.loads((out / name).read_text()) for name in ("crack.json", "near_tip.json"))
+    crack, near = (read_json(out / name) for name in ("crack.json", "near_tip.json"))
     return run.returncode, {**crack, "zone": near["negative_zone_area_of_samples"]}
 
 
@@ -74,7 +73,7 @@ def test_fig1_is_that_of_the_paper_in_the_mean(tmp_path):
 def study(out, file, *options):
     """@return exit code, claims of study.json"""
     run = latcon("study", file, "--skip-verification", "--no-report", "--quiet", "--output-dir", out, *options, expect=None)
-    return run.returncode, json.loads((out / "study.json").read_text())["claims"]
+    return run.returncode, read_json(out / "study.json")["claims"]
 
 
 def test_patterns_are_those_of_the_paper(out):

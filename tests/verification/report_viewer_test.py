@@ -78,11 +78,6 @@ class TestViewer:
                                   "e.scrollIntoView({block: 'center'}); "
                                   "const r = e.getBoundingClientRect(); return [r.left, r.top, r.width, r.height]; })()")
 
-    def click(self, selector):
-        left, top, width, height = self.place(selector)
-        for kind in ("mousePressed", "mouseReleased"):
-            self.browser.mouse(kind, left + width / 2, top + height / 2, button="left", clickCount=1)
-
     def key(self, key):
         codes = {"Home": 36, "End": 35, "ArrowLeft": 37, "ArrowRight": 39}
         for kind in ("keyDown", "keyUp"):

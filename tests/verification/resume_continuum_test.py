@@ -2,19 +2,17 @@
 
 Kills at arbitrary times are tested in tests/faults.
 """
-import json
 import os
 import pathlib
 import re
 import signal
-import subprocess
-import time
 
 import h5py
 import numpy as np
 import pytest
 
-from program import CASES, LATCON, checkpoints, children, expect_same, files, frames, latcon, latcon_on_ranks, numbers
+from program import (
+    CASES, checkpoints, children, expect_same, files, frames, latcon, latcon_on_ranks, numbers, on_ranks, read_json, wait_for)
 
 # Waves in a layer between held faces: 12 steps, checkpoints after every third, four frames.
 WAVES = {
@@ -35,26 +33,17 @@ def command(case, folder, *more):
     return ["continuum", str(CASES / "shear_layer.prm"), *entries, "--output-dir", str(folder), *more]
 
 
-def run_json(out):
-    return json.loads((out / "run.json").read_text())
-
-
 def run_to_end(out, *more, case=WAVES, ranks=1):
-    arguments = command(case, out, *more)
-    return latcon(*arguments) if ranks == 1 else latcon_on_ranks(ranks, *arguments)
+    return latcon_on_ranks(ranks, *command(case, out, *more))
 
 
-def stop(out, which):
+def stop(start, out, which):
     """Sends the signal `which` to the second of two ranks once they have written checkpoints. @return exit code of mpirun, step"""
-    with subprocess.Popen(["mpirun", "--oversubscribe", "-n", "2", LATCON, *command(WAVES, out)], stdout=subprocess.DEVNULL,
-                          stderr=subprocess.PIPE) as run:
-        while not checkpoints(out):
-            assert run.poll() is None, "it ended too soon"
-            time.sleep(0.005)
-        [second] = [pid for pid in children(run.pid)
-                    if b"OMPI_COMM_WORLD_RANK=1\0" in pathlib.Path(f"/proc/{pid}/environ").read_bytes()]
-        os.kill(second, which)
-        run.communicate(timeout=600)
+    run = start(*command(WAVES, out), launcher=on_ranks(2))
+    assert wait_for(lambda: checkpoints(out), run), "it ended too soon"
+    [second] = [pid for pid in children(run.pid) if b"OMPI_COMM_WORLD_RANK=1\0" in pathlib.Path(f"/proc/{pid}/environ").read_bytes()]
+    os.kill(second, which)
+    run.communicate(timeout=600)
     with h5py.File(checkpoints(out)[-1], "r") as file:
         step = int(file["run/step"][0])
     assert step < 12
@@ -68,21 +57,21 @@ def undisturbed(module_path):
     return module_path / "whole"
 
 
-# A run on one rank that is killed: tests/faults; each solver, in one process: tests/continuum/motion_archive_test.cc.
-def test_goes_on_to_the_same_files(out, undisturbed):
-    status, step = stop(out, signal.SIGTERM)
-    assert status == run_json(out)["exit_code"] == 130
+# A run on one rank that is killed: tests/faults; the multigrid, in one process: tests/continuum/motion_archive_test.cc.
+def test_goes_on_to_the_same_files(start, out, undisturbed):
+    status, step = stop(start, out, signal.SIGTERM)
+    assert status == read_json(out / "run.json")["exit_code"] == 130
     # The instant of the signal is in a frame, in the table and in a checkpoint.
     with h5py.File(checkpoints(out)[-1], "r") as file:
         assert file["solver/time"][0] == frames(out / "continuum.pvd")[-1][0] == numbers(out / "energy.csv")["t"][-1]
     run = run_to_end(out, "--resume", ranks=2)
     assert f"step {step}," in run.stdout
-    assert run_json(out)["resumed_from"]["step"] == step
+    assert read_json(out / "run.json")["resumed_from"]["step"] == step
     expect_same(out, files(undisturbed))
 
 
-def test_on_another_number_of_ranks_after_a_kill(out, undisturbed):
-    status, _ = stop(out, signal.SIGKILL)
+def test_on_another_number_of_ranks_after_a_kill(start, out, undisturbed):
+    status, _ = stop(start, out, signal.SIGKILL)
     assert status in range(1, 256)
     run_to_end(out, "--resume")
     assert [time for time, _ in frames(out / "continuum.pvd")] == [time for time, _ in frames(undisturbed / "continuum.pvd")]

@@ -3,19 +3,16 @@
 Results of runs that are stopped at arbitrary times and resumed: tests/faults; on ranks and threads: same_files_test.py.
 """
 import hashlib
-import json
 import math
 import pathlib
 import re
 import shutil
 import signal
-import subprocess
-import time
 
 import h5py
 import pytest
 
-from program import CASES, LATCON, checkpoints, expect_same, files, frames, latcon, numbers, read
+from program import CASES, LATCON, checkpoints, expect_same, files, frames, latcon, numbers, read, read_json, wait_for
 from verdicts_fixture import REFUSED
 
 STRIP = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report", "--set", "Sheet/length=2.5 cm", "--set",
@@ -35,10 +32,6 @@ def run_to_end(out, *more):
     return latcon(*STRIP, "--output-dir", out, *more, expect=(0, 3))
 
 
-def step_told(out):
-    return json.loads((out / "run.json").read_text())["resumed_from"]["step"]
-
-
 def test_last_two_are_kept_and_tell_what_they_are(ended, out):
     shutil.copytree(ended, out)
     found = checkpoints(out)
@@ -56,34 +49,28 @@ def test_last_two_are_kept_and_tell_what_they_are(ended, out):
             assert file["simulation/bonds"].shape == sites
             assert file["record/tip"].size > 0
             case_hash = file["run/case_hash"][0].decode()
-            assert case_hash == hashlib.sha256(file["run/case"][0]).hexdigest() == json.loads((out / "run.json").read_text())["case_hash"]
+            assert case_hash == hashlib.sha256(file["run/case"][0]).hexdigest() == read_json(out / "run.json")["case_hash"]
     assert steps[1] - steps[0] == 160
 
 
-def test_stopped_run_goes_on_with_the_same_bits(ended, out):
-    expected = files(ended)
-    with subprocess.Popen([LATCON, *map(str, STRIP), "--output-dir", str(out), "--threads", "2"],
-                          stdout=subprocess.DEVNULL) as run:
-        while len(checkpoints(out)) < 2:
-            assert run.poll() is None, "it ended too soon"
-            time.sleep(0.01)
-        run.send_signal(signal.SIGTERM)
-        assert run.wait(timeout=600) == 130
-    stopped = json.loads((out / "run.json").read_text())
-    assert stopped["exit_code"] == 130
+def test_stopped_run_goes_on_with_the_same_bits(ended, out, start):
+    process = start(*STRIP, "--output-dir", out, "--threads", "2")
+    assert wait_for(lambda: len(checkpoints(out)) > 1, process), "it ended too soon"
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(timeout=600) == 130 == read_json(out / "run.json")["exit_code"]
     # The instant of the signal is in a frame and in a checkpoint.
     with h5py.File(checkpoints(out)[-1], "r") as file:
         assert file["run/time"][0] == frames(out / "lattice.pvd")[-1][0]
         step = int(file["run/step"][0])
     run = run_to_end(out, "--resume", "--threads", "1")
     assert f"step {step}," in run.stdout
-    assert step_told(out) == step
-    expect_same(out, expected)
+    assert read_json(out / "run.json")["resumed_from"]["step"] == step
+    expect_same(out, files(ended))
 
 
 def test_checkpoint_of_another_program_is_named(out, tmp_path, ended):
     shutil.copytree(ended, out)
-    own = json.loads((out / "run.json").read_text())["program_hash"]
+    own = read_json(out / "run.json")["program_hash"]
     program = pathlib.Path(LATCON).resolve()
     parts = [hashlib.sha256(path.read_bytes()).hexdigest() for path in (program, program.parent / "latcon_elements.so")]
     assert own == hashlib.sha256(" ".join(parts).encode()).hexdigest()
@@ -94,7 +81,7 @@ def test_checkpoint_of_another_program_is_named(out, tmp_path, ended):
     other.chmod(0o755)
     run = latcon(*STRIP, "--resume", "--output-dir", out, program=other, expect=(0, 3))
     assert "It was written by another build of latcon, commit " in run.stdout
-    info = json.loads((out / "run.json").read_text())
+    info = read_json(out / "run.json")
     assert info["resumed_from"]["program_hash"] == own
     assert info["program_hash"] == hashlib.sha256(other.read_bytes()).hexdigest()
 
@@ -102,7 +89,7 @@ def test_checkpoint_of_another_program_is_named(out, tmp_path, ended):
 def test_without_any_it_starts_from_the_beginning(out):
     run = run_to_end(out, "--resume")
     assert "No checkpoint in" in run.stdout
-    assert "resumed_from" not in json.loads((out / "run.json").read_text())
+    assert "resumed_from" not in read_json(out / "run.json")
 
 
 def test_files_may_be_renamed_and_their_interval_changed(ended, out):
@@ -114,7 +101,7 @@ def test_files_may_be_renamed_and_their_interval_changed(ended, out):
     first.rename(first.with_name("b.h5"))
     run = run_to_end(out, "--resume", "--set", "Checkpoints/interval=1")
     assert "a.h5" in run.stdout
-    assert step_told(out) == step
+    assert read_json(out / "run.json")["resumed_from"]["step"] == step
 
 
 @pytest.mark.parametrize("damage", [

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from program import CASES, checkpoints, expect_same, files, latcon, latcon_on_ranks
+from program import CASES, checkpoints, expect_same, files, latcon, latcon_on_ranks, read_json
 
 QUICK = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report"]
 SPECTRUM = ["fracture", CASES / "spectrum.prm", *QUICK[2:]]
@@ -50,5 +50,5 @@ def test_ranks_threads_and_restarts_leave_the_same_files(tmp_path, name):
     *_, before, last = checkpoints(shared)
     last.unlink()
     latcon(*command, "--threads", 2, "--resume", "--output-dir", shared, expect=run.returncode)
-    assert json.loads((shared / "run.json").read_text())["resumed_from"]["step"] == int(before.stem.rpartition("-")[2])
+    assert read_json(shared / "run.json")["resumed_from"]["step"] == int(before.stem.rpartition("-")[2])
     expect_same(shared, expected)

@@ -1,10 +1,9 @@
 """latcon study --shard and --collect, and latcon batch: files, exit codes, signals."""
-import json
 import os
 import signal
 import subprocess
 
-from program import CASES, LATCON, latcon, wait_for
+from program import CASES, LATCON, latcon, read_json, wait_for
 from studies import Studies, files_in, run, write_study
 
 RUNS = 4  # of TINY: base twice, low, thin
@@ -30,7 +29,7 @@ class TestShards(Studies):
             printed, _ = shard.communicate(timeout=600)
             assert shard.returncode == 0, printed
         assert not (self.out / "study.json").exists()
-        assert json.loads((self.out / "shards/2-of-2/run.json").read_text())["exit_code"] == 0
+        assert read_json(self.out / "shards/2-of-2/run.json")["exit_code"] == 0
         for _ in range(2):
             self.study("--collect", "--no-report")
             assert result(self.out) == result(tiny_study)
@@ -112,7 +111,7 @@ class TestShards(Studies):
         assert (self.folder / "requeued").read_text() == "requeue 42_1\n"
         assert list((part / "checkpoints").iterdir())
         subprocess.run(["bash", self.out / "batch/runs.sh"], env=environment, check=True, timeout=300)
-        assert "resumed_from" in json.loads((self.out / "runs/base-1/run.json").read_text())
+        assert "resumed_from" in read_json(self.out / "runs/base-1/run.json")
         assert (self.folder / "requeued").read_text() == "requeue 42_1\n"  # once
         subprocess.run(["bash", self.out / "batch/collect.sh"], check=True, timeout=300)
         assert result(self.out) == result(self.folder / "undisturbed")

@@ -10,7 +10,7 @@ import time
 
 import pytest
 
-from program import CASES, LATCON, catches, children, latcon, wait_for
+from program import CASES, LATCON, catches, children, latcon, on_ranks, read_json, wait_for
 
 QUICK = str(CASES / "quick.prm")
 TINY = [QUICK, "--set", "Sheet/length=10 mm", "--set", "Sheet/height=6 mm"]
@@ -20,10 +20,6 @@ HANGS = 20
 # From the keyboard, from a scheduler, and from a limit; all are caught alike.
 SOME = ("SIGINT", "SIGUSR1", "SIGXCPU")
 ALL = (*SOME, "SIGTERM", "SIGHUP", "SIGUSR2", "SIGALRM")
-
-
-def info(out):
-    return json.loads((out / "run.json").read_text())
 
 
 def started(out, process):
@@ -45,15 +41,15 @@ def ends_at_once(start, out, *arguments, begun=None, number=signal.SIGINT):
         assert wait_for(begun, process)
     process.send_signal(number)
     ends(process)
-    assert info(out)["exit_code"] == INTERRUPTED
+    assert read_json(out / "run.json")["exit_code"] == INTERRUPTED
 
 
 def test_verify_keeps_the_claims_that_are_done(out, start):
     results = out / "results.json"
     ends_at_once(start, out, "verify", "intrinsic-length", "prestretch", "--quick", begun=results.exists, number=signal.SIGTERM)
-    claims = {row["claim"] for row in json.loads(results.read_text())["claims"]}
+    claims = {row["claim"] for row in read_json(results)["claims"]}
     assert claims == {"intrinsic-length"} and (out / "dispersion.csv").exists()
-    assert info(out)["verdict"] is None
+    assert read_json(out / "run.json")["verdict"] is None
 
 
 @pytest.mark.parametrize("command, begun", [
@@ -160,7 +156,7 @@ def is_saved(out, process):
     message = f"interrupted; --resume continues from what is in {out}"
     ends(process, message)
     assert (out / "log.txt").read_text().endswith(f"latcon: {message}\n")
-    assert info(out)["exit_code"] == INTERRUPTED
+    assert read_json(out / "run.json")["exit_code"] == INTERRUPTED
     assert list((out / "checkpoints").glob("*.h5"))
     assert (out / "crack.csv").exists()
 
@@ -177,18 +173,18 @@ def test_every_signal_saves_and_draws_no_report(start, out):
 
 
 def test_a_signal_to_one_of_two_ranks(start, out):
-    process = start(*motion(out, "--set", "Fracture/stop position=0.99", length="10 cm"), launcher=["mpirun", "--oversubscribe", "-n", "2"])
+    process = start(*motion(out, "--set", "Fracture/stop position=0.99", length="10 cm"), launcher=on_ranks(2))
     assert wait_for((out / "lattice.pvd").exists, process)
     os.kill(max(children(process.pid)), signal.SIGTERM)
     is_saved(out, process)
 
 
 def test_a_signal_to_one_of_two_ranks_before_the_motion(start, out):
-    process = start("fracture", QUICK, "--output-dir", out, launcher=["mpirun", "--oversubscribe", "-n", "2"])
+    process = start("fracture", QUICK, "--output-dir", out, launcher=on_ranks(2))
     started(out, process)
     os.kill(max(children(process.pid)), signal.SIGTERM)
     ends(process)
-    assert info(out)["exit_code"] == INTERRUPTED
+    assert read_json(out / "run.json")["exit_code"] == INTERRUPTED
 
 
 def test_ignored_hangup_stays_ignored(start, out):
@@ -206,7 +202,7 @@ def test_a_reader_that_leaves_ends_nothing(out):
     process.stderr.read()
     assert process.wait(600) == 0
     process.stderr.close()
-    assert info(out)["exit_code"] == 0
+    assert read_json(out / "run.json")["exit_code"] == 0
 
 
 def test_the_limit_of_the_size_of_files_is_5(start, out):

@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from program import CASES, LATCON, children, latcon, read_csv, wait_for
+from program import CASES, LATCON, children, latcon, read_csv, read_json, wait_for
 from studies import TINY, Studies, files_in, run, words_of, write_study
 from verdicts_fixture import BUCKLED
 
@@ -138,7 +138,7 @@ class TestStudy(Studies):
         before = self.times()
 
         info = self.out / "runs" / "thin-1" / "run.json"
-        document = json.loads(info.read_text())
+        document = read_json(info)
         info.write_text(json.dumps(dict(document, program_hash="0" * 64)))
         assert "2 runs, 2 are finished already" in self.study(
             "--resume", change=lambda document: document["runs"]["low"]["set"].update({"Sheet/height": "1.1 cm"}))

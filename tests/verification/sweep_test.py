@@ -1,6 +1,5 @@
 """latcon study --sweep, and what a study does where something is missing: Python, room on the disk, a folder of its own."""
 import ctypes
-import json
 import os
 import struct
 import subprocess
@@ -9,7 +8,7 @@ from pathlib import Path
 import PIL
 import pytest
 
-from program import CASES, LATCON, ended
+from program import CASES, latcon, read_json
 from studies import TINY, Studies, files_in, run, write_study
 
 SMALL = [word for entry, value in TINY["set"].items() for word in ("--set", f"{entry}={str(value).lower()}")]
@@ -18,12 +17,9 @@ SWEEP = ["--sweep", "Sheet/height=1 cm,1.5 cm", *SMALL[:2], *SMALL[4:]]
 
 
 class Small(Studies):
-    def run_study(self, *arguments, expect=0, command="study", page=False, launcher=(), **keywords):
+    def run_study(self, *arguments, expect=0, command="study", page=False, **keywords):
         words = [command, *arguments, "--skip-verification", *["--no-report"] * (command == "study" and not page)]
-        if not launcher:
-            return run(*words, expect=expect, **keywords)
-        done = ended(subprocess.run([*launcher, LATCON, *map(str, words)], capture_output=True, text=True, timeout=600, check=False), expect)
-        return done.stdout + done.stderr
+        return run(*words, expect=expect, **keywords)
 
     def write_study(self, change=lambda document: None):
         def one_run(document):
@@ -66,7 +62,7 @@ class TestSweeps(Small):
     def test_leaves_a_study_that_runs_again(self):
         printed = self.run_study("quick", *SWEEP, "--sweep", "Time/safety factor=0.5,0.9", "-o", self.out, page=True)
         assert "height-1cm_safety-factor-0.5: " in printed
-        document = json.loads((self.out / "study.json").read_text())
+        document = read_json(self.out / "study.json")
         assert [(entry["entry"], entry["unit"], entry["values"]) for entry in document["varied"]] == (
             [("Sheet/height", "m", [0.01, 0.01, 0.015, 0.015]), ("Time/safety factor", "1", [0.5, 0.9, 0.5, 0.9])])
         assert (self.out / "pictures" / "map.png").exists()
@@ -88,7 +84,7 @@ class TestSweeps(Small):
         path = self.write_study(change)
         printed = self.run_study(path, "-o", self.out)
         assert "refinement 1: 1 cases between neighbours that differ" in printed
-        document = json.loads((self.out / "study.json").read_text())
+        document = read_json(self.out / "study.json")
         assert [(run["run"], run["level"]) for run in document["runs"]] == (
             [("strain-y-0.05", 0), ("strain-y-1.8", 0), ("beside", 0), ("strain-y-0.925", 1)])
         assert [seed["values"]["end_time"] is not None for seed in document["seeds"]] == [True] * 4
@@ -114,7 +110,7 @@ class TestSweeps(Small):
         # While the folder is locked, since every shard removes the unfinished files of others.
         assert names.index((MOVED_TO, "sweep.json")) < names.index((CLOSE_WRITE, ".latcon.lock"))
         self.run_study(self.out / "sweep.json", "--collect", "--quiet", page=True)
-        assert len(json.loads((self.out / "study.json").read_text())["seeds"]) == 2
+        assert len(read_json(self.out / "study.json")["seeds"]) == 2
         assert (self.out / "pictures" / "sweep.png").exists()
 
     def test_is_a_job_array(self):
@@ -159,9 +155,9 @@ class TestTroubles(Small):
         # Room for the first run, which is the more expensive one, for its case and lists, and for half of the other.
         script = (f"mount -t tmpfs -o size={high + low // 2 + 100}k none {disk} || exit 77; \"$@\"; status=$?; "
                   f"cp -r {disk}/out {kept}; exit $status")
-        command = [LATCON, "study", study, "-o", disk / "out", "--skip-verification", "--no-report", "--quiet", "--threads", "1"]
-        run = ended(subprocess.run(["unshare", "-m", "sh", "-c", script, "sh", *command], capture_output=True, text=True, timeout=600), 5)
-        assert "No space left on device" in run.stderr
+        full = latcon("study", study, "-o", disk / "out", "--skip-verification", "--no-report", "--quiet", "--threads", "1", expect=5,
+                      launcher=["unshare", "-m", "sh", "-c", script, "sh"])
+        assert "No space left on device" in full.stderr
         measured = list(kept.glob("runs/*-1/crack.json"))
         assert len(measured) == 1
         assert "1 runs, 1 are finished already" in self.run_study(study, "-o", kept, "--resume", "--threads", "1")

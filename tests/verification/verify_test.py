@@ -1,7 +1,6 @@
 """Checks from the command line that every claim holds for the shipped case, in the quick or, with --full, in the full versions,
 and that the pages about claims and their files agree with the results.
 """
-import json
 import os
 import pathlib
 import re
@@ -12,7 +11,7 @@ import pytest
 import verification_page
 from documented import undocumented
 from made_up_claims import write_claims
-from program import CASES, FULL, claims_where, latcon, read_csv, settings
+from program import CASES, FULL, claims_where, latcon, read_csv, read_json, settings
 
 quick_only = pytest.mark.skipif(FULL, reason="the quick versions are enough")
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "verification.csv"
@@ -25,7 +24,7 @@ def verified(out, tmp_path):
     """Output directory of `latcon verify`, and the names of the verdicts that it kept: those of the fixture, or of the full version."""
     if not FULL:
         runs = pathlib.Path(os.environ["LATCON_VERDICTS"]) / "runs"
-        run = json.loads((runs / "verify.json").read_text())
+        run = read_json(runs / "verify.json")
         assert run["exit_code"] == 0, run["output"]
         shutil.copytree(runs / "verify", out)
         return out, set(run["verdicts"])
@@ -36,23 +35,23 @@ def verified(out, tmp_path):
 
 def test_every_claim_holds(verified, tmp_path):
     out, kept = verified
-    results = json.loads((out / "results.json").read_text())
+    results = read_json(out / "results.json")
     rows = results["claims"]
     assert {row["claim"] for row in rows} == claims_where("default")
-    assert json.loads((out / "run.json").read_text())["laws"] == "all"
+    assert read_json(out / "run.json")["laws"] == "all"
     for claim in claims_where("default") - {"steady-crack"}:
         for shells in ("NN+NNN", "NN"):
             assert any(row["claim"] == claim and row["quantity"].startswith((f"{shells}:", f"{shells},")) for row in rows), claim
     # A tolerance without its reason says nothing; a crack waits for all rows that are judged.
     assert [row["quantity"] for row in rows if row["tolerance"] is not None and not row["reason"]] == []
     assert [row["quantity"] for row in rows if row["gate"] != (row["tolerance"] is not None)] == []
-    assert {claim["name"] for claim in json.loads((out / "claims.json").read_text())["claims"]} == claims_where("default")
+    assert {claim["name"] for claim in read_json(out / "claims.json")["claims"]} == claims_where("default")
     for name in TABLES:
         assert len((out / f"{name}.csv").read_text().splitlines()) > 3, name
     # What holds for the program alone is kept as a crack keeps it, which then need not check it again.
     assert len(kept) == (not FULL)
     if not FULL:
-        accepted = json.loads((pathlib.Path(os.environ["LATCON_VERDICTS"]) / "runs" / "accepted" / "run.json").read_text())
+        accepted = read_json(pathlib.Path(os.environ["LATCON_VERDICTS"]) / "runs" / "accepted" / "run.json")
         assert kept == {f"{accepted['verification_of_program']['hash']}.json"}
         assert accepted["verification_of_program"]["reused"]
         assert verification_page.differences(PAGE.read_text(encoding="utf-8"), results) == [], (
@@ -79,7 +78,7 @@ BUCKLED = settings("Loading/strain x=-0.11", "Loading/strain y=0.75", "Next-near
 def test_waves_that_never_ran_fail(out):
     """Checks the case of quick.prm with other settings. Rows with NaN must not hold. The claim on energies: gate_test.py."""
     result = latcon("verify", "wave-speeds", "--quick", "--case", CASES / "quick.prm", *BUCKLED, "--output-dir", out, expect=3)
-    rows = json.loads((out / "results.json").read_text())["claims"]
+    rows = read_json(out / "results.json")["claims"]
     for row in rows:
         if row["verdict"] == "holds":
             assert not {"nan", "inf", "-inf"} & {str(value) for value in row.values()}, row
@@ -90,8 +89,8 @@ def test_waves_that_never_ran_fail(out):
 
 def judged(out, *options, expect=0):
     run = latcon("verify", "intrinsic-length", "--quick", "--output-dir", out, *options, expect=expect)
-    document = json.loads((out / "run.json").read_text())
-    rows = json.loads((out / "results.json").read_text())["claims"]
+    document = read_json(out / "run.json")
+    rows = read_json(out / "results.json")["claims"]
     return sum(row["verdict"] == "holds" for row in rows), document["laws"], "--laws all judges every law" in run.stdout
 
 
