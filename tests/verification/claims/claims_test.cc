@@ -153,14 +153,19 @@ TEST(Claims, HoldInStatesWithLittleToCompare)
   }
   input.shear = 0.2;
   EXPECT_TRUE(checked("wave-speeds", input).all_hold());
-  // Polarisations in the middle between those of longitudinal and of shear waves.
-  input = subjects::paper_case();
-  input.has_next_nearest = false;
-  input.nearest.a = 0.;
-  input.strain_x = 0.8;
-  input.strain_y = 0.3;
-  const Results between = checked("wave-speeds", input);
-  EXPECT_TRUE(between.all_hold()) << between.verdict_text(5);
+  // Polarisations in the middle between those of longitudinal and of shear waves, and waves of nearly one frequency.
+  for (const auto &[shells, a, b, x, y] :
+       {std::tuple(1, 0., 1e5, 0.8, 0.3), std::tuple(2, 1e5, 0., 0.3, 1.8), std::tuple(2, 1e5, 1e5, 0.3, 1.8)})
+  {
+    input = subjects::paper_case();
+    input.has_next_nearest = shells == 2;
+    input.nearest = {latcon::input::ShellCase::Law::mooney_rivlin, a, b, 1., 0.72, 65.625};
+    input.next_nearest = {latcon::input::ShellCase::Law::mooney_rivlin, a, b, 1., 0.81, 196.875};
+    input.strain_x = x;
+    input.strain_y = y;
+    const Results between = checked("wave-speeds", input);
+    EXPECT_TRUE(between.all_hold()) << between.verdict_text(5);
+  }
 }
 
 TEST(Claims, JudgeTheScatteredStencilOfTheCase)
