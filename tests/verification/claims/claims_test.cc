@@ -153,9 +153,10 @@ TEST(Claims, HoldInStatesWithLittleToCompare)
   }
   input.shear = 0.2;
   EXPECT_TRUE(checked("wave-speeds", input).all_hold());
-  // Polarisations in the middle between those of longitudinal and of shear waves, and waves of nearly one frequency.
-  for (const auto &[shells, a, b, x, y] :
-       {std::tuple(1, 0., 1e5, 0.8, 0.3), std::tuple(2, 1e5, 0., 0.3, 1.8), std::tuple(2, 1e5, 1e5, 0.3, 1.8)})
+  // Polarisations in the middle between those of longitudinal and of shear waves, waves of nearly one frequency, and a
+  // slow one.
+  for (const auto &[shells, a, b, x, y] : {std::tuple(1, 0., 1e5, 0.8, 0.3), std::tuple(2, 1e5, 0., 0.3, 1.8),
+                                           std::tuple(2, 1e5, 1e5, 0.3, 1.8), std::tuple(1, 1e5, 0., -0.15, 1.)})
   {
     input = subjects::paper_case();
     input.has_next_nearest = shells == 2;
