@@ -68,8 +68,7 @@ double relax(State &state, const TriangularLattice &lattice, const Material &mat
   Forces forces(band, springs);
   state.velocity = VectorField(lattice.n_places());
   update_images(state, band);
-  double step = 0.3 * largest_step;
-  double mixing = initial_mixing;
+  double step = 0.3 * largest_step, mixing = initial_mixing;
   std::size_t downhill = 0;
   double residual = 0.;
   for (std::size_t iteration = 0; iteration <= max_iterations; ++iteration)

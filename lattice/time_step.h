@@ -41,9 +41,9 @@ struct TimeStepLimits
 /// (attained by the shortest waves), of sqrt2 for the springs.
 /// Where sites may touch (theory.md, eq. (L.14)) the bound is also for a site with all its bonds and six contacts
 /// around it. It differs only for contacts that are stiffer or more viscous than the bonds that they replace.
-/// Likewise it is also for a site of an absorbing end, which lacks bonds.
+/// Likewise it is also for a site of an absorbing end, which lacks bonds (theory.md, eq. (L.16)).
 /// @param smallest_stretch lam_min [-] in (0, 1] @param contact none: sites do not touch
-/// @param end_impedance of absorbing ends [Pa s], see end_loads.h
+/// @param end_impedance of absorbing ends, per sheet thickness [Pa s], see end_loads.h; zero: there are none
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
                                 const std::optional<ContactLaw> &contact = std::nullopt,
                                 const Eigen::Matrix2d &end_impedance = Eigen::Matrix2d::Zero());

@@ -12,7 +12,7 @@ namespace latcon::lattice
 namespace
 {
 
-constexpr double difference_step = 1e-4; // of differences, relative; the wider ones reach twice as far
+constexpr double grid_step = 0.01, difference_step = 1e-4; // relative; the wider differences reach twice as far
 
 std::string text(double number)
 {
@@ -47,7 +47,8 @@ void check_slope(const std::function<double(double)> &function, const std::funct
     throw InvalidBondLaw(name(derivative) + " is " + text(given) + " Pa at stretch " + text(stretch) +
                          ", but differences of " + name(derivative - 1) + " give " + text(difference) + " Pa");
   // Across a pole or a jump psi or psi' may fall though all slopes rise, or the other way round; psi'' may jump.
-  const double from = std::max(stretch / 1.01, smallest_checked_stretch), rise = function(stretch) - function(from);
+  const double from = std::max(stretch / (1. + grid_step), smallest_checked_stretch),
+               rise = function(stretch) - function(from);
   if (derivative <= 2 && std::abs(rise) > 1e-12 * largest && given * rise < 0. && slope(from) * rise < 0. &&
       slope(0.5 * (from + stretch)) * rise < 0.)
     throw InvalidBondLaw(name(derivative - 1) + " is not continuous between stretches " + text(from) + " and " +
@@ -80,7 +81,7 @@ void check_law(const std::vector<std::function<double(double)>> &functions, doub
     throw InvalidBondLaw("psi''(1) is " + text(stiffness) + " Pa; a bond at rest needs a stiffness > 0");
   if (!(std::abs(functions[1](1.)) <= 1e-12 * stiffness))
     throw InvalidBondLaw("psi'(1) is " + text(functions[1](1.)) + " Pa; a bond at rest has no force");
-  const std::vector<double> stretches = grid(smallest_checked_stretch, longest, 0.01);
+  const std::vector<double> stretches = grid(smallest_checked_stretch, longest, grid_step);
   for (std::size_t derivative = 0; derivative < functions.size(); ++derivative)
     for (const double stretch : stretches)
     {
