@@ -79,6 +79,20 @@ def test_folder_of_somebody_else(tmp_path):
     assert "ermission denied" in run.stderr and str(folder / "out") in run.stderr
 
 
+def test_run_json_is_moved_aside_last(tmp_path):
+    """It tells whose the other files are, so they have gone before it, whenever the run that moves them is killed."""
+    out, command = tmp_path / "out", victims.VICTIMS["sheet in motion"]
+    victims.run_to_end(command, out)
+    files = {path.name for path in out.iterdir()}
+    for call in range(1, 100):
+        status, said = PROGRAM.run(command, out, fault={"LATCON_FAULT": "kill", "LATCON_FAULT_AT": str(call)})
+        assert status == -9, said
+        moved = {path.name for path in out.glob("earlier-run*/*")}
+        if "run.json" in moved:
+            break
+    assert moved >= {name for name in files if not name.startswith(".") and name != "checkpoints"}
+
+
 @pytest.fixture(scope="module")
 def whole_run(module_path):
     """Folder and results of an undisturbed crack."""

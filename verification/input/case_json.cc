@@ -96,13 +96,10 @@ public:
       text.erase(0, bracket + 2);
     std::string place = name_;
     const std::string prefix = "parse error at line ";
-    if (text.compare(0, prefix.size(), prefix) == 0)
-    {
-      const std::size_t comma = text.find(',');
-      if (comma != std::string::npos)
-        place += ":" + text.substr(prefix.size(), comma - prefix.size());
-    }
-    result_.push_back(SyntaxProblem{place, "not JSON: " + printable(text)});
+    const std::size_t comma = text.find(',');
+    if (text.compare(0, prefix.size(), prefix) == 0 && comma != std::string::npos)
+      place += ":" + text.substr(prefix.size(), comma - prefix.size());
+    result_.push_back(SyntaxProblem{place, "not JSON: " + printable(text), true});
     return false;
   }
 

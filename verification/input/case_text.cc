@@ -167,7 +167,7 @@ std::optional<SyntaxProblem> zero_byte(const std::string &text, const std::strin
   if (zero == std::string::npos)
     return {};
   const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
-  return SyntaxProblem{place_of(name, static_cast<std::size_t>(line)), "not a text file: it holds zero bytes"};
+  return SyntaxProblem{place_of(name, static_cast<std::size_t>(line)), "not a text file: it holds zero bytes", true};
 }
 
 CaseText read_prm(const std::string &text, const std::string &name)

@@ -68,7 +68,7 @@ void Parameters::read_text(const std::string &text, const std::string &name)
     if (const auto *problem = std::get_if<SyntaxProblem>(&item))
     {
       report(problem->place, problem->text);
-      unreadable_ = unreadable_ || problem->text.compare(0, 8, "not JSON") == 0;
+      unreadable_ = unreadable_ || problem->ends_case;
     }
     else if (const auto *start = std::get_if<SectionStart>(&item))
     {

@@ -72,6 +72,8 @@ fs::path move_aside(const fs::path &folder, const Names &names, const fs::path &
         files.push_back(entry.path());
     if (files.empty())
       return {};
+    // Last, since it tells whose the others are.
+    std::partition(files.begin(), files.end(), [](const fs::path &file) { return file.filename() != "run.json"; });
     fs::path aside = folder / "earlier-run"; // or the first name that is free
     for (int i = 2; fs::exists(fs::symlink_status(aside)); ++i)
       aside = folder / ("earlier-run-" + std::to_string(i));
