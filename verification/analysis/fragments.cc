@@ -34,7 +34,7 @@ std::vector<Piece> pieces(const lattice::State &state, const lattice::Triangular
     if (number == all.size())
       all.emplace_back();
     all[number].places.push_back(place);
-    all[number].held = all[number].held || state.held[place] != 0 || state.rollers[place] != 0;
+    all[number].held = all[number].held || (state.held[place] | state.rollers[place]) != 0;
   }
   return all;
 }

@@ -31,7 +31,7 @@ struct SyntaxProblem
 {
   std::string place;
   std::string text;
-  bool ends_case = false; ///< nothing was parsed, so missing entries mean nothing
+  bool ends_case = false; ///< what follows was not parsed, so missing entries mean nothing
 };
 
 /// Parsed case in the order of its lines; problems found at the end of the file come last.
