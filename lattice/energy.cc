@@ -102,9 +102,8 @@ double kinetic_energy(const State &state, const RowPartition &band)
   const auto of_row = [&](std::size_t row)
   {
     double sum = 0.;
-    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
+    for (const std::size_t place : lattice.sites({row, row + 1}))
     {
-      const std::size_t place = lattice.index(row, column);
       if (!(state.inverse_mass[place] > 0.))
         continue;
       double square = 0.;

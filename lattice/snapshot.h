@@ -24,9 +24,8 @@ void archive_rows(Archive &archive, const std::string &name, Vector &field, cons
   {
     band.gather(field, {0, lattice.rows()});
     if (band.is_first())
-      for (std::size_t row = 0; row < lattice.rows(); ++row)
-        for (const std::size_t place : lattice.sites({row, row + 1}))
-          values.push_back(field[place]);
+      for (const std::size_t place : lattice.sites())
+        values.push_back(field[place]);
   }
   archive(name, values);
   if constexpr (Archive::loads)
