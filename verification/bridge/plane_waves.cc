@@ -86,14 +86,14 @@ constexpr double angle_step = M_PI / n_angles, length_step = (longest - shortest
 
 } // namespace
 
-std::array<PlaneWave, 2> plane_waves(const WaveMatrices &matrices, const Eigen::Vector2d &normal)
+std::array<PlaneWave, 2> plane_waves(const WaveMatrices &matrices, const Eigen::Vector2d &longitudinal)
 {
   // The eigenvalue solvers do not handle values that are not finite.
   if (!matrices.stiffness.allFinite() || !matrices.damping.allFinite())
     return {PlaneWave{not_a_number, not_a_number, {not_a_number, not_a_number}},
             PlaneWave{not_a_number, not_a_number, {not_a_number, not_a_number}}};
   std::array<PlaneWave, 2> waves = matrices.damping.isZero(0.) ? undamped(matrices.stiffness) : damped(matrices);
-  if (std::abs(waves[0].polarisation.dot(normal)) < std::abs(waves[1].polarisation.dot(normal)))
+  if (std::abs(waves[0].polarisation.dot(longitudinal)) < std::abs(waves[1].polarisation.dot(longitudinal)))
     std::swap(waves[0], waves[1]);
   return waves;
 }
@@ -136,9 +136,8 @@ WaveMatrices bloch_matrices(const lattice::TriangularLattice &lattice, const lat
 std::array<PlaneWave, 2> bloch_waves(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                      const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
 {
-  WaveMatrices matrices = bloch_matrices(lattice, material, F, K);
-  matrices.damping.setZero();
-  return plane_waves(matrices, wave_normal(F, K));
+  const lattice::Material springs = lattice::without_dashpots(material);
+  return named_waves([&](const Eigen::Vector2d &k) { return bloch_matrices(lattice, springs, F, k); }, F, K);
 }
 
 SlowestWave slowest_wave(const lattice::TriangularLattice &lattice, const lattice::Material &material,

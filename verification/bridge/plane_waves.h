@@ -27,11 +27,9 @@ struct PlaneWave
   Eigen::Vector2d polarisation; ///< unit vector p [-], current frame
 };
 
-/// Returns both waves: first the wave whose polarisation is closer to `normal`, called longitudinal, then the shear
-/// wave. The names are exact at F = I in directions of symmetry. All numbers are NaN if an entry of the matrices is not
-/// finite.
-/// @param normal direction of propagation of the wave fronts in the deformed sheet
-std::array<PlaneWave, 2> plane_waves(const WaveMatrices &matrices, const Eigen::Vector2d &normal);
+/// Returns both waves: first the wave whose polarisation is closer to `longitudinal`, then the shear wave. All numbers
+/// are NaN if an entry of the matrices is not finite.
+std::array<PlaneWave, 2> plane_waves(const WaveMatrices &matrices, const Eigen::Vector2d &longitudinal);
 
 /// Returns the larger frequency of the two waves [rad/s].
 /// @throws std::runtime_error if a wave does not oscillate, that is, its frequency is 0 or not finite
@@ -39,6 +37,16 @@ double fastest_frequency(const std::array<PlaneWave, 2> &waves);
 
 /// Returns the unit normal of the wave fronts of K in the deformed sheet, F^-T K normalised.
 Eigen::Vector2d wave_normal(const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
+
+/// Returns both waves at K of the matrices(K) about the state F. Called longitudinal is the wave that has the
+/// polarisation closer to the wave normal when it is a thousand times as long: polarisations turn with K, and a wave
+/// keeps its name. The names are exact at F = I in directions of symmetry.
+template <class Matrices>
+std::array<PlaneWave, 2> named_waves(const Matrices &matrices, const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+{
+  const WaveMatrices of_long{matrices(Eigen::Vector2d(1e-3 * K)).stiffness, Eigen::Matrix2d::Zero()};
+  return plane_waves(matrices(K), plane_waves(of_long, wave_normal(F, K))[0].polarisation);
+}
 
 /// Returns the dynamical matrices of an infinite lattice at the homogeneous deformation F, divided by the mass of a
 /// site (theory-comparison.md, eq. (W.1)); exact for all wavelengths.
@@ -85,10 +93,10 @@ struct BranchMatrix
 };
 
 /// Solves (s^2 + s C + D + sum_i s tau_i / (1 + s tau_i) G_i) p = 0 (theory.md, eq. (L.30); theory-viscoelastic.md, eq.
-/// (V.6)) for the two waves that oscillate. The longitudinal wave comes first, as in plane_waves(). A wave that does
-/// not oscillate, because it is overdamped or the sheet is unstable, is NaN.
+/// (V.6)) for the two waves that oscillate. The longitudinal wave comes first. A wave that does not
+/// oscillate, because it is overdamped or the sheet is unstable, is NaN.
 /// @param relaxed C and D, without branches
-/// @param normal as for plane_waves()
+/// @param normal of the wave fronts in the deformed sheet: the polarisation closer to it is called longitudinal
 /// @throws std::runtime_error if an entry of the matrices is not finite
 std::array<MemoryWave, 2> memory_waves(const WaveMatrices &relaxed, const std::vector<BranchMatrix> &branches,
                                        const Eigen::Vector2d &normal);

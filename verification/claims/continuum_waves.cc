@@ -74,7 +74,7 @@ double discretisation_bound(const WaveMesh &mesh)
 std::array<bridge::PlaneWave, 2> continuum_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
                                                  const Eigen::Vector2d &K)
 {
-  return bridge::plane_waves(continuum_matrices(medium, F, K), bridge::wave_normal(F, K));
+  return bridge::named_waves([&](const Eigen::Vector2d &k) { return continuum_matrices(medium, F, k); }, F, K);
 }
 
 std::vector<bridge::BranchMatrix> branch_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F,

@@ -34,15 +34,6 @@ lattice::Field cosine_of(const WaveCell &cell)
   return shape;
 }
 
-// Sum over the sites of a shape times the displacement from another state.
-Eigen::Vector2d project(const lattice::Field &shape, const lattice::State &now, const lattice::State &at_rest)
-{
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (std::size_t place = 0; place < shape.size(); ++place)
-    sum += shape[place] * (now.position.at(place) - at_rest.position.at(place));
-  return sum;
-}
-
 // Follows waves of the lattice. @param start displaced from `at_rest` along `directions`, in a cosine for each
 std::vector<Oscillation> measure(const WaveCell &cell, const lattice::Material &material, const lattice::State &at_rest,
                                  lattice::State start, const std::vector<Eigen::Vector2d> &directions,
@@ -54,7 +45,9 @@ std::vector<Oscillation> measure(const WaveCell &cell, const lattice::Material &
   const double norm = std::inner_product(shape.begin(), shape.end(), shape.begin(), 0.);
   const auto amplitudes = [&]
   {
-    const Eigen::Vector2d sum = project(shape, simulation.state(), at_rest);
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for (std::size_t place = 0; place < shape.size(); ++place)
+      sum += shape[place] * (simulation.state().position.at(place) - at_rest.position.at(place));
     std::vector<double> of_waves;
     for (const Eigen::Vector2d &direction : directions)
       of_waves.push_back(direction.dot(sum) / (strain / cell.K.norm() * norm));
@@ -90,10 +83,8 @@ lattice::State excited(const WaveCell &cell, const lattice::Material &material, 
   {
     const double shape = amplitude * std::cos(cell.phase(place));
     const Eigen::Vector2cd u = shape * wave.polarisation, v = wave.rate * u;
-    state.position.x[place] += u.x().real();
-    state.position.y[place] += u.y().real();
-    state.velocity.x[place] += v.x().real();
-    state.velocity.y[place] += v.y().real();
+    state.position.add(place, u.real());
+    state.velocity.add(place, v.real());
   }
   lattice::update_images(state, lattice::RowPartition(sheet));
   lattice::relax_memory(state, sheet, material);

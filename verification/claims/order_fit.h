@@ -44,6 +44,11 @@ class CommonOrder
 public:
   /// @param i number of the size in order_kd @param error of one wave
   void add(std::size_t i, double error) { squares_.at(i) += error * error; }
+  /// The same of a matrix of waves, which unlike these does not change much where two are alike or one is slow.
+  void add(std::size_t i, const Eigen::MatrixXd &found, const Eigen::MatrixXd &exact)
+  {
+    add(i, (found - exact).norm() / exact.norm());
+  }
 
   /// See fitted_order.
   double order() const

@@ -232,9 +232,9 @@ private:
     {
       const Eigen::Vector2d K = vector_of_wave(long_wave_kd / d, degrees * M_PI / 180.);
       const double k = K.norm(), bound = wave_bound(subject_, F, K);
-      const auto found = bridge::plane_waves({sheet.wave_stiffness(F, K), Eigen::Matrix2d::Zero()},
-                                             bridge::wave_normal(F, K)),
-                 network = continuum_waves(media.network, F, K),
+      const auto network = continuum_waves(media.network, F, K),
+                 found =
+                   bridge::plane_waves({sheet.wave_stiffness(F, K), Eigen::Matrix2d::Zero()}, network[0].polarisation),
                  on_lattice = bridge::bloch_waves(subject_.sheet(), elastic, F, K);
       for (std::size_t w = 0; w < 2; ++w)
       {

@@ -86,10 +86,8 @@ void network_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, con
     {
       const Eigen::Vector2d K = order_kd[i] / d * N;
       const Eigen::VectorXd mean = bridge::rotation_mean(on_lattice(K)).mean;
-      const auto error = [&](const WaveContinuum &medium)
-      { return (continuum_matrices(medium, F, K).stiffness.reshaped() - mean).norm() / mean.norm(); };
-      local_order.add(i, error(media.network));
-      gradient_order.add(i, error(gradient));
+      local_order.add(i, continuum_matrices(media.network, F, K).stiffness.reshaped(), mean);
+      gradient_order.add(i, continuum_matrices(gradient, F, K).stiffness.reshaped(), mean);
     }
 
     const Eigen::Vector2d K = kd_of_speeds / d * N;
