@@ -117,7 +117,7 @@ class Quantities(Mapping[str, Any]):
         try:
             return self.__dict__["_values"][name]
         except KeyError:
-            raise AttributeError(f"no quantity {name!r}") from None
+            raise AttributeError(f"no quantity {name!r}", name=name, obj=self) from None
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._values]

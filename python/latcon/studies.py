@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from .case import Settable, entry_text, set_options
 from .commands import CaseLike, Directory, as_case, common_words
-from .errors import ClaimFailed, DidNotConverge, optional_package
+from .errors import BadInput, ClaimFailed, DidNotConverge, optional_package
 from .files import read_json
 from .folder import absolute
 from .program import Progress, interrupt_runs, progress_indicator, run
@@ -182,6 +182,8 @@ def sweep(case: CaseLike, values: Mapping[str, Iterable[Settable]], directory: D
         After Ctrl-C: the runs of this machine write checkpoints; call again to continue.
     """
     optional_package("xarray", "sweeps need", "xarray (Debian: python3-xarray)")
+    if not values:
+        raise BadInput("values: give at least one entry to sweep", 2)
     case, place = as_case(case), absolute(directory)
     overrides = {key: value for key, value in case.overrides.items() if key != SEED_ENTRY and key not in values}
     texts = {key: [entry_text(key, value) for value in of_key] for key, of_key in values.items()}

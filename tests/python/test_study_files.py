@@ -47,14 +47,20 @@ def test_a_plan_resolves_every_case(program, tmp_path):
     text = sweep_study(program, ["Loading/strain y=1.5:1.6:2"], "quick", "base.prm", {}, 2)
     study = read_study(program, os.fspath(tmp_path / "sweep.json"), False, text.encode())
     program.ask(base=os.fsencode(study.base).hex())
-    plan = plan_runs(program, study, {"Fracture/seed sites": "3"}, Verification.NONE)
+    study.runs[0].own["Fracture/seed sites"] = "5"
+    study.override({"Fracture/seed sites": "3"})
+    assert study.settings == {"Fracture/seed sites": "3"} and study.runs[0].own == {"Loading/strain y": "1.5"}
+    with pytest.raises(InputError, match="--set: Loading/strain y is also an entry of the sweep"):
+        study.override({"Loading/strain y": "2"})
+    plan = plan_runs(program, study, Verification.NONE)
+    assert "Fracture/seed sites=3" in plan[0].changes
     assert [(run.seed, run.value("Loading/strain y")) for run in plan] == [(1, 1.5), (2, 1.5), (1, 1.6), (2, 1.6)]
     # theory.md, eq. (L.5): (eta / a) / (d / sqrt(a / rho)) = 65.625 / 1e5 / (0.625e-3 / sqrt(1e5 / 944))
     assert plan[0].value("zeta") == pytest.approx(10.80695, abs=1e-5)
     assert plan[0].size > 1000 and plan[0].seconds > 0
     assert len({run.case_sha256 for run in plan}) == 4
     study.runs.append(StudyRun("low", own={"Sheet/height": "1 cm"}))
-    (added,) = plan_runs(program, study, {}, Verification.NONE, [StudyRun("between", all={"Loading/strain y": "1.55"}, seeds=[3])])
+    (added,) = plan_runs(program, study, Verification.NONE, [StudyRun("between", all={"Loading/strain y": "1.55"}, seeds=[3])])
     assert (added.folder, added.value("Loading/strain y"), added.value("Sheet/height")) == ("between-3", 1.55, 0.025)
 
 

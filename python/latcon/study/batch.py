@@ -64,7 +64,7 @@ def write_batch(program: Program, printed: Printed, options: Mapping[str, Any]) 
         raise InputError(f"--partition '{printable(partition)}': expected a name")
     requested = read_requested_study(program, options)
     require_no_refinement(requested.study)
-    plan = plan_runs(program, requested.study, requested.overrides, verification_of(options))
+    plan = plan_runs(program, requested.study, verification_of(options))
     n_tasks = min(len(plan), options["tasks"] or _MAX_DEFAULT_TASKS)
     if options["dry_run"]:
         printed.say(plan_table(requested.study, plan, n_tasks * options["cpus_per_task"]))

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..compare import compare
 from ..errors import BAD_INPUT, CLAIM_FAILED, DONE, INTERNAL_ERROR, INTERRUPTED, OUTPUT_FAILED, SOLVER_FAILED, LatconError
-from ..folder import FolderLock, prepare_run, remove, require_in_place, write_atomically, write_file
+from ..folder import FolderLock, is_listed, prepare_run, remove, require_in_place, write_atomically, write_file
 from .batch import write_batch
 from .explain import explain, init
 from .outcome import RunOutcome, RunState, is_begun, read_outcome
@@ -102,7 +102,7 @@ class _StudyCommand:
             require_no_refinement(requested.study)
         self.verification = verification_of(options)
         self.results = results = StudyResults(requested.study, [], options["quick"], self.verification)
-        self.add_runs(plan_runs(program, requested.study, requested.overrides, self.verification))
+        self.add_runs(plan_runs(program, requested.study, self.verification))
         plan = results.plan
         if options["dry_run"]:
             self.printed.say(plan_table(requested.study, plan, self.n_cores))
@@ -132,7 +132,7 @@ class _StudyCommand:
         if not options["shard"]:
             requested.write_sweep()
         if self.verification is Verification.BASE_CASE and not options["collect"]:
-            record.verify(program, base_text(program, requested.study, requested.overrides),
+            record.verify(program, base_text(program, requested.study),
                           any(one.on_continuum for one in requested.study.runs))
         self.signals.deferred = True  # from here on a signal ends the runs, and the results are written
         complete = self.signals.pending is None and (options["collect"] or self.run_children(selected) and self.refine())
@@ -222,7 +222,7 @@ class _StudyCommand:
         for level in range(1, study.refine + 1):
             added = refined_runs(study, results.plan, results.outcomes, level)
             study.runs += added
-            plan = plan_runs(self.program, study, self.requested.overrides, self.verification, added)
+            plan = plan_runs(self.program, study, self.verification, added)
             self.printed.say(f"refinement {level}: {len(added)} cases between neighbours that differ")
             if not self.run_children(self.add_runs(plan)):
                 return False
@@ -238,12 +238,14 @@ class _StudyCommand:
         """Judges the runs, writes the tables and the page; returns the exit code."""
         program, results = self.program, self.results
         results.claims = judge_study(results.study, results.plan, results.outcomes)
+        if is_listed(self.directory, "study.html"):  # of earlier tables
+            remove(self.directory + "/study.html")
         write_file(self.directory + "/study.json", study_json(program, results))
         write_file(self.directory + "/study.csv", study_csv(program, results))
         rows = [row.result(claim.claim.claim) for claim in results.claims for row in claim.rows]
         self.printed.say(result_table(program, results))
         code = record.end([row for row in rows if row is not None], self.exit_code() if complete else INTERRUPTED)
-        if complete:  # a page takes a while, and one of an earlier run may remain
+        if complete:  # a page takes a while
             self.signals.resume()
         if complete and not self.options["no_report"] and draw_page(
                 "study", self.directory, "study.html", "repeat the command with --resume, or with --collect after shards,"):

@@ -91,9 +91,9 @@ def parse_settings(texts: Sequence[str]) -> Settings:
     return settings
 
 
-def base_text(program: Program, study: Study, overrides: Settings) -> str:
+def base_text(program: Program, study: Study) -> str:
     """Returns the text of the base case, for claims that are checked on it alone."""
-    changes = [f"{key}={value}" for key, value in (study.settings | overrides).items()]
+    changes = [f"{key}={value}" for key, value in study.settings.items()]
     return program.ask(changes=changes, seeds=[], checks_laws=True, wants_text=True)
 
 
@@ -114,16 +114,11 @@ def _value(text: Any) -> Any:
     return text
 
 
-def plan_runs(program: Program, study: Study, overrides: Settings, verification: Verification,
-              added: Sequence[StudyRun] | None = None) -> list[PlannedRun]:
+def plan_runs(program: Program, study: Study, verification: Verification, added: Sequence[StudyRun] | None = None) -> list[PlannedRun]:
     """Returns the runs of a study, or those `added` to it, with all their seeds, in their order, with the first and the last frame alone.
 
-    Raises InputError with the problems of all cases, of rows whose `against` is not a number in any of their runs, and of
-    settings of entries that the study sweeps.
+    Raises InputError with the problems of all cases and of rows whose `against` is not a number in any of their runs.
     """
-    for key in overrides:
-        if key in study.swept:
-            raise InputError(f"--set: {key} is also an entry of the sweep of {study.file}")
     keys = {key for run in study.runs for key in run.own} | set(study.swept)
     keys |= {row.against for claim in study.claims for row in claim.rows if row.against}
     keys -= {"zeta"}
@@ -131,7 +126,7 @@ def plan_runs(program: Program, study: Study, overrides: Settings, verification:
     runs: list[PlannedRun] = []
     problems: list[str] = []
     for run in study.runs if added is None else added:
-        changes = [f"{key}={value}" for key, value in (run.all | overrides | frames).items()]
+        changes = [f"{key}={value}" for key, value in (run.all | frames).items()]
         try:
             reply = program.ask(changes=changes, seeds=run.seeds, on_continuum=run.on_continuum, keys=sorted(keys | set(_OF_ZETA)),
                                 checks_laws=verification is Verification.EVERY_RUN, wants_text=False)
@@ -152,7 +147,7 @@ def plan_runs(program: Program, study: Study, overrides: Settings, verification:
     if problems:
         raise InputError(*problems)
     if verification is Verification.BASE_CASE:
-        base_text(program, study, overrides)
+        base_text(program, study)
     return runs
 
 
@@ -172,8 +167,9 @@ def default_folder(study: str, is_sweep: bool) -> str:
 class RequestedStudy:
     """Study with its base case, read but not planned.
 
-    `overrides` are those of ``--set``, none for a sweep, whose study file contains them; `file` is the study file. `kept` are
-    the texts of the files of a sweep by path, not written yet: the study file, and the copy of its case.
+    `overrides` are those of ``--set``, which the study has already: none for a sweep, whose study file contains them. `file`
+    is the study file. `kept` are the texts of the files of a sweep by path, not written yet: the study file, and the copy of
+    its case.
     """
 
     study: Study
@@ -204,7 +200,9 @@ def read_requested_study(program: Program, options: Mapping[str, Any]) -> Reques
         raise InputError(f"{printable(file)}: cannot read the study: {problem}; give a study file (.json){shipped}")
     study = read_study(program, file, options["quick"], text)
     program.ask(base=os.fsencode(_case_path(program, study.base)).hex())
-    return RequestedStudy(study, parse_settings(options["overrides"]), file)
+    overrides = parse_settings(options["overrides"])
+    study.override(overrides)
+    return RequestedStudy(study, overrides, file)
 
 
 def _read_sweep(program: Program, options: Mapping[str, Any]) -> RequestedStudy:

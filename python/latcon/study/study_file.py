@@ -98,6 +98,16 @@ class Study:
     claims: list[StudyClaim] = dataclasses.field(default_factory=list)
     pictures: list[str] = dataclasses.field(default_factory=list)
 
+    def override(self, settings: Settings) -> None:
+        """Sets entries in all runs, whatever these set; raises InputError for entries that the study sweeps."""
+        for key in settings:
+            if key in self.swept:
+                raise InputError(f"--set: {key} is also an entry of the sweep of {self.file}")
+        self.settings |= settings
+        for run in self.runs:
+            run.own = {key: value for key, value in run.own.items() if key not in settings}
+            run.all |= settings
+
 
 def read_study(program: Program, path: str, quick: bool, text: bytes) -> Study:
     """Reads a study, the content of a file whose folder the name of its base case is relative to.
