@@ -99,7 +99,11 @@ def test_files_may_be_renamed_and_their_interval_changed(ended, out):
         step = int(file["run/step"][0])
     last.rename(last.with_name("a.h5"))
     first.rename(first.with_name("b.h5"))
+    (out / "report.html").write_text("of the part that is there")
+    with open(out / ".latcon-files", "a", encoding="utf-8") as names:
+        names.write("report.html\n")
     run = run_to_end(out, "--resume", "--set", "Checkpoints/interval=1")
+    assert not (out / "report.html").exists()
     assert "a.h5" in run.stdout
     assert read_json(out / "run.json")["resumed_from"]["step"] == step
 

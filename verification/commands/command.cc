@@ -140,6 +140,8 @@ void Run::clear(const input::Options &options, bool has_case) const
   if (has_case && std::filesystem::equivalent(own, options.case_file, none) && !output::is_listed_output(own))
     throw support::InputError("the run would overwrite its own case " + options.case_file +
                               "; give another --output-dir, or move the case out of it");
+  if (const std::filesystem::path page = directory_ + "/report.html"; resumes_ && output::is_listed_output(page))
+    std::filesystem::remove(page, none); // of the part that is there
   if (!resumes_)
   {
     const std::filesystem::path aside = output::archive_earlier_output(directory_, options.case_file);

@@ -258,7 +258,7 @@ support::ExitCode run_program(int argc, char **argv)
     ->check(CLI::Range(1u, max_threads))
     ->default_str("1");
   keep(batch_command, batch_chosen, "time", "--time", "TIME", std::string("1-00:00:00"),
-       "limit per task, [days-]hours:minutes:seconds")
+       "limit per task, [days-]hours:minutes:seconds, or MINUTES, MINUTES:SECONDS or DAYS-HOURS as Slurm has them")
     ->default_str("1-00:00:00");
   keep(batch_command, batch_chosen, "partition", "--partition", "NAME", std::string(),
        "partition; default: that of the cluster");

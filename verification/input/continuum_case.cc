@@ -251,7 +251,8 @@ void ContinuumCase::check(Parameters &p, const Case &input) const
       held || ((id < 4 || has_inner_edge || !mesh_file.empty()) && edges[id].condition == EdgeCase::Condition::held);
   if (!held && solution == Solution::equilibrium)
     p.error("Left edge/condition", "equilibrium needs an edge that is held",
-            {"Right edge/condition", "Bottom edge/condition", "Top edge/condition", "Inner edge/condition"});
+            {"Right edge/condition", "Bottom edge/condition", "Top edge/condition", "Inner edge/condition",
+             "Continuum/solution"});
   if (solution == Solution::motion && adaptive_cycles > 0)
     p.error("Continuum/adaptive cycles", "the mesh of a motion is not refined; give 0", {"Continuum/solution"});
   if (solution == Solution::motion && time_step && input.end_time > 0. && *time_step > input.end_time)

@@ -99,9 +99,11 @@ void Parameters::take_override(const std::string &text)
   const std::size_t slash = text.find('/');
   if (equals == std::string::npos || slash == std::string::npos || slash > equals)
   {
-    const std::string name = trimmed(text.substr(0, equals));
-    report("--set",
-           "not understood: '" + printable(text) + "'" + nearest_key("", name) + "; allowed: --set Section/Name=value");
+    const std::string key = trimmed(text.substr(0, equals));
+    const std::string nearest = slash < equals
+                                  ? nearest_key(trimmed(key.substr(0, slash)), trimmed(key.substr(slash + 1)))
+                                  : nearest_key("", key);
+    report("--set", "not understood: '" + printable(text) + "'" + nearest + "; allowed: --set Section/Name=value");
     return;
   }
   const Assignment assignment{"--set", trimmed(text.substr(0, slash)),

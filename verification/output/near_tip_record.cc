@@ -120,8 +120,8 @@ std::vector<Number> field_numbers(const analysis::NearTipField &field, std::opti
     add("opening_stress_angle" + at, part_of(stress, &analysis::OpeningStress::angle));
     add("opening_stress_ratio" + at, part_of(stress, &analysis::OpeningStress::ratio));
     add("opening_stress_peak" + at, part_of(stress, &analysis::OpeningStress::peak));
-    const auto over_far = [&](const auto &s) { return s.peak / far_opening_stress; };
-    add("opening_stress_concentration" + at, far_opening_stress > 0. ? part_of(stress, over_far) : std::nullopt);
+    const bool known = stress && far_opening_stress > 1e-9 * stress->peak; // by more than round-off
+    add("opening_stress_concentration" + at, known ? std::optional(stress->peak / far_opening_stress) : std::nullopt);
   }
   return numbers;
 }
