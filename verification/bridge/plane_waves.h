@@ -27,8 +27,8 @@ struct PlaneWave
   Eigen::Vector2d polarisation; ///< unit vector p [-], current frame
 };
 
-/// Returns both waves: first the wave whose polarisation is closer to `longitudinal`, then the shear wave. All numbers
-/// are NaN if an entry of the matrices is not finite.
+/// Returns both waves: first the wave whose polarisation is closer to `longitudinal` [-, current frame], then the shear
+/// wave. All numbers are NaN if an entry of the matrices is not finite.
 std::array<PlaneWave, 2> plane_waves(const WaveMatrices &matrices, const Eigen::Vector2d &longitudinal);
 
 /// Returns the larger frequency of the two waves [rad/s].
@@ -38,9 +38,9 @@ double fastest_frequency(const std::array<PlaneWave, 2> &waves);
 /// Returns the unit normal of the wave fronts of K in the deformed sheet, F^-T K normalised.
 Eigen::Vector2d wave_normal(const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
 
-/// Returns both waves at K of the matrices(K) about the state F. Called longitudinal is the wave that has the
-/// polarisation closer to the wave normal when it is a thousand times as long: polarisations turn with K, and a wave
-/// keeps its name. The names are exact at F = I in directions of symmetry.
+/// Returns both waves at K [1/m, referential] of the matrices(K) about the state F. The longitudinal wave is the one
+/// closer to the polarisation at 1e-3 K that is closer to the wave normal: it keeps this name where polarisations turn
+/// with K, by up to 45 degrees. The names are exact at F = I in directions of symmetry.
 template <class Matrices>
 std::array<PlaneWave, 2> named_waves(const Matrices &matrices, const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
 {

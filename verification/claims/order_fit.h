@@ -16,8 +16,7 @@ inline const std::vector<double> order_kd{0.05, 0.1, 0.2};
 inline constexpr double largest_damped_kd = 0.4;
 /// Tolerance of such an order.
 inline constexpr double order_tolerance = 0.05;
-/// Why that tolerance. The next order of undamped waves is (kd)^2 / 12 of the error; damping mixes the polarisations,
-/// by the square of its ratio to critical damping, which is 0.33 at kd = 0.4 (damping_orders).
+/// Why that tolerance: the next order is (kd)^2 / 12 of the error.
 inline constexpr const char *reason_of_order =
   "kd from 0.05 to 0.2: the next order is (kd)^2 of the error at most, which bends the line by 0.03";
 
@@ -44,7 +43,7 @@ class CommonOrder
 public:
   /// @param i number of the size in order_kd @param error of one wave
   void add(std::size_t i, double error) { squares_.at(i) += error * error; }
-  /// The same of a matrix of waves, which unlike these does not change much where two are alike or one is slow.
+  /// Adds the relative error of a matrix, of which a slow wave is a small share. @param found, exact in one unit
   void add(std::size_t i, const Eigen::MatrixXd &found, const Eigen::MatrixXd &exact)
   {
     add(i, (found - exact).norm() / exact.norm());

@@ -141,7 +141,7 @@ void Run::clear(const input::Options &options, bool has_case) const
     throw support::InputError("the run would overwrite its own case " + options.case_file +
                               "; give another --output-dir, or move the case out of it");
   if (const std::filesystem::path page = directory_ + "/report.html"; resumes_ && output::is_listed_output(page))
-    std::filesystem::remove(page, none); // of the part that is there
+    std::filesystem::remove(page, none); // describes the run before it continues
   if (!resumes_)
   {
     const std::filesystem::path aside = output::archive_earlier_output(directory_, options.case_file);
