@@ -167,13 +167,11 @@ def default_folder(study: str, is_sweep: bool) -> str:
 class RequestedStudy:
     """Study with its base case, read but not planned.
 
-    `overrides` are those of ``--set``, which the study has already: none for a sweep, whose study file contains them. `file`
-    is the study file. `kept` are the texts of the files of a sweep by path, not written yet: the study file, and the copy of
-    its case.
+    `file` is the study file. `kept` are the texts of the files of a sweep by path, not written yet: the study file, and the
+    copy of its case.
     """
 
     study: Study
-    overrides: Settings
     file: str
     kept: dict[str, bytes] = dataclasses.field(default_factory=dict)
 
@@ -200,9 +198,8 @@ def read_requested_study(program: Program, options: Mapping[str, Any]) -> Reques
         raise InputError(f"{printable(file)}: cannot read the study: {problem}; give a study file (.json){shipped}")
     study = read_study(program, file, options["quick"], text)
     program.ask(base=os.fsencode(_case_path(program, study.base)).hex())
-    overrides = parse_settings(options["overrides"])
-    study.override(overrides)
-    return RequestedStudy(study, overrides, file)
+    study.override(parse_settings(options["overrides"]))
+    return RequestedStudy(study, file)
 
 
 def _read_sweep(program: Program, options: Mapping[str, Any]) -> RequestedStudy:
@@ -220,7 +217,7 @@ def _read_sweep(program: Program, options: Mapping[str, Any]) -> RequestedStudy:
                        parse_settings(options["overrides"]), options["seeds"]).encode("utf-8", "replace")
     study = read_study(program, file, options["quick"], text)
     study.base = name  # for messages
-    requested = RequestedStudy(study, {}, file, {base_file: base, file: text})
+    requested = RequestedStudy(study, file, {base_file: base, file: text})
     # Files that the user may have edited are not replaced.
     for path, other in ((file, "this sweep"), (base_file, name)):
         if os.path.exists(path) and read_input(path)[0] != requested.kept[path]:
