@@ -9,10 +9,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..errors import DONE
-from ..case import set_options
 from ..folder import FolderLock, write_file
 from .output import plan_table
-from .plan import parse_settings, plan_runs, read_requested_study, require_folder_of, require_no_refinement, verification_of
+from .plan import plan_runs, read_requested_study, require_folder_of, require_no_refinement, verification_of
 from .program import InputError, Program, printable
 from .record import Printed
 
@@ -79,7 +78,7 @@ def write_batch(program: Program, printed: Printed, options: Mapping[str, Any]) 
     study = requested.file if requested.kept else options["study"]
     words = [options["program"], "study", os.path.abspath(study) if requested.kept or os.path.isfile(study) else study]
     if not requested.kept:  # the study file of a sweep has them
-        words += set_options(parse_settings(options["overrides"]))
+        words += [word for text in options["overrides"] for word in ("--set", text)]
     words += [f"--{name.replace('_', '-')}" for name in ("quick", "skip_verification", "no_report", "yes") if options[name]]
     command = shlex.join([*words, "--output-dir", os.path.abspath(directory)])
     runs, collect = os.path.join(folder, "runs.sh"), os.path.join(folder, "collect.sh")
