@@ -182,6 +182,11 @@ TEST(ViscoelasticWaves, FollowTheComplexModulus)
   options.frequencies = {0.6, 1., 1.7};
   options.element_frequencies = {};
   expect_holds(viscoelastic_waves_claim(subject(input), options).results);
+  // A nearly buckled sheet: its slow wave does not oscillate with a branch that relaxes as fast as the other one moves.
+  Material linear = subjects::nearest_only(subjects::paper_case());
+  linear.nearest.law = lattice::LinearBond(2.35e5);
+  options.states = {Eigen::Vector2d(0.7, 1.03).asDiagonal().toDenseMatrix()};
+  expect_holds(viscoelastic_waves_claim(subject(input, linear), options).results);
 }
 
 // Of a small fault; Relaxation.FailsForWrongBranches has all.

@@ -37,6 +37,15 @@ WaveContinuum gradient_continuum(const bridge::Subject &subject, const lattice::
   return medium;
 }
 
+// Sum of the stiffness of branches.
+Eigen::Matrix2d sum(const std::vector<bridge::BranchMatrix> &branches)
+{
+  Eigen::Matrix2d total = Eigen::Matrix2d::Zero();
+  for (const bridge::BranchMatrix &branch : branches)
+    total += branch.stiffness;
+  return total;
+}
+
 // Comparison of runs with the closed form of their side, the lattice or finite elements of its gradient continuum, and
 // the table of the waves.
 class WaveComparison
@@ -139,10 +148,9 @@ private:
   double glassy(const WaveCell &cell, const lattice::Material &material, std::size_t w) const
   {
     bridge::WaveMatrices matrices = relaxed(cell, material);
-    for (const bridge::BranchMatrix &branch :
-         has_elements_ ? branch_matrices(gradient_continuum(subject_, cell.sheet, material), F_, cell.K)
-                       : bridge::branch_matrices(cell.sheet, material, F_, cell.K))
-      matrices.stiffness += branch.stiffness;
+    matrices.stiffness +=
+      sum(has_elements_ ? branch_matrices(gradient_continuum(subject_, cell.sheet, material), F_, cell.K)
+                        : bridge::branch_matrices(cell.sheet, material, F_, cell.K));
     return frequency(matrices, cell, w);
   }
   double frequency(const bridge::WaveMatrices &matrices, const WaveCell &cell, std::size_t w) const
@@ -219,33 +227,27 @@ void one_branch(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
                       subject.judges_gradient(F));
 }
 
-// Order in kd of the complex rates of waves with one branch, in all directions, against Bloch's. Relaxation times are
-// those of waves: with one of its own, the error of each wave would have another factor.
+// Order in kd of the branches of waves in all directions, against Bloch's: of the matrix, since a slow wave need not
+// oscillate with one.
 void branch_orders(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Rows &rows)
 {
   const lattice::TriangularLattice sheet = subject.sheet(); // only its bonds matter
+  const lattice::Material material = with_branches(subject.material, {swept_ratio}, {1.});
+  WaveContinuum local = SubjectContinua(subject).local;
+  local.memory = bridge::homogenised_memory(sheet, material);
+  const WaveContinuum gradient = gradient_continuum(subject, sheet, material);
   CommonOrder of_local, of_gradient;
   for (const WaveDirection &direction : wave_directions(subject.orientation))
     for (std::size_t i = 0; i < order_kd.size(); ++i)
     {
       const Eigen::Vector2d K = order_kd[i] / subject.spacing * unit_vector(direction, subject.orientation);
-      const lattice::Material material =
-        with_branches(lattice::without_dashpots(subject.material), {swept_ratio},
-                      {subject.spacing / (order_kd[i] * subject.theory.longitudinal_speed)});
-      WaveContinuum local = SubjectContinua(subject).local;
-      local.memory = bridge::homogenised_memory(sheet, material);
-      const auto bloch = bridge::memory_waves(sheet, material, F, K),
-                 of_local_waves = continuum_memory_waves(local, F, K),
-                 of_gradient_waves = continuum_memory_waves(gradient_continuum(subject, sheet, material), F, K);
-      for (std::size_t w = 0; w < 2; ++w)
-      {
-        of_local.add(i, std::abs(of_local_waves[w].rate / bloch[w].rate - 1.));
-        of_gradient.add(i, std::abs(of_gradient_waves[w].rate / bloch[w].rate - 1.));
-      }
+      const Eigen::Matrix2d bloch = sum(bridge::branch_matrices(sheet, material, F, K));
+      of_local.add(i, sum(branch_matrices(local, F, K)), bloch);
+      of_gradient.add(i, sum(branch_matrices(gradient, F, K)), bloch);
     }
-  const std::string what = "order in kd to which waves follow those of a branch that relaxes with them, all together, ";
-  add_order(rows, what + "local continuum", of_local, 2.);
-  add_order(rows, what + "gradient continuum", of_gradient, 4., subject.judges_gradient(F));
+  add_order(rows, "order in kd of the local continuum's branch, all directions together", of_local, 2.);
+  add_order(rows, "order in kd of the gradient continuum's branch, all directions together", of_gradient, 4.,
+            subject.judges_gradient(F));
 }
 
 // The branches of the material, with its dashpots.

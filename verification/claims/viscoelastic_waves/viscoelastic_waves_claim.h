@@ -30,7 +30,7 @@ struct ViscoelasticWavesOptions
 ///   critical damping, and one twice as long.
 /// - The same waves, but for the last, in the gradient continuum: runs of finite elements against its complex modulus
 ///   (theory-viscoelastic.md, eq. (V.6)), with their energy balance; with three relaxation times or more their peak.
-/// - Both continua with one branch in all directions against the lattice: the order in kd of their errors.
+/// - The branches of both continua in all directions against the lattice's: the order in kd of their errors.
 ///
 /// Each run starts with one wave alone, the overstresses included, so that displacements are one damped oscillation.
 ClaimOutcome viscoelastic_waves_claim(const bridge::Subject &subject, const ViscoelasticWavesOptions &options);
