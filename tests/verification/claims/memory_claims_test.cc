@@ -187,6 +187,12 @@ TEST(ViscoelasticWaves, FollowTheComplexModulus)
   linear.nearest.law = lattice::LinearBond(2.35e5);
   options.states = {Eigen::Vector2d(0.7, 1.03).asDiagonal().toDenseMatrix()};
   expect_holds(viscoelastic_waves_claim(subject(input, linear), options).results);
+  // A wave that the branch damps so strongly that its frequency, without the decay, is below the rubbery limit.
+  Material stiffens_little = linear;
+  stiffens_little.nearest.law = lattice::MooneyRivlinBond(0., 2.5e5);
+  options.states = {Eigen::Vector2d(3., 1.03).asDiagonal().toDenseMatrix()};
+  options.frequencies = {0.1, 0.3, 0.6};
+  expect_holds(viscoelastic_waves_claim(subject(input, stiffens_little), options).results);
 }
 
 // Of a small fault; Relaxation.FailsForWrongBranches has all.

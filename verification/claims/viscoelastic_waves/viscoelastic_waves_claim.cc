@@ -97,9 +97,10 @@ public:
     const auto &[frequency, decay] = run.oscillation;
     frequency_.add_relative(frequency, wave.frequency());
     decay_.add(std::abs(decay - wave.decay()) / wave.frequency(), decay, wave.decay());
-    // Overdamped limits of dashpots are no bounds.
+    // With one branch of stiffness G, D <= |s|^2 <= D + G. Overdamped limits of dashpots are no bounds.
+    const double magnitude = std::hypot(frequency, decay);
     outside_.add(
-      support::largest_of({support::one_sided(lowest / frequency - 1.), support::one_sided(frequency / highest - 1.)}));
+      support::largest_of({support::one_sided(lowest / magnitude - 1.), support::one_sided(magnitude / highest - 1.)}));
     imbalance_.add(run.imbalance / run.imbalance_tolerance);
     table_->add({subject_.name, F_(0, 0), F_(1, 1), part, wave_names[w], cell.K.norm() * subject_.spacing, scaled_time,
                  lowest, highest, wave.frequency(), wave.decay(), frequency, decay});
@@ -124,7 +125,8 @@ public:
   void add_sweep_rows(const std::string &part, const support::LargestError &peaks) const
   {
     const std::string of_elements = has_elements_ ? " of finite elements" : "";
-    rows.add(part + ", frequency" + of_elements + " below the rubbery or above the glassy limit, worst of all waves",
+    rows.add(part + ", magnitude of the rate" + of_elements +
+               " below the rubbery or above the glassy limit, worst of all waves",
              "1", {}, outside_, has_elements_ ? element_tolerance : frequency_tolerance);
     // Decays of finite elements a factor of three beside the peak are smaller by 0.05 of the frequency, which makes
     // the error of the vertex 45 times that of the decays. In the lattice decays near the peak, which differ by a few

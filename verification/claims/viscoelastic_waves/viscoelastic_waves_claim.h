@@ -24,8 +24,8 @@ struct ViscoelasticWavesOptions
 /// Claim `viscoelastic-waves`: free waves in lattices whose bonds have Maxwell branches have the frequency and the
 /// decay of the lattice's complex modulus, s^2 p = -M(s) p (theory.md, eq. (L.30)), dispersion included.
 ///
-/// - With one branch per bond and no dashpots, relaxation times over two decades: frequencies lie between the rubbery
-///   and the glassy limit, and the decay peaks at w tau ~ 1.
+/// - With one branch per bond and no dashpots, relaxation times over two decades: |s| lies between the rubbery and the
+///   glassy limit, and the decay peaks at w tau ~ 1.
 /// - With the branches and the dashpots of the material, if it has any branches: a wave that is damped by less than
 ///   critical damping, and one twice as long.
 /// - The same waves, but for the last, in the gradient continuum: runs of finite elements against its complex modulus
