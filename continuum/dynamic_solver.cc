@@ -84,7 +84,7 @@ void DynamicSolver::check_start(const Vector &u, const Vector &v) const
     if (sheet_.is_prescribed(i))
       off = std::max(off, std::abs(u(i) - lift_(i)));
   require(dealii::Utilities::MPI::max(off, sheet_.communicator()) <= 1e-8 * extent,
-          "the initial displacement of a boundary differs from the prescribed one");
+          "the initial state, its base and displacement, differs from what is prescribed on an edge");
 }
 
 void DynamicSolver::start(const Vector &displacement, const Vector &velocity, const std::vector<Vector> &relaxed)

@@ -1,5 +1,5 @@
-// The faces of a cell that are lifted, on refined and periodic meshes: each is one of both cells, and together they
-// are the perimeter.
+// The faces of a cell that are lifted, on refined and periodic meshes: each is one of both cells, together they are the
+// perimeter, and matrices have entries for them.
 #include "continuum/lifted_shapes.h"
 #include "multigrid_cases.h"
 
@@ -23,12 +23,13 @@ double length_of(const continuum::LiftedFace::Cell &cell, const unsigned int fac
 TEST(LiftedFaces, AreThoseOfBothCells)
 {
   const continuum::CauchyBorn law = rubber_network();
+  const continuum::IsotropicGradient gradient(5e5, 0.01);
   for (const bool periodic : {false, true})
   {
     // Refined around a corner, so that hanging nodes are on periodic edges as well.
     RectangleMesh mesh({length, height, 4, 4, periodic, periodic});
     multigrid_cases::refine_towards(mesh, Point<2>(0., -0.5 * height), 2, 0.5 * length);
-    const continuum::Sheet sheet(mesh, law, 2);
+    const continuum::Sheet sheet(mesh, continuum::Constitution(law, gradient), 2);
     unsigned int n_halves = 0;
     for (const auto &cell : sheet.dof_handler().active_cell_iterators())
     {
@@ -55,6 +56,9 @@ TEST(LiftedFaces, AreThoseOfBothCells)
       EXPECT_NEAR(inside, 0., 1e-15);
     }
     EXPECT_GT(n_halves, 8u);
+    continuum::Sheet::Matrix K;
+    sheet.make_matrix(sheet.conformity_constraints(), K);
+    EXPECT_NO_THROW(sheet.tangent(sheet.make_ghosted(), sheet.conformity_constraints(), K));
   }
 }
 

@@ -121,7 +121,7 @@ void ContinuumModel::make_conditions(const input::Case &input)
     if (!edge.double_traction.is_zero())
       conditions_.double_tractions.push_back({id, std::make_shared<FieldFunction>(edge.double_traction, extent_)});
   }
-  if (c.solution == input::ContinuumCase::Solution::equilibrium && conditions_.displacements.empty())
+  if (c.has_equilibrium() && conditions_.displacements.empty())
     throw support::InputError("the mesh file " + c.mesh_file +
                               " has none of the edges that the case holds; equilibrium needs a held edge");
   if (!c.body_force.is_zero())

@@ -1,7 +1,5 @@
 #include "verification/bridge/lattice_sheet.h"
 
-#include <algorithm>
-
 #include "lattice/cutout.h"
 #include "lattice/end_loads.h"
 
@@ -28,21 +26,6 @@ void check_edge(const input::EdgeCase &edge, input::Parameters &p, const std::st
   // A layer of held sites at the loading has its normal gradient, for any condition of a gradient continuum.
   if (edge.normal_gradient == input::EdgeCase::NormalGradient::clamped)
     p.error(edge.name + "/normal gradient", command + " does not support clamped edges; give free or loading");
-}
-
-// A motion starts at the loading, with the deformed period. In equilibrium the finite elements keep the undeformed
-// period.
-void check_period(const input::Case &input, input::Parameters &p, const std::string &command)
-{
-  if (input.solution != input::Case::Solution::relaxed)
-    return;
-  const lattice::Periodic periodic = input.lattice().periodic();
-  if (periodic.x && input.strain_x != 0.)
-    p.error("Loading/strain x", command + " relaxes a periodic sheet at its undeformed period; give 0",
-            {"Left edge/condition"});
-  if (periodic.y && (input.strain_y != 0. || input.shear != 0.))
-    p.error(input.strain_y != 0. ? "Loading/strain y" : "Loading/shear",
-            command + " relaxes a periodic sheet at its undeformed period; give 0", {"Bottom edge/condition"});
 }
 
 // Entries of the finite elements that have no counterpart.
@@ -78,12 +61,8 @@ void require_lattice_sheet(const input::Case &input, input::Parameters &p, const
   if (input.has_inner_edge() && c.edges[4].condition == Condition::held)
     p.error("Inner edge/condition", command + " leaves the rim of a hole or notch free; give free");
   check_unused(c, p, command, input.solution != input::Case::Solution::relaxed);
-  if (input.has_sheet())
-    check_period(input, p, command);
-  const auto is_held = [](const input::EdgeCase &edge) { return edge.condition == Condition::held; };
-  if (input.solution == input::Case::Solution::relaxed && std::none_of(c.edges.begin(), c.edges.begin() + 4, is_held))
-    p.error("Left edge/condition", command + " needs a held edge for equilibrium",
-            {"Right edge/condition", "Bottom edge/condition", "Top edge/condition"});
+  if (input.solution == input::Case::Solution::relaxed) // a motion starts at the loading, with the deformed period
+    c.require_equilibrium(p, input, command);
 }
 
 void require_fracture_case(const input::Case &input, input::Parameters &p)

@@ -32,6 +32,8 @@ support::ExitCode run_continuum(const input::Options &options)
   const bool moves = input.continuum.solution == input::ContinuumCase::Solution::motion;
   input::require_constant_loading(input, parameters, "the finite elements have one loading");
   input::require_no_plasticity(input, parameters, "the finite elements have no plastic strain");
+  if (input.continuum.has_equilibrium())
+    input.continuum.require_equilibrium(parameters, input, "`latcon continuum`");
   if (moves && !(input.end_time > 0.))
     parameters.error("Time/end", "motion needs an end time larger than 0", {"Continuum/solution"});
   if (moves && input.continuum.time_step && parameters.good())

@@ -245,14 +245,6 @@ void ContinuumCase::check(Parameters &p, const Case &input) const
     for (const std::size_t id : {0, 2})
       if (edges[id].condition == EdgeCase::Condition::periodic)
         p.error(edges[id].name + "/condition", "only a sheet without hole, notch and mesh file can be periodic");
-  bool held = false;
-  for (std::size_t id = 0; id < edges.size(); ++id)
-    held =
-      held || ((id < 4 || has_inner_edge || !mesh_file.empty()) && edges[id].condition == EdgeCase::Condition::held);
-  if (!held && solution == Solution::equilibrium)
-    p.error("Left edge/condition", "equilibrium needs an edge that is held",
-            {"Right edge/condition", "Bottom edge/condition", "Top edge/condition", "Inner edge/condition",
-             "Continuum/solution"});
   if (solution == Solution::motion && adaptive_cycles > 0)
     p.error("Continuum/adaptive cycles", "the mesh of a motion is not refined; give 0", {"Continuum/solution"});
   if (solution == Solution::motion && time_step && input.end_time > 0. && *time_step > input.end_time)
@@ -263,6 +255,29 @@ void ContinuumCase::check(Parameters &p, const Case &input) const
   body_force.check(p, "Body force", "force", inside);
   initial_displacement.check(p, "Initial state", "displacement", inside);
   initial_velocity.check(p, "Initial state", "velocity", inside);
+}
+
+void ContinuumCase::require_equilibrium(Parameters &p, const Case &input, const std::string &command) const
+{
+  std::string loose;
+  for (const auto &[axis, displacement] : {std::pair("x", &FieldCase::x), std::pair("y", &FieldCase::y)})
+  {
+    bool is_held = false;
+    for (std::size_t id = 0; id < edges.size(); ++id)
+      is_held =
+        is_held || ((id < 4 || input.has_inner_edge() || !mesh_file.empty()) &&
+                    edges[id].condition == EdgeCase::Condition::held && edges[id].displacement.*displacement != "free");
+    if (!is_held)
+      loose += (loose.empty() ? "" : " and ") + std::string(axis);
+  }
+  if (!loose.empty())
+    p.error("Left edge/condition", command + " needs edges that are held along " + loose + " for equilibrium",
+            {"Right edge/condition", "Bottom edge/condition", "Top edge/condition"});
+  const std::string period = command + " keeps the undeformed period of a sheet in equilibrium; give 0";
+  if (edges[0].condition == EdgeCase::Condition::periodic && input.strain_x != 0.)
+    p.error("Loading/strain x", period, {"Left edge/condition"});
+  if (edges[2].condition == EdgeCase::Condition::periodic && (input.strain_y != 0. || input.shear != 0.))
+    p.error(input.strain_y != 0. ? "Loading/strain y" : "Loading/shear", period, {"Bottom edge/condition"});
 }
 
 } // namespace latcon::input

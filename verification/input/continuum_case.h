@@ -144,10 +144,15 @@ struct ContinuumCase
   FieldCase initial_displacement; ///< [m], added to the base
   FieldCase initial_velocity;     ///< [m/s]
 
+  /// Returns whether one is computed: the solution, or the initial state of a motion.
+  bool has_equilibrium() const { return solution == Solution::equilibrium || initial_base == Base::equilibrium; }
   void declare(Parameters &parameters);
   /// Reports problems of these entries, also expressions that are not finite at one of many points of the sheet and its
   /// edges. @param input whose entries they are
   void check(Parameters &parameters, const Case &input) const;
+  /// Reports what an equilibrium that `command` computes cannot have: a direction in which no edge is held, or a period
+  /// other than the undeformed one.
+  void require_equilibrium(Parameters &parameters, const Case &input, const std::string &command) const;
 };
 
 } // namespace latcon::input

@@ -54,22 +54,24 @@ TEST(LatticeSheet, HasTheEdgesAndTheHoleOfTheCase)
 
 TEST(Case, NamesTheEntryThatDoesNotFit)
 {
-  for (const sentences::Sentence &own : sentences::of({"case", "lattice"}))
+  for (const sentences::Sentence &own : sentences::of({"case", "lattice", "continuum"}))
   {
     Case input;
-    const bool is_lattice = own.kind == "lattice";
+    const bool is_lattice = own.kind == "lattice", is_continuum = own.kind == "continuum";
     const Lines found = small_case::problems(sentences::entries(own.input), input, is_lattice ? sheet : Lines(),
                                              [&](const Case &of, Parameters &p)
                                              {
                                                if (is_lattice)
                                                  require_lattice_sheet(of, p, "`it`");
+                                               if (is_continuum)
+                                                 of.continuum.require_equilibrium(p, of, "`it`");
                                              });
     SCOPED_TRACE(testing::PrintToString(own) + testing::PrintToString(found));
     ASSERT_EQ(found.size(), own.message == "accepted" ? 0u : 1u);
     if (!found.empty())
     {
       EXPECT_NE(found[0].find(own.message), std::string::npos);
-      EXPECT_TRUE(!is_lattice || found[0].find("`it`") != std::string::npos);
+      EXPECT_TRUE(own.kind == "case" || found[0].find("`it`") != std::string::npos);
     }
   }
 }
