@@ -241,12 +241,8 @@ void expect_orders(const Series &series, const unsigned int n_meshes)
   EXPECT_NEAR(order(coarse.hessian, fine.hessian), p - 1., 0.2) << coarse.hessian << " " << fine.hessian;
 }
 
-class Convergence : public testing::TestWithParam<Series>
-{
-};
-class CoarseConvergence : public testing::TestWithParam<Series>
-{
-};
+using Convergence = testing::TestWithParam<Series>;
+using CoarseConvergence = testing::TestWithParam<Series>;
 
 // theory-continuum.md, eqs. (C.28) and (C.31).
 TEST_P(Convergence, HasTheOrdersOfInteriorPenaltyElements)

@@ -8,10 +8,15 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace energies
 {
 using namespace sheets;
+
+inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
+using Fad = Sacado::Fad::DFad<double>;
+using FadFad = Sacado::Fad::DFad<Fad>;
 
 /// F_11 F_12 F_21 F_22, then G_i11 G_i22 G_i12 for i = 1, 2.
 constexpr unsigned int n_variables = 10;

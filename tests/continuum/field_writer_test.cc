@@ -3,6 +3,7 @@
 #include "continuum/field_writer.h"
 #include "moving_sheets.h"
 #include "sheets.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -18,19 +19,10 @@ using namespace latcon;
 using namespace sheets;
 namespace fs = std::filesystem;
 
-// Temporary folder for each test, removed at the end.
-class FieldWriter : public testing::Test
+struct FieldWriter : testing::Test
 {
-protected:
-  void SetUp() override
-  {
-    directory_ = fs::temp_directory_path() /
-                 ("latcon_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
-                  std::to_string(::getpid()));
-  }
-  void TearDown() override { fs::remove_all(directory_); }
-
-  fs::path directory_;
+  TemporaryFolder parent_;
+  fs::path directory_ = parent_ / "fields"; // not there yet
 };
 
 TEST_F(FieldWriter, IsReadByVtkWithNamesTimesAndValues)

@@ -22,10 +22,7 @@ using continuum::NetworkGradient;
 using continuum::Order;
 
 using Gradient = GradientLaw::Gradient;
-using Fad = Sacado::Fad::DFad<double>;
-using FadFad = Sacado::Fad::DFad<Fad>;
 
-const double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double spacing = 0.625e-3;
 
 std::vector<BondFamily> mixed_bonds()

@@ -22,11 +22,6 @@ using continuum::IsotropicNetwork;
 using continuum::Material;
 using continuum::MooneyRivlin;
 
-const double epsilon = std::numeric_limits<double>::epsilon();
-
-using Fad = Sacado::Fad::DFad<double>;
-using FadFad = Sacado::Fad::DFad<Fad>;
-
 // Compares with automatic differentiation of the energy; `cancellation` multiplies the round-off.
 template <class Energy>
 void expect_derivatives(const Material &law, const Energy &energy, const Tensor<2, 2> &F, const double cancellation)

@@ -2,6 +2,7 @@
 #include "continuum/errors.h"
 #include "continuum/meshes.h"
 #include "sheets.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -44,9 +45,9 @@ Measures measures(const continuum::Sheet &sheet)
 
 std::filesystem::path write_file(const std::string &name, const std::string &text)
 {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
-  std::ofstream(path) << text;
-  return path;
+  static const TemporaryFolder folder;
+  folder.write(name, text);
+  return folder / name;
 }
 
 // Two squares side by side, 2 m x 1 m, with physical curves 2 (bottom of both), 4 (the right edge) and 0 (the rest).
@@ -175,7 +176,6 @@ TEST(Meshes, RefusesWhatCannotBeMeshed)
   const std::filesystem::path large = write_file("large.msh", two_squares);
   std::filesystem::resize_file(large, (std::size_t{256} << 20) + 1);
   EXPECT_THROW((void)continuum::n_coarse_cells(large), continuum::InvalidInput);
-  std::filesystem::remove(large);
 }
 
 // Gmsh gives curves with names the numbers from 1 on, in the order of the script.

@@ -52,9 +52,7 @@ std::ostream &operator<<(std::ostream &out, const Crack &crack)
   return out << crack.name;
 }
 
-class SameBits : public testing::TestWithParam<Crack>
-{
-};
+using SameBits = testing::TestWithParam<Crack>;
 INSTANTIATE_TEST_SUITE_P(Cracks, SameBits,
                          testing::Values(Crack{"contact", sheets::rubber(), false},
                                          Crack{"memory", sheets::rubber_with_memory(), true, false},

@@ -112,9 +112,7 @@ double restitution_error(double beta, std::size_t steps, double gap)
   return pair.separation_speed() / approach / restitution(omega_0, beta) - 1.;
 }
 
-class Restitution : public testing::TestWithParam<double>
-{
-};
+using Restitution = testing::TestWithParam<double>;
 INSTANTIATE_TEST_SUITE_P(Contact, Restitution, testing::Values(0., 0.1, 0.6, 0.95, 1.05, 2.));
 
 // Starting in touch the force is smooth to its end, where it has a kink: second order.

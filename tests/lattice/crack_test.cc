@@ -20,9 +20,7 @@ TriangularLattice sheet_of(Orientation orientation)
   return {sheets::spacing, 60. * sheets::spacing, 40. * sheets::spacing, orientation};
 }
 
-class SymmetricSeed : public testing::TestWithParam<std::pair<Orientation, Material>>
-{
-};
+using SymmetricSeed = testing::TestWithParam<std::pair<Orientation, Material>>;
 INSTANTIATE_TEST_SUITE_P(Fracture, SymmetricSeed,
                          testing::Values(std::pair(Orientation::rows_along_crack, sheets::rubber()),
                                          std::pair(Orientation::rows_across_crack, sheets::rubber()),

@@ -16,6 +16,7 @@ namespace cutout_test
 using namespace latcon;
 
 using namespace lattice;
+using sheets::places_in_row;
 
 constexpr Orientation orientations[] = {Orientation::rows_along_crack, Orientation::rows_across_crack};
 
@@ -109,15 +110,6 @@ TEST(Cutout, NotchIsTheSameAtEveryScale)
 TriangularLattice along()
 {
   return {1., 20., 19.1, Orientation::rows_along_crack};
-}
-
-std::vector<std::size_t> places_in_row(const TriangularLattice &sheet, std::size_t row, std::size_t first,
-                                       std::size_t n)
-{
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < n; ++i)
-    places.push_back(sheet.index(row, first + i));
-  return places;
 }
 
 TEST(Seed, LineTakesTheNearestRowFromTheNearestSite)

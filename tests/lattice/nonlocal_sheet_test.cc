@@ -35,9 +35,7 @@ State noisy(const TriangularLattice &lattice, const Material &material)
   return state;
 }
 
-class OfSixDirections : public testing::TestWithParam<Orientation>
-{
-};
+using OfSixDirections = testing::TestWithParam<Orientation>;
 INSTANTIATE_TEST_SUITE_P(NonlocalSheet, OfSixDirections,
                          testing::Values(Orientation::rows_along_crack, Orientation::rows_across_crack));
 

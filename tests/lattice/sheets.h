@@ -227,14 +227,20 @@ inline constexpr double latcon::lattice::EnergyBalance::*energies[] = {
   &latcon::lattice::EnergyBalance::contact, &latcon::lattice::EnergyBalance::boundary_work,
   &latcon::lattice::EnergyBalance::initial};
 
-/// The n places in the middle row from a given column on; a seed crack.
-inline std::vector<std::size_t> middle_row(const latcon::lattice::TriangularLattice &sheet, std::size_t column,
-                                           std::size_t n)
+/// The n places in a row from a given column on.
+inline std::vector<std::size_t> places_in_row(const latcon::lattice::TriangularLattice &sheet, std::size_t row,
+                                              std::size_t column, std::size_t n)
 {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < n; ++i)
-    places.push_back(sheet.index(sheet.rows() / 2, column + i));
+    places.push_back(sheet.index(row, column + i));
   return places;
+}
+/// The same in the middle row; a seed crack.
+inline std::vector<std::size_t> middle_row(const latcon::lattice::TriangularLattice &sheet, std::size_t column,
+                                           std::size_t n)
+{
+  return places_in_row(sheet, sheet.rows() / 2, column, n);
 }
 
 } // namespace sheets

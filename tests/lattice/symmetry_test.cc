@@ -90,9 +90,7 @@ void expect_scaled(const Crack &one, const Crack &other, const Units &units)
     EXPECT_EQ(other.simulation->energies().*energy, units.energy() * (one.simulation->energies().*energy));
 }
 
-class Similarity : public testing::TestWithParam<unsigned int>
-{
-};
+using Similarity = testing::TestWithParam<unsigned int>;
 INSTANTIATE_TEST_SUITE_P(Stages, Similarity, testing::Values(0u, 4u));
 
 // All units are powers of two, so that a run in others has the same mantissas throughout.

@@ -15,9 +15,7 @@ using namespace latcon;
 using lattice::Orientation;
 using lattice::TriangularLattice;
 
-class BothOrientations : public testing::TestWithParam<Orientation>
-{
-};
+using BothOrientations = testing::TestWithParam<Orientation>;
 INSTANTIATE_TEST_SUITE_P(TriangularLattice, BothOrientations,
                          testing::Values(Orientation::rows_along_crack, Orientation::rows_across_crack));
 

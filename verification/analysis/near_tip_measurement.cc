@@ -72,17 +72,6 @@ Eigen::Matrix2d cell_derivatives(const std::array<Eigen::Vector2d, 4> &corners)
   return derivatives;
 }
 
-double slope_of(const std::vector<Eigen::Vector2d> &points)
-{
-  std::vector<double> x, y;
-  for (const Eigen::Vector2d &point : points)
-  {
-    x.push_back(point.x());
-    y.push_back(point.y());
-  }
-  return support::slope(x, y);
-}
-
 } // namespace
 
 NegativeZone negative_zone(const std::vector<PointVelocity> &points, const Eigen::Vector2d &pitch, double limit)
@@ -345,7 +334,7 @@ std::optional<double> wedge_angle(const std::vector<Eigen::Vector2d> &sites, con
     if (strip >= 0. && strip < static_cast<double>(n_strips))
       strips[static_cast<std::size_t>(strip)].push_back(site);
   }
-  std::vector<Eigen::Vector2d> lower, upper;
+  std::array<std::vector<double>, 2> x, y; // of the lower and the upper surface
   for (std::vector<Eigen::Vector2d> &strip : strips)
   {
     std::sort(strip.begin(), strip.end(),
@@ -361,12 +350,15 @@ std::optional<double> wedge_angle(const std::vector<Eigen::Vector2d> &sites, con
       }
     if (opening == 0)
       continue;
-    lower.push_back(strip[opening - 1]);
-    upper.push_back(strip[opening]);
+    for (const std::size_t side : {0, 1})
+    {
+      x[side].push_back(strip[opening - 1 + side].x());
+      y[side].push_back(strip[opening - 1 + side].y());
+    }
   }
-  if (lower.size() < 2 || 2 * lower.size() < n_strips)
+  if (x[0].size() < 2 || 2 * x[0].size() < n_strips)
     return std::nullopt;
-  return std::atan(slope_of(lower)) - std::atan(slope_of(upper));
+  return std::atan(support::slope(x[0], y[0])) - std::atan(support::slope(x[1], y[1]));
 }
 
 } // namespace latcon::analysis

@@ -198,7 +198,6 @@ PYBIND11_MODULE(latcon_stepping, module)
     .def_property_readonly("lost_bonds", view(&lattice::State::lost_bonds))
     .def_property_readonly("time", [](Sheet &sheet) { return sheet.simulation().state().time; })
     .def_property_readonly("time_step", [](Sheet &sheet) { return sheet.simulation().time_step(); })
-    .def_property_readonly("n_broken", [](Sheet &sheet) { return sheet.simulation().n_broken(); })
     .def_property_readonly("tip", [](Sheet &sheet) { return sheet.simulation().tip(); })
     .def_property_readonly("energies", &Sheet::energies);
 }

@@ -86,9 +86,7 @@ std::unique_ptr<Simulation> crack_of(const Variant &variant, const RowPartition 
   return running_crack::start(band, choice);
 }
 
-class SharedCrack : public testing::TestWithParam<Variant>
-{
-};
+using SharedCrack = testing::TestWithParam<Variant>;
 
 constexpr double behind = 4. * sheets::spacing;
 // Nearest neighbours so stiff that bonds recoil far below the stretch that the step is made for: which step is divided
@@ -196,9 +194,7 @@ TEST(SharedHeldSites, AreNoTip)
 }
 
 // Without breaking: both periodicities, from a state of rest and from one in motion.
-class SharedMotion : public testing::TestWithParam<Periodic>
-{
-};
+using SharedMotion = testing::TestWithParam<Periodic>;
 INSTANTIATE_TEST_SUITE_P(LatticeRanks, SharedMotion,
                          testing::Values(Periodic{false, false}, Periodic{true, false}, Periodic{false, true},
                                          Periodic{true, true}));

@@ -113,9 +113,7 @@ struct Noise
   double found;                // least share of seeds
 };
 
-class NoisyOscillation : public testing::TestWithParam<Noise>
-{
-};
+using NoisyOscillation = testing::TestWithParam<Noise>;
 
 TEST_P(NoisyOscillation, IsCoveredByItsUncertainties)
 {

@@ -61,9 +61,7 @@ struct SlitSheet
 };
 
 // Affine velocities and a quadratic deformation are exact at every point of the grid, also between sites.
-class NearTipFieldsOf : public testing::TestWithParam<Orientation>
-{
-};
+using NearTipFieldsOf = testing::TestWithParam<Orientation>;
 
 TEST_P(NearTipFieldsOf, LinearFieldsAreExact)
 {

@@ -44,9 +44,7 @@ TEST(Energy, HoldsForBothShellSetsOrientationsAndLaws)
 
 using Check = std::function<Results(const Case &, const Subject &)>;
 
-class HeldClaim : public testing::TestWithParam<std::pair<const char *, Check>>
-{
-};
+using HeldClaim = testing::TestWithParam<std::pair<const char *, Check>>;
 
 // The excess is there, with its sign: the gradient continuum holds more energy than the local one, the lattice less.
 void expect_that_the_local_energy_is_between(const Table &table)

@@ -220,9 +220,7 @@ std::vector<PlantedFault> all_faults()
   };
 }
 
-class FaultMatrix : public testing::TestWithParam<PlantedFault>
-{
-};
+using FaultMatrix = testing::TestWithParam<PlantedFault>;
 INSTANTIATE_TEST_SUITE_P(Claims, FaultMatrix, testing::ValuesIn(all_faults()));
 
 // The rubber of the paper; laws are fitted once.

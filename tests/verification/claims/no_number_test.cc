@@ -285,12 +285,8 @@ std::string name_of(const testing::TestParamInfo<Plant> &test)
   return name;
 }
 
-class NoNumber : public testing::TestWithParam<Plant>
-{
-};
-class NoNumberInCutSheets : public testing::TestWithParam<Plant>
-{
-};
+using NoNumber = testing::TestWithParam<Plant>;
+using NoNumberInCutSheets = testing::TestWithParam<Plant>;
 INSTANTIATE_TEST_SUITE_P(Claims, NoNumber, testing::ValuesIn(plants(false)), name_of);
 INSTANTIATE_TEST_SUITE_P(Claims, NoNumberInCutSheets, testing::ValuesIn(plants(true)), name_of);
 

@@ -143,9 +143,7 @@ const Fault planted[] = {
   {"area", {}, {""}, false, [](Subject &s) { s.material.nearest.area_factor = std::nan(""); }},
 };
 
-class NonlocalFault : public testing::TestWithParam<Fault>
-{
-};
+using NonlocalFault = testing::TestWithParam<Fault>;
 INSTANTIATE_TEST_SUITE_P(FaultMatrix, NonlocalFault, testing::ValuesIn(planted));
 
 // Energies (H.25), bounds of harmonics (H.26), lengths (H.27) and cuts (H.28).

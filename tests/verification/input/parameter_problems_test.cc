@@ -9,9 +9,7 @@ namespace parameter_problems_test
 
 using namespace sample_case;
 
-class Problem : public testing::TestWithParam<sentences::Sentence>
-{
-};
+using Problem = testing::TestWithParam<sentences::Sentence>;
 
 TEST_P(Problem, IsSaidInASentence)
 {
