@@ -28,7 +28,11 @@ void LedgerCheck::add(const LedgerState &state)
   {
     const double change = std::abs(state.kinetic - last_.kinetic) + std::abs(state.work - last_.work) + state.viscous -
                           last_.viscous + state.broken - last_.broken;
-    largest_power_ = support::largest_of({largest_power_, change / (state.time - last_.time)});
+    const double duration = state.time - last_.time, power = change / duration;
+    largest_power_ = support::largest_of({largest_power_, power});
+    if (n_states_ > 2 || first_.kinetic == 0.) // at rest there is no power
+      largest_surge_ = support::largest_of({largest_surge_, std::abs(power - power_) / duration});
+    power_ = power;
   }
   last_ = state;
 }
@@ -50,7 +54,9 @@ double LedgerCheck::imbalance() const
 
 double LedgerCheck::rate() const
 {
-  return largest_power_ > 0. ? largest_power_ / exchanged() : 0.;
+  return largest_power_ > 0.
+           ? support::largest_of({largest_power_ / exchanged(), std::sqrt(0.5 * largest_surge_ / exchanged())})
+           : 0.;
 }
 
 Tolerance allowed_imbalance(input::Case::Integrator integrator, double n_steps, double lost)
@@ -65,7 +71,7 @@ Tolerance allowed_imbalance(input::Case::Integrator integrator, double n_steps, 
 
 Tolerance allowed_imbalance_of_implicit_motion(double rate, double step)
 {
-  return {std::clamp(std::pow(rate * step, 2) / 4., 1e-6, 1e-2), "second order in the step (L.39), at most 1e-2"};
+  return {std::clamp(std::pow(rate * step, 2), 1e-6, 1e-2), "second order in the step (L.39), at most 1e-2"};
 }
 
 } // namespace latcon::output

@@ -48,8 +48,8 @@ public:
   /// without a state or with one that is not finite.
   double imbalance() const;
 
-  /// Returns the largest power between two states over exchanged() [1/s], the angular frequency of an oscillation; 0
-  /// where nothing was exchanged.
+  /// Returns the angular frequency of an oscillation with the largest power between two states, or the largest change
+  /// of power, that exchanges the same energy [1/s]; 0 where nothing was exchanged.
   double rate() const;
 
   /// Saves or loads the states added so far, for checkpoints.
@@ -64,13 +64,16 @@ public:
     archive("largest_work", largest_work_);
     archive("largest_conversion", largest_conversion_);
     archive("largest_power", largest_power_);
+    archive("power", power_);
+    archive("largest_surge", largest_surge_);
   }
 
 private:
   std::size_t n_states_ = 0;
   LedgerState first_{}, last_{};
   double largest_imbalance_ = 0., largest_energy_ = 0., largest_work_ = 0., largest_conversion_ = 0.; // [J/m]
-  double largest_power_ = 0.;                                                                         // [W/m]
+  double power_ = 0., largest_power_ = 0.; // of the last two states, and of all [W/m]
+  double largest_surge_ = 0.;              // of the power [W/(m s)]
 };
 
 // Largest LedgerCheck::imbalance() with which a motion holds: multiples of the imbalances that shipped cases have at

@@ -28,6 +28,19 @@ TEST(LedgerCheck, OscillationIsMeasuredByTheEnergyThatItConverts)
   EXPECT_NEAR(check.rate(), omega, 1e-3 * omega);
 }
 
+// A sheet whose edge is released converts energy at a constant rate from the first step on: the change of power shows.
+TEST(LedgerCheck, SurgeIsAsFastAsAnOscillation)
+{
+  const double power = 5., step = 1e-3;
+  for (const double kinetic : {0., 1e-9}) // at rest, and with an unknown power at the start
+  {
+    LedgerCheck check;
+    for (int n = 0; n <= 10; ++n)
+      check.add(state(n * step, kinetic + power * n * step, 0.));
+    EXPECT_NEAR(check.rate(), kinetic == 0. ? std::sqrt(0.5 / (10. * step * step)) : 1. / (10. * step), 1e-6 / step);
+  }
+}
+
 // The energies of the sheet and of its waves do not matter, nor does that of the seed.
 TEST(LedgerCheck, CrackIsMeasuredByTheEnergyThatItSpends)
 {
