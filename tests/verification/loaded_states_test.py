@@ -1,4 +1,5 @@
 """Checks that the claims accept all stable loaded states before a crack, and no others, as in the table of docs/limits.md."""
+import concurrent.futures
 import itertools
 import os
 import pathlib
@@ -59,14 +60,23 @@ def test_states_of_the_fixture_are_accepted_or_refused_for_what_they_are(name, x
 
 
 @pytest.mark.skipif(not FULL, reason="long")
-def test_states_are_accepted_or_refused_for_what_they_are(out):
-    """The whole map with the claims that a crack waits for; the sheets with a hole or a notch depend on the material alone."""
+def test_states_are_accepted_or_refused_for_what_they_are(tmp_path):
+    """The map with the claims that a crack waits for, of rubber the whole one; the sheets with a hole or a notch depend on the material
+    alone."""
     claims = claims_where("before_fracture") - {"steady-crack"}
-    for material, x, y in itertools.product(MATERIALS, STRAINS_X, STRAINS_Y):
+
+    def is_judged_right(state):
+        material, x, y = state
         law, entries = MATERIALS[material]
-        state = settings(f"Loading/strain x={x}", f"Loading/strain y={y}", "Fracture/breaking stretch=auto", *entries)
-        run = latcon("verify", *claims, "--quick", "--quiet", "--case", CASES / "quick.prm", "--output-dir", out, *state, expect=(0, 3))
-        assert check(out, law, x, y) == (run.returncode == 3), (material, x, y)
+        out = tmp_path / f"{material} {x} {y}"
+        changes = settings(f"Loading/strain x={x}", f"Loading/strain y={y}", "Fracture/breaking stretch=auto", *entries)
+        run = latcon("verify", *claims, "--quick", "--quiet", "--threads", 1, "--case", CASES / "quick.prm", "--output-dir", out, *changes, expect=(0, 3))
+        assert check(out, law, x, y) == (run.returncode == 3), state
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for material in MATERIALS:
+            every = 1 if material == "rubber" else 4 if material.startswith("10 ") else 2
+            list(pool.map(is_judged_right, itertools.product([material], STRAINS_X[::every], STRAINS_Y[::every])))
 
 
 def test_page_has_the_map():

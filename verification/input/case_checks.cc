@@ -95,9 +95,10 @@ void check_breaking_stretch(const Case &input, Parameters &p, const lattice::Tri
   p.error("Fracture/breaking stretch",
           std::string(lattice::shell_names[sheet.shell(of_kind)]) + "-neighbour bonds at " +
             std::to_string(std::lround(std::atan2(R.y(), R.x()) * 180. / M_PI)) + " degrees to x are stretched to " +
-            support::full_precision(longest) +
-            " by the loading alone and would all break; give more than that, or less strain",
-          {"Loading/strain x", "Loading/strain y", "Loading/shear"});
+            support::full_precision(longest) + " by the loading alone, where their limit is " +
+            support::full_precision(longest / over_limit) +
+            ", and would all break; give a larger limit, or less strain",
+          {"Fracture/rule", "Fracture/shell factors", "Loading/strain x", "Loading/strain y", "Loading/shear"});
 }
 
 // Entries of the viscosities of the shells, and others.

@@ -20,8 +20,8 @@ CAPTIONS = {
                       "quarter of its bonds; the dashed sinusoid has the measured wavelength and amplitude, and phase, "
                       "offset and slope from a least-squares fit. Below: positions of broken bonds, coloured by time.",
     "energy.png": "Energy balance per metre of sheet thickness, since the cut of the seed crack. The dashed line is the "
-                  "energy released by the bonds; the areas are the energies that it was converted to; the small axis is "
-                  "the difference, over the energy that the crack spent.",
+                  "elastic energy released, with the work of the edges; the areas are the energies that it was converted to; "
+                  "the small axis is the difference, the imbalance.",
     "near_tip_velocity.png": "Velocity of the material around the tip (cross), mean over samples. Samples where the path "
                              "descends were mirrored first, which keeps the two sides of an oscillating crack "
                              "separate. White: the opening, or points with material in fewer than half of the samples. "
@@ -35,7 +35,7 @@ PARTS = {"path": ("crack_path.png",), "energy": ("energy.png",), "near_tip": ("n
          "motion": ("animation.gif", "sheet.png", "sheet_fields.png")}
 PATH_CAPTION = ("Path of the tip in the undeformed sheet, with Y exaggerated. Shaded: the window of the measurement. Drag "
                 "across the plot to zoom in, double-click to reset.")
-ENERGY_CAPTION = ("Conversion of the released elastic energy, per metre of thickness, since the cut of the seed crack. "
+ENERGY_CAPTION = ("Conversion of the released elastic energy and the work of the edges, per metre of thickness, since the cut of the seed crack. "
                   "Dotted: time of the sheet above.")
 
 
@@ -141,7 +141,7 @@ def energy_plot(run):
         return None
     energy = thinned(run.energy)
     released, shares = energy_shares(energy)
-    curves = {"t [ms]": 1e3 * energy["t"], "released [J/m]": released}
+    curves = {"t [ms]": 1e3 * energy["t"], f"released{' and work of the edges' if energy['boundary_work'].any() else ''} [J/m]": released}
     curves.update({f"{SHARES[name][0]} [J/m]": values for name, values in shares})
     return {"labels": list(curves), "rows": rows_of(curves), "colours": ["--text", *(f"--{name}" for name, _ in shares)],
             "dashed": [True] + [False] * len(shares), "stacked": 2, "x": "time [ms]", "y": "energy [J/m]", "follows": "time",
