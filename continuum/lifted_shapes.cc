@@ -3,6 +3,7 @@
 #include <deal.II/base/qprojector.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_dgq.h>
+#include <deal.II/grid/filtered_iterator.h>
 
 #include <algorithm>
 #include <cmath>
@@ -46,6 +47,25 @@ std::vector<LiftedFace> lifted_faces(const Sheet &sheet, const LiftedFace::Cell 
          neighbor_face});
   }
   return faces;
+}
+
+void for_each_coupling(const Sheet &sheet, const bool has_gradient,
+                       const std::function<void(const std::vector<types::global_dof_index> &)> &couple)
+{
+  std::vector<types::global_dof_index> dofs(sheet.element().n_dofs_per_cell()), of_neighbor(dofs.size());
+  for (const auto &cell : sheet.dof_handler().active_cell_iterators() | IteratorFilters::LocallyOwnedCell())
+  {
+    cell->get_dof_indices(dofs);
+    couple(dofs);
+    for (const LiftedFace &face : has_gradient ? lifted_faces(sheet, cell) : std::vector<LiftedFace>())
+      if (face.condition == nullptr && (cell < face.neighbor || !face.neighbor->is_locally_owned()))
+      {
+        face.neighbor->get_dof_indices(of_neighbor);
+        std::vector<types::global_dof_index> of_both = dofs;
+        of_both.insert(of_both.end(), of_neighbor.begin(), of_neighbor.end());
+        couple(of_both);
+      }
+  }
 }
 
 LiftedShapes::LiftedShapes(const unsigned int degree)

@@ -5,6 +5,7 @@
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/lac/full_matrix.h>
 
+#include <functional>
 #include <vector>
 
 namespace latcon::continuum
@@ -25,6 +26,12 @@ struct LiftedFace
 /// Returns the faces of a cell that are lifted: those to other cells, halves where the neighbors are finer, and those
 /// with a prescribed normal gradient. Where several conditions are given, the first in the list applies.
 std::vector<LiftedFace> lifted_faces(const Sheet &sheet, const LiftedFace::Cell &cell);
+
+/// Calls `couple` with the unknowns of each cell that this rank owns and, with a gradient energy, with those of each
+/// such cell and a neighbor, where they may repeat. (DoFTools::make_flux_sparsity_pattern() leaves out the second of
+/// two finer neighbors across a period.)
+void for_each_coupling(const Sheet &sheet, bool has_gradient,
+                       const std::function<void(const std::vector<dealii::types::global_dof_index> &)> &couple);
 
 /// Derivatives of the shape functions of a cell and of its neighbor across one face, at the Gauss points of the cell,
 /// with the lifted second gradient of eqs. (C.28) and (C.59). The nodes of the neighbor follow those of the cell,

@@ -354,20 +354,9 @@ template void Sheet::tangent(const Vector &, const AffineConstraints<double> &, 
 void Sheet::make_matrix(const AffineConstraints<double> &constraints, Matrix &matrix, const bool is_mass) const
 {
   TrilinosWrappers::SparsityPattern pattern(owned_, owned_, constraints.get_local_lines(), communicator());
-  const types::subdomain_id own = dealii::Utilities::MPI::this_mpi_process(communicator());
-  DoFTools::make_sparsity_pattern(dof_handler_, pattern, constraints, false, own);
-  // DoFTools::make_flux_sparsity_pattern() leaves out the second of two finer cells across a period.
-  std::vector<types::global_dof_index> dofs(dof_handler_.get_fe().n_dofs_per_cell()), of_both;
-  for (const auto &cell : dof_handler_.active_cell_iterators() | IteratorFilters::LocallyOwnedCell())
-    for (const LiftedFace &face : has_gradient() && !is_mass ? lifted_faces(*this, cell) : std::vector<LiftedFace>())
-      if (face.condition == nullptr)
-      {
-        cell->get_dof_indices(dofs);
-        of_both = dofs;
-        face.neighbor->get_dof_indices(dofs);
-        of_both.insert(of_both.end(), dofs.begin(), dofs.end());
-        constraints.add_entries_local_to_global(of_both, pattern, false);
-      }
+  for_each_coupling(*this, has_gradient() && !is_mass,
+                    [&](const std::vector<types::global_dof_index> &dofs)
+                    { constraints.add_entries_local_to_global(dofs, pattern, false); });
   pattern.compress();
   matrix.reinit(pattern);
 }

@@ -48,8 +48,7 @@ std::vector<unsigned int> owners_of_ghosts(const dealii::Utilities::MPI::Partiti
   return owners;
 }
 
-// Returns the pairs of unknowns to which this rank adds, each with those that it depends on: of each cell and, with a
-// gradient law, of each two neighbors.
+// Returns the pairs of unknowns to which this rank adds, each with those that it depends on.
 DynamicSparsityPattern coupled_pairs(const Sheet &sheet, const AffineConstraints<double> &constraints)
 {
   IndexSet rows(sheet.dof_handler().n_dofs() / 2);
@@ -57,8 +56,6 @@ DynamicSparsityPattern coupled_pairs(const Sheet &sheet, const AffineConstraints
   for (auto interval = lines.begin_intervals(); interval != lines.end_intervals(); ++interval)
     rows.add_range(*interval->begin() / 2, interval->last() / 2 + 1);
   DynamicSparsityPattern pattern(rows.size(), rows.size(), rows);
-  std::vector<Index> cell_dofs(sheet.element().n_dofs_per_cell());
-  std::vector<Index> neighbor_dofs(cell_dofs.size());
   std::vector<Index> pairs;
   const auto insert = [&](const std::vector<Index> &dofs)
   {
@@ -69,30 +66,15 @@ DynamicSparsityPattern coupled_pairs(const Sheet &sheet, const AffineConstraints
         for (const auto &entry : *constraints.get_constraint_entries(dof))
           pairs.push_back(entry.first / 2);
   };
-  const auto couple = [&]
-  {
-    sort_without_repetition(pairs);
-    for (const Index pair : pairs)
-      pattern.add_entries(pair, pairs.begin(), pairs.end(), true);
-    pairs.clear();
-  };
-  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
-  {
-    if (!cell->is_locally_owned())
-      continue;
-    cell->get_dof_indices(cell_dofs);
-    insert(cell_dofs);
-    couple();
-    if (sheet.has_gradient())
-      for (const LiftedFace &face : lifted_faces(sheet, cell))
-        if (face.condition == nullptr && (cell < face.neighbor || !face.neighbor->is_locally_owned()))
-        {
-          face.neighbor->get_dof_indices(neighbor_dofs);
-          insert(cell_dofs);
-          insert(neighbor_dofs);
-          couple();
-        }
-  }
+  for_each_coupling(sheet, sheet.has_gradient(),
+                    [&](const std::vector<Index> &dofs)
+                    {
+                      insert(dofs);
+                      sort_without_repetition(pairs);
+                      for (const Index pair : pairs)
+                        pattern.add_entries(pair, pairs.begin(), pairs.end(), true);
+                      pairs.clear();
+                    });
   return pattern;
 }
 } // namespace

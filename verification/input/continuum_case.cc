@@ -260,16 +260,11 @@ void ContinuumCase::check(Parameters &p, const Case &input) const
 void ContinuumCase::require_equilibrium(Parameters &p, const Case &input, const std::string &command) const
 {
   std::string loose;
-  for (const auto &[axis, displacement] : {std::pair("x", &FieldCase::x), std::pair("y", &FieldCase::y)})
-  {
-    bool is_held = false;
-    for (std::size_t id = 0; id < edges.size(); ++id)
-      is_held =
-        is_held || ((id < 4 || input.has_inner_edge() || !mesh_file.empty()) &&
-                    edges[id].condition == EdgeCase::Condition::held && edges[id].displacement.*displacement != "free");
-    if (!is_held)
+  for (const auto &[axis, component] : {std::pair("x", &FieldCase::x), std::pair("y", &FieldCase::y)})
+    if (std::none_of(edges.begin(), edges.end() - (input.has_inner_edge() || !mesh_file.empty() ? 0 : 1),
+                     [of = component](const EdgeCase &edge)
+                     { return edge.condition == EdgeCase::Condition::held && edge.displacement.*of != "free"; }))
       loose += (loose.empty() ? "" : " and ") + std::string(axis);
-  }
   if (!loose.empty())
     p.error("Left edge/condition", command + " needs edges that are held along " + loose + " for equilibrium",
             {"Right edge/condition", "Bottom edge/condition", "Top edge/condition"});

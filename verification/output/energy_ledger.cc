@@ -54,9 +54,8 @@ double LedgerCheck::imbalance() const
 
 double LedgerCheck::rate() const
 {
-  return largest_power_ > 0.
-           ? support::largest_of({largest_power_ / exchanged(), std::sqrt(0.5 * largest_surge_ / exchanged())})
-           : 0.;
+  const double X = exchanged();
+  return largest_power_ > 0. ? support::largest_of({largest_power_ / X, std::sqrt(0.5 * largest_surge_ / X)}) : 0.;
 }
 
 Tolerance allowed_imbalance(input::Case::Integrator integrator, double n_steps, double lost)
