@@ -239,8 +239,8 @@ private:
       for (std::size_t w = 0; w < 2; ++w)
       {
         const double exact = std::pow(network[w].frequency, 2);
-        // Terms of order (kd)^2, and of the square of the strain.
-        const double allowed = bound + 1e-6 * std::pow(network[0].frequency, 2);
+        // Terms of order (kd)^2, and of the square of the strain; under tension S may be the faster wave.
+        const double allowed = bound + 1e-6 * std::pow(bridge::fastest_frequency(network), 2);
         speeds_.add(std::abs(std::pow(found[w].frequency, 2) - exact) / allowed);
         if (degrees == 0.)
           rows.add("speed of long " + wave_names[w] +
