@@ -160,15 +160,8 @@ TEST(Ranks, AllThrowWhatOneThrows)
     if (rank() == last)
       throw continuum::NonPhysicalState("rank " + std::to_string(last));
   };
-  try
-  {
-    continuum::run_collectively(MPI_COMM_WORLD, fail_on_last);
-    FAIL() << "did not throw";
-  }
-  catch (const continuum::NonPhysicalState &failure)
-  {
-    EXPECT_EQ(failure.what(), "rank " + std::to_string(last));
-  }
+  EXPECT_EQ(message_of<continuum::NonPhysicalState>([&] { continuum::run_collectively(MPI_COMM_WORLD, fail_on_last); }),
+            "rank " + std::to_string(last));
   // The most severe failure is reported, regardless of its rank.
   const auto fail_differently = [&]
   {

@@ -8,6 +8,7 @@
 #include "continuum/meshes.h"
 #include "continuum/mooney_rivlin.h"
 #include "continuum/static_solver.h"
+#include "tests/support/thrown.h"
 
 #include <deal.II/base/function.h>
 

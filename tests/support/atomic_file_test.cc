@@ -14,6 +14,7 @@
 
 #include "support/atomic_file.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/thrown.h"
 
 namespace atomic_file_test
 {
@@ -24,15 +25,7 @@ namespace fs = std::filesystem;
 // Returns the message of the error when a file is written; empty if there is none.
 std::string complaint(const std::string &path, const std::string &text = "new")
 {
-  try
-  {
-    write_atomically(path, text, Sync::yes);
-  }
-  catch (const OutputError &error)
-  {
-    return error.what();
-  }
-  return "";
+  return message_of<OutputError>([&] { write_atomically(path, text, Sync::yes); });
 }
 
 std::vector<fs::path> entries(const TemporaryFolder &folder)

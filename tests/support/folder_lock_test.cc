@@ -14,6 +14,7 @@
 #include "support/atomic_file.h"
 #include "support/folder_lock.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/thrown.h"
 
 namespace folder_lock_test
 {
@@ -25,15 +26,7 @@ namespace fs = std::filesystem;
 // Returns the message with which a lock is refused; empty if it is granted.
 std::string refusal(const std::string &folder)
 {
-  try
-  {
-    const FolderLock lock(folder, 0ms);
-  }
-  catch (const InputError &error)
-  {
-    return error.what();
-  }
-  return "";
+  return message_of<InputError>([&] { const FolderLock lock(folder, 0ms); });
 }
 
 // Process that locks a folder and waits for a signal.
@@ -115,15 +108,8 @@ TEST(FolderLock, FilesAreNotWrittenToAFolderThatTookThePlace)
     fs::create_directories(out + "/sub");
     EXPECT_THROW(begun.commit(Sync::no), OutputError);
     for (const std::string &place : {file, below})
-      try
-      {
-        write_atomically(place, "mine", Sync::no);
-        ADD_FAILURE() << place;
-      }
-      catch (const OutputError &error)
-      {
-        EXPECT_EQ(error.what(), "cannot write " + place + why);
-      }
+      EXPECT_EQ(message_of<OutputError>([&] { write_atomically(place, "mine", Sync::no); }),
+                "cannot write " + place + why);
     EXPECT_NO_THROW(write_atomically(folder / "beside.txt", "mine", Sync::no));
     EXPECT_TRUE(fs::is_empty(out + "/sub"));
     EXPECT_EQ(std::distance(fs::directory_iterator(out), fs::directory_iterator()), 1);

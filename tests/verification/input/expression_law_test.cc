@@ -13,6 +13,7 @@
 
 #include "lattice/bonds/formulas.h"
 #include "lattice/bonds/law_check.h"
+#include "tests/support/thrown.h"
 #include "verification/input/expression_parser.h"
 
 namespace expression_law_test
@@ -102,15 +103,7 @@ TEST(ExpressionLaw, BoundsTheStiffness)
 
 std::string problem(const std::string &psi, double longest_stretch = longest)
 {
-  try
-  {
-    const ExpressionLaw law = law_of(psi, longest_stretch);
-  }
-  catch (const lattice::InvalidBondLaw &error)
-  {
-    return error.what();
-  }
-  return "";
+  return message_of<lattice::InvalidBondLaw>([&] { (void)law_of(psi, longest_stretch); });
 }
 
 TEST(ExpressionLaw, RefusesLawsThatNoBondCanHave)
@@ -140,16 +133,8 @@ TEST(LawCheck, ComparesEachDerivativeWithDifferences)
     Functions functions = right;
     // Off by a thousandth, and right at rest.
     functions[wrong] = [of = right[wrong]](double l) { return of(l) * (1. + 1e-3 * (l - 1.) * (l - 1.)); };
-    try
-    {
-      lattice::check_law(functions, 3.);
-      ADD_FAILURE() << wrong;
-    }
-    catch (const lattice::InvalidBondLaw &error)
-    {
-      EXPECT_NE(std::string(error.what()).find("psi" + std::string(wrong, '\'') + " is"), std::string::npos)
-        << error.what();
-    }
+    const std::string message = message_of<lattice::InvalidBondLaw>([&] { lattice::check_law(functions, 3.); });
+    EXPECT_NE(message.find("psi" + std::string(wrong, '\'') + " is"), std::string::npos) << message;
   }
 }
 

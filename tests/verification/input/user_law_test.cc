@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "support/errors.h"
+#include "tests/support/thrown.h"
 #include "tests/verification/input/sentences.h"
 #include "tests/verification/input/small_case.h"
 #include "verification/claims/claim_inputs.h"
@@ -51,15 +52,9 @@ TEST(ExpressionParser, ListsTheNamesInAnExpression)
 TEST(ExpressionParser, NamesTheColumnOfAMistakeAndWhatIsAllowed)
 {
   for (const sentences::Sentence &own : sentences::of({"psi"}))
-    try
-    {
-      (void)input::parse_expression(sentences::unescaped(own.input), "lam", constants);
-      ADD_FAILURE() << own.input;
-    }
-    catch (const input::InvalidExpression &error)
-    {
-      EXPECT_EQ(error.what(), own.message + "; allowed: numbers, + - * / ^ ( ), sqrt, exp, log, lam, alpha, mu");
-    }
+    EXPECT_EQ(message_of<input::InvalidExpression>(
+                [&] { (void)input::parse_expression(sentences::unescaped(own.input), "lam", constants); }),
+              own.message + "; allowed: numbers, + - * / ^ ( ), sqrt, exp, log, lam, alpha, mu");
   for (const std::string &text : {std::string("  "), std::string(3000, '(')})
     EXPECT_THROW((void)input::parse_expression(text, "lam", constants), input::InvalidExpression);
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "support/errors.h"
+#include "tests/support/thrown.h"
 
 namespace resources_test
 {
@@ -75,17 +76,9 @@ TEST(Resources, StepsThatCannotBeCountedAreTold)
   input.end_time = 1.;
   check_steps(input, 1e-15, parameters);
   check_steps(input, 1e-17, parameters);
-  try
-  {
-    parameters.finish();
-    FAIL() << "no exception";
-  }
-  catch (const latcon::support::InputError &error)
-  {
-    const std::string text = error.what();
-    EXPECT_EQ(text.find("Time/end"), text.rfind("Time/end")) << text; // of the second alone
-    EXPECT_NE(text.find("1e+17 time steps"), std::string::npos) << text;
-  }
+  const std::string text = message_of<latcon::support::InputError>([&] { parameters.finish(); });
+  EXPECT_EQ(text.find("Time/end"), text.rfind("Time/end")) << text; // of the second alone
+  EXPECT_NE(text.find("1e+17 time steps"), std::string::npos) << text;
 }
 
 } // namespace resources_test
