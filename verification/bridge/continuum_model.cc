@@ -121,9 +121,12 @@ void ContinuumModel::make_conditions(const input::Case &input)
     if (!edge.double_traction.is_zero())
       conditions_.double_tractions.push_back({id, std::make_shared<FieldFunction>(edge.double_traction, extent_)});
   }
-  if (c.has_equilibrium() && conditions_.displacements.empty())
-    throw support::InputError("the mesh file " + c.mesh_file +
-                              " has none of the edges that the case holds; equilibrium needs a held edge");
+  for (const unsigned int axis : {0u, 1u})
+    if (c.has_equilibrium() &&
+        std::none_of(conditions_.displacements.begin(), conditions_.displacements.end(),
+                     [axis](const continuum::BoundaryField &held) { return held.components[axis]; }))
+      throw support::InputError("the mesh file " + c.mesh_file + " has none of the edges that the case holds along " +
+                                "xy"[axis] + "; equilibrium needs one");
   if (!c.body_force.is_zero())
     conditions_.body_force = continuum::BodyForce{std::make_shared<FieldFunction>(c.body_force, extent_),
                                                   c.body_force_corrected ? inertia_length_ : 0.};

@@ -187,10 +187,14 @@ TEST(ViscoelasticWaves, FollowTheComplexModulus)
   linear.nearest.law = lattice::LinearBond(2.35e5);
   options.states = {Eigen::Vector2d(0.7, 1.03).asDiagonal().toDenseMatrix()};
   expect_holds(viscoelastic_waves_claim(subject(input, linear), options).results);
-  // A wave that the branch damps so strongly that its frequency, without the decay, is below the rubbery limit.
+  // Springs and branches of a sheared sheet have different axes.
+  options.states = {(Eigen::Matrix2d() << 2., 1., 0., 2.).finished()};
+  expect_holds(viscoelastic_waves_claim(subject(input, subjects::nearest_only(input)), options).results);
+  // A wave that the branch damps so strongly that its frequency is below the rubbery limit, and one that it overdamps.
   Material stiffens_little = linear;
   stiffens_little.nearest.law = lattice::MooneyRivlinBond(0., 2.5e5);
-  options.states = {Eigen::Vector2d(3., 1.03).asDiagonal().toDenseMatrix()};
+  options.states = {Eigen::Vector2d(3., 1.03).asDiagonal().toDenseMatrix(),
+                    Eigen::Vector2d(3.5, 1.05).asDiagonal().toDenseMatrix()};
   options.frequencies = {0.1, 0.3, 0.6};
   expect_holds(viscoelastic_waves_claim(subject(input, stiffens_little), options).results);
 }
