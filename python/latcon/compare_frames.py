@@ -72,7 +72,7 @@ def compare_frames(program: Program, printed: Printed, options: Mapping[str, Any
         printed.say(f"# lattice: {lattice.file.path}, {len(lattice.points)} sites\n# continuum: {continuum.file.path}, "
                     f"{sum(map(len, continuum.cells))} cells")
         return DONE
-    record = Record(program, printed, directory, options, options["resume"])
+    record = Record(program, printed, directory, options, False)
     record.add(lattice_frame=str(lattice.file.path), continuum_frame=str(continuum.file.path))
     _write_difference(directory, lattice, continuum, comparison)
     clock.append(time.monotonic())

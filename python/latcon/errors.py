@@ -101,7 +101,7 @@ class OutputFailed(ProgramError):
 
 
 class Interrupted(_EndOfProgram, KeyboardInterrupt):
-    """The run was stopped by Ctrl-C or another signal, with its results written (exit code 130).
+    """The run was stopped by Ctrl-C or another signal, with its results written (exit code 130; negative: killed before that).
 
     A subclass of :class:`KeyboardInterrupt` and not of :class:`LatconError`: a loop over runs that continues after errors
     stops at Ctrl-C. Has the attributes of :class:`ProgramError`. ``resume=True`` continues the run.

@@ -15,7 +15,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 
-from .errors import OUTPUT_FAILED, PACKAGES_MISSING, ProgramNotFound, error_of
+from .errors import OUTPUT_FAILED, PACKAGES_MISSING, Interrupted, ProgramNotFound, error_of
 
 Progress = bool | Callable[[str], None]
 
@@ -119,7 +119,7 @@ class Process:
     """Command of the program that runs in a session of its own; `progress` is its last progress line, empty before the first."""
 
     def __init__(self, arguments: Sequence[str], directory: pathlib.Path) -> None:
-        self.directory, self.progress = directory, ""
+        self.directory, self.progress, self._interrupted = directory, "", False
         reading, writing = os.pipe()
         self._updates, self._output, self._errors = open(reading, "rb"), tempfile.TemporaryFile(), tempfile.TemporaryFile()
         try:
@@ -136,11 +136,11 @@ class Process:
 
     def interrupt(self) -> None:
         """Sends SIGINT, on which the program writes a checkpoint and all results, and ends."""
+        self._interrupted = True
         self.child.send_signal(signal.SIGINT)
 
     def follow(self, show: Callable[..., None]) -> None:
         """Shows the progress of the program until it has ended."""
-        interrupted = False
         while True:
             try:
                 if not (line := self._updates.readline()):
@@ -150,11 +150,10 @@ class Process:
                 self.progress = update["text"]
                 show(**update)
             except KeyboardInterrupt:
-                if interrupted:
+                if self._interrupted:
                     self.child.kill()
                 elif self.is_running:
                     self.interrupt()
-                interrupted = True
 
     def end(self) -> None:
         """Prints the messages of the program that has ended, or raises the error."""
@@ -164,7 +163,10 @@ class Process:
         if self.child.returncode != 0:
             self._output.seek(max(0, self._output.seek(0, os.SEEK_END) - _TAIL))
             printed = self._output.read().decode("utf-8", "replace")
-            raise error_of(self.child.returncode, _message(messages, printed), self.directory)
+            message = _message(messages, printed)
+            if self._interrupted and self.child.returncode < 0:  # before it could end by itself
+                raise Interrupted(message, self.child.returncode, self.directory)
+            raise error_of(self.child.returncode, message, self.directory)
         if messages:
             print(messages, file=sys.stderr)
 

@@ -41,10 +41,10 @@ def judged_row(claim: str, quantity: str, unit: str, lattice: float | None, cont
 
 
 def text_table(header: Sequence[str], rows: Sequence[Sequence[str]], numbers: Collection[int], width: int = 120) -> str:
-    """Aligned text, of at most `width` columns if wrapping the second column, to 8 at least, is enough: nothing is cut off.
+    """Aligned text, of at most `width` columns if wrapping the second column, to 10 at least, is enough: nothing is cut off.
     `numbers`: right-aligned columns."""
     sizes = [max(map(len, column)) for column in zip(header, *rows)]
-    sizes[1] = max(8, min(sizes[1], width - sum(sizes) + sizes[1] - 2 * (len(sizes) - 1)))
+    sizes[1] = max(10, min(sizes[1], width - sum(sizes) + sizes[1] - 2 * (len(sizes) - 1)))
     lines = []
     for row in [header, *rows]:
         for i, part in enumerate(textwrap.wrap(row[1], sizes[1], break_on_hyphens=False) or [""]):

@@ -290,11 +290,13 @@ def test_a_directory_holds_one_fit_at_a_time(small_fit, crack, base, tmp_path):
     (tmp_path / "fit" / "evaluations.jsonl").write_text('{"number": 0}\n')
     with pytest.raises(latcon.UnreadableFile, match="line 1 is no evaluated point"):
         small_fit(tmp_path / "fit", evaluations=4)
-    (tmp_path / "run").mkdir()
-    (tmp_path / "run" / "run.json").write_text("{}")
-    with pytest.raises(latcon.LatconError, match="run: holds a run"):
-        small_fit(tmp_path / "run")
-    assert not (tmp_path / "run" / "case.prm").exists()
+    for name in ("run.json", "case.prm"):  # of a run, and of the user
+        folder = tmp_path / name.partition(".")[0]
+        folder.mkdir()
+        (folder / name).write_text("{}")
+        with pytest.raises(latcon.LatconError, match="holds a case.prm, which would be replaced"):
+            small_fit(folder)
+        assert (folder / name).read_text() == "{}" and not (folder / "fit.json").exists()
 
 
 def test_wrong_arguments_are_refused_before_anything_runs(small_fit, crack, tmp_path):
@@ -305,7 +307,7 @@ def test_wrong_arguments_are_refused_before_anything_runs(small_fit, crack, tmp_
             (dict(parameters=[Parameter("Viscosity/law", 1, 2)]), "unknown"),
             (dict(parameters=[Parameter("Contact/present", 0, 1)]), "only numbers"),
             (dict(parameters=[Parameter(STRETCH, 0.0, 2, True)]), "be positive"),
-            (dict(parameters=[Parameter(STRETCH, "3 kg", 4)]), "3 kg"), (dict(parameters=[Parameter(SEED, 1, 4)]), "over seeds"),
+            (dict(parameters=[Parameter(STRETCH, "3 kg", 4)]), "3 kg"), (dict(parameters=[Parameter(SEED, 1, 4)], seeds=None), "over seeds"),
             (dict(observations=[Observation("speed", 1, 1)]), "crack.NAME"), (dict(command="verify"), "must be one of"),
             (dict(observations=[Observation("crack.sped_lagrangian", 1, 1)]), "no quantity 'sped_lagrangian'; nearest: speed_lagrangian"),
             (dict(observations=[Observation("crack.wedge_angle", 1, 1)]), "known: speed_lagrangian, "),

@@ -84,6 +84,9 @@ def test_all_points_are_in_the_box_and_later_ones_around_the_minimum():
     with mock.patch.object(search, "_around", return_value=[]) as around:  # of a shorter batch
         propose(tabulate(problem, evaluations), 2, 40, 8, 42, 3)
     assert around.call_args.args[2:4] == (2, (40 - 21) / 8)
+    # A batch over the end of TPE's share, before there is a model.
+    points = [tuple(at) for _, at in propose(tabulate(problem, evaluations[:4]), 2, 4, 4, 12, 3)]
+    assert len(set(points)) == 4
     # Of few evaluations 2 n + 1 for n parameters.
     assert sum(stage == "sobol" for stage, _ in propose(tabulate(problem, []), 2, 0, 8, 12, 3)) == 5
 

@@ -195,7 +195,7 @@ def test_a_second_ctrl_c_kills_a_program_that_does_not_end(stand_in, tmp_path):
     stand_in(f"signal.signal(signal.SIGINT, signal.SIG_IGN); pathlib.Path({str(ready)!r}).touch(); time.sleep(60)")
     thread = interrupt_when(ready, times=2)
     begin = time.monotonic()
-    with pytest.raises(latcon.ProgramError) as caught:
+    with pytest.raises(latcon.Interrupted) as caught:
         program.run(["fracture"], tmp_path, False)
     thread.join()
     assert caught.value.exit_code == -signal.SIGKILL and time.monotonic() - begin < 50

@@ -177,6 +177,14 @@ def test_a_run_is_read_where_the_program_is_not(crack, monkeypatch):
         run.case.set("Sheet/height", 1)
 
 
+def test_a_page_shows_rows_that_fail(crack, tmp_path):
+    run = shutil.copytree(crack.directory, tmp_path / "run")
+    results = json.loads((run / "results.json").read_text())
+    results["claims"][0].update(error=2, tolerance=1, verdict="fails")
+    (run / "results.json").write_text(json.dumps(results))
+    assert "Fails" in latcon.open(run).to_html().read_text()
+
+
 def library(monkeypatch, name, **functions):
     monkeypatch.setitem(sys.modules, name, types.SimpleNamespace(**functions))
 

@@ -151,6 +151,14 @@ def test_motions_end_at_the_same_time(once, out):
     assert (row["lattice"], float(row["continuum"])) == ("0", 2e-5)
 
 
+def test_a_study_in_the_folder_is_kept(once, out):
+    out.mkdir()
+    (out / "run.json").write_text('{"study": "of another command"}')
+    (out / ".latcon-files").write_text("run.json\n")
+    latcon("compare", once.lattice, once.continuum, "--output-dir", out, "--resume")
+    assert "another" in (out / "earlier-run" / "run.json").read_text()
+
+
 def test_bad_input_touches_nothing(once, out):
     out.mkdir()
     (out / "results.json").write_text("of another comparison")

@@ -195,7 +195,7 @@ def resolve_problem(case: CaseLike, parameters: Sequence[Parameter], observation
             raise ValueError(f"a fit needs at least one {what}")
         if twice := {name for name in names if names.count(name) > 1}:
             raise ValueError(f"{what} {min(twice)!r} is given twice")
-    if seeds is not None and SEED_ENTRY in [parameter.key for parameter in parameters]:
+    if SEED_ENTRY in [parameter.key for parameter in parameters]:
         raise ValueError(f"{SEED_ENTRY} cannot be a parameter: the means are over seeds")
     for observation in observations:
         name = observation.quantity

@@ -54,7 +54,7 @@ class Record:
     """Directory of a fit, which is locked: the problem, and the evaluated points so far.
 
     Files: `case.prm`, the resolved base case; `fit.json`, the problem; `evaluations.jsonl`, a line of JSON per evaluated point,
-    appended when its runs have ended. Raises LatconError if the directory holds a run or another fit, UnreadableFile if a file is
+    appended when its runs have ended. Raises LatconError if the directory holds another case.prm or fit, UnreadableFile if a file is
     damaged. An incomplete last line, which a killed process leaves, is removed.
     """
 
@@ -86,8 +86,8 @@ class Record:
         path = self.directory / "fit.json"
         wanted = {"format": "latcon-fit", "format_version": FORMAT_VERSION, **self.problem.identity()}
         if not path.exists():
-            if (self.directory / "run.json").exists():
-                raise LatconError(f"{self.directory}: holds a run, whose case.prm would be replaced; choose another directory")
+            if (self.directory / "run.json").exists() or (self.case.exists() and read_text(self.case) != self.problem.case):
+                raise LatconError(f"{self.directory}: holds a case.prm, which would be replaced; choose another directory")
             write_atomically(os.fspath(self.case), self.problem.case)
             write_atomically(os.fspath(path), json.dumps(wanted, indent=1) + "\n")  # last: a fit without it has no evaluations
             return

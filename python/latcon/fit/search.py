@@ -50,12 +50,13 @@ def propose(table: Table, parameters: int, first: int, batch: int, evaluations: 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a number of points that is no power of two
         points = [("sobol", point) for point in qmc.Sobol(parameters, seed=seed).random(sobol)[first:first + count]]
-    if (left := min(count, tpe - first) - len(points)) > 0:
-        points += [("tpe", point) for point in _tpe(table, parameters, first, left, seed)]
     if left := count - len(points):
-        model = fit_local_model(table)
-        points += [("tpe", point) for point in _tpe(table, parameters, first, left, seed)] if model is None else [
-            ("local", point) for point in _around(model, first, left, (first - tpe) / batch, seed)]
+        model = fit_local_model(table) if first + count > tpe else None
+        around = 0 if model is None else min(left, first + count - tpe)
+        if left > around:
+            points += [("tpe", point) for point in _tpe(table, parameters, first, left - around, seed)]
+        if model is not None:
+            points += [("local", point) for point in _around(model, first, around, (first - tpe) / batch, seed)]
     return points
 
 
@@ -135,7 +136,7 @@ def _outcome(problem: Problem, seed: int, folder: pathlib.Path, status: int) -> 
     if status > INTERRUPTED:  # 128 + the signal, as of a machine without memory: no property of the point
         message = f"{folder}: killed by signal {status - 128}"
     error = error_of(status, message, folder) if status else None
-    if error and (status > 128 or isinstance(error, OutputFailed)):
+    if error and (status > 128 or isinstance(error, OutputFailed) or "no usable checkpoint" in message):
         raise error
     if isinstance(error, ClaimFailed) and problem.command == "fracture" and (folder / "crack.json").is_file():
         # A crack that differs from the case's own reference values was measured; one whose energies do not balance was not.
@@ -202,7 +203,7 @@ def fit_case(case: CaseLike, parameters: Sequence[Parameter], observations: Sequ
     BadInput
         If the case or a bound is wrong.
     LatconError
-        If the directory holds a run or another fit, or is in use, optuna or scipy is missing, or no run of the first batch is done.
+        If the directory holds another case.prm or fit, or is in use, optuna or scipy is missing, or no run of the first batch is done.
     OutputFailed, ProgramError
         If a run cannot write its files, or is killed. Other errors of a run are recorded with the point, which gets a misfit
         worse than that of all others.
