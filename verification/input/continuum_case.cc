@@ -260,11 +260,14 @@ void ContinuumCase::check(Parameters &p, const Case &input) const
 void ContinuumCase::require_equilibrium(Parameters &p, const Case &input, const std::string &command) const
 {
   std::string loose;
-  for (const auto &[axis, component] : {std::pair("x", &FieldCase::x), std::pair("y", &FieldCase::y)})
+  for (const std::size_t axis : {0, 1})
     if (std::none_of(edges.begin(), edges.end() - (input.has_inner_edge() || !mesh_file.empty() ? 0 : 1),
-                     [of = component](const EdgeCase &edge)
-                     { return edge.condition == EdgeCase::Condition::held && edge.displacement.*of != "free"; }))
-      loose += (loose.empty() ? "" : " and ") + std::string(axis);
+                     [axis](const EdgeCase &edge)
+                     {
+                       const FieldCase &given = edge.displacement;
+                       return edge.condition == EdgeCase::Condition::held && (axis == 0 ? given.x : given.y) != "free";
+                     }))
+      loose += (loose.empty() ? "" : " and ") + std::string(1, "xy"[axis]);
   if (!loose.empty())
     p.error("Left edge/condition", command + " needs edges that are held along " + loose + " for equilibrium",
             {"Right edge/condition", "Bottom edge/condition", "Top edge/condition"});
