@@ -42,8 +42,8 @@ def draw_overview(study, folder):
 
 def sweep_caption(names, against):
     """Caption of quantities along an abscissa."""
-    return (f"{names[:1].upper()}{names[1:]} against {against}: mean and standard deviation over the seeds; symbols are of the most "
-            "frequent pattern, the first of the alphabet of several. Open ones at 0: not defined for this crack.")
+    return (f"{names[:1].upper()}{names[1:]} against {against}: mean and standard deviation over the seeds; a symbol is that of the most "
+            "frequent pattern, of several the first by name. Open ones at 0: not defined for this crack.")
 
 
 def draw_sweeps(study, number, claim, folder):

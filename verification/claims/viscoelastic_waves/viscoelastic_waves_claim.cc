@@ -18,7 +18,7 @@ namespace
 
 const output::Tolerance frequency_tolerance{1e-6, "extrapolated time stepping, three terms of 1.2e-7"};
 const output::Tolerance decay_tolerance{
-  2e-5, "that of frequencies, of decays down to a twentieth of the frequency to which their error is relative"};
+  2e-5, "that of frequencies, of decays down to a twentieth of the rate to whose magnitude their error is relative"};
 // Modulus of the swept branch over the stiffness of a bond.
 constexpr double swept_ratio = 0.5;
 constexpr double swept_kd = 0.25;
@@ -193,11 +193,12 @@ void sweep(WaveComparison &comparison, const lattice::Material &elastic, const W
     for (const double scaled : frequencies)
     {
       const lattice::Material material = with_branches(elastic, {swept_ratio}, {scaled / frequency});
-      if (std::isnan(comparison.theory(cell, material, w).frequency()))
+      const double decay = comparison.theory(cell, material, w).decay();
+      if (std::isnan(decay))
         continue; // the branch overdamps a slow wave
       logarithms.push_back(std::log(scaled));
       decays.push_back(comparison.compare(part, cell, material, w, scaled).decay);
-      in_theory.push_back(comparison.theory(cell, material, w).decay());
+      in_theory.push_back(decay);
     }
     if (decays.size() > 2 && decays.size() == frequencies.size())
       peaks.add_relative(std::exp(peak(logarithms, decays)), std::exp(peak(logarithms, in_theory)));

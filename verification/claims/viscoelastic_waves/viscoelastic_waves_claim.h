@@ -13,7 +13,7 @@ namespace latcon::claims
 struct ViscoelasticWavesOptions
 {
   std::vector<Eigen::Matrix2d> states; ///< F about which waves are evaluated
-  /// w tau of the branch that is swept, w being the frequency of the wave without branches; increasing, 5 or more.
+  /// w tau of the swept branch, w being the frequency without it [rad/s]; increasing; three or more show the peak.
   std::vector<double> frequencies{0.1, 0.3, 0.6, 1., 1.7, 3., 10.};
   /// The same for the finite elements; three or more show the peak; none: no finite elements.
   std::vector<double> element_frequencies{1.};
