@@ -72,8 +72,7 @@ private:
   std::size_t n_states_ = 0;
   LedgerState first_{}, last_{};
   double largest_imbalance_ = 0., largest_energy_ = 0., largest_work_ = 0., largest_conversion_ = 0.; // [J/m]
-  double power_ = 0., largest_power_ = 0.; // of the last two states, and of all [W/m]
-  double largest_surge_ = 0.;              // of the power [W/(m s)]
+  double power_ = 0., largest_power_ = 0., largest_surge_ = 0.; // last and largest [W/m], its change [W/(m s)]
 };
 
 // Largest LedgerCheck::imbalance() with which a motion holds: multiples of the imbalances that shipped cases have at
