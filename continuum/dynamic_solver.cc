@@ -1,6 +1,5 @@
 #include "continuum/dynamic_solver.h"
 
-#include "continuum/errors.h"
 #include "support/text_wrap.h"
 
 #include <deal.II/base/mpi.h>
@@ -8,7 +7,6 @@
 #include <deal.II/grid/filtered_iterator.h>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 using namespace dealii;

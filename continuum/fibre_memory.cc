@@ -9,18 +9,10 @@
 #include <algorithm>
 #include <cmath>
 
-using dealii::Tensor;
-
 namespace latcon::continuum
 {
 namespace
 {
-// (1 - e^-x) / x.
-double mean_decay(const double x)
-{
-  return x > 0. ? -std::expm1(-x) / x : 1.;
-}
-
 // Mean of (1 - e^-s)^2 for s from 0 to x: in closed form where it has its digits, otherwise by Gauss quadrature, whose
 // error is below 1e-17 for x <= 1.
 double mean_squared_rise(const double x)
@@ -77,7 +69,7 @@ FibreMemory::Step FibreMemory::step(const double duration) const
     const auto &[modulus, time] = variable.branch;
     const double x = duration / time;
     const double rise = -std::expm1(-x);
-    const double mean = mean_decay(x);
+    const double mean = x > 0. ? rise / x : 1.;
     const double of_change = x > 0. ? modulus * mean_squared_rise(x) / x : 0.;
     step.push_back({std::exp(-x), modulus * mean, -0.5 * std::expm1(-2. * x) / modulus, rise * mean, of_change});
   }

@@ -52,7 +52,7 @@ public:
   std::size_t n_variables() const { return variables_.size(); }
   std::size_t n_numbers() const { return n_numbers_; } ///< of branches in energy ledgers
 
-  /// Coefficients of one variable in an update over one duration (theory-viscoelastic.md, eqs. (V.2), (V.5)).
+  /// Coefficients of one variable in an update over one duration (theory.md, eq. (L.28), and (V.5)).
   struct Coefficients
   {
     double decay;      ///< e^(-h/tau) [-]

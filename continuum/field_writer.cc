@@ -217,6 +217,8 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
                    });
 
   frames_.push_back({time, n_ranks});
+  // VTK cannot read a file whose first piece is empty.
+  const auto n_cells = dealii::Utilities::MPI::all_gather(communicator_, sheet.mesh().n_locally_owned_active_cells());
   if (n_ranks > 1)
     run_collectively(communicator_,
                      [&]
@@ -225,7 +227,8 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
                          return;
                        std::vector<std::string> pieces;
                        for (unsigned int r = 0; r < n_ranks; ++r)
-                         pieces.push_back(piece(r));
+                         if (n_cells[r] > 0)
+                           pieces.push_back(piece(r));
                        std::ostringstream text;
                        output.write_pvtu_record(text, pieces);
                        replace(directory_ / file_of(frames_.size() - 1), {without_comment(text.str())});

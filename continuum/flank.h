@@ -36,8 +36,8 @@ public:
   /// Moves the tip to X [m], between two steps of a motion that uses the laws.
   void cut_to(double X) { layers_->tip = X; }
 
-  /// The same for a motion of `sheet`, which uses the law and is displaced by u. Returns the energy of the bonds that
-  /// are cut [J/m].
+  /// Moves the tip likewise in a motion of `sheet`, which uses the laws and is displaced by u. Returns the energy of the
+  /// bonds that are cut [J/m].
   double cut_to(double X, const Sheet &sheet, const Sheet::Vector &u);
 
   const Material &law() const { return *law_; }

@@ -8,8 +8,6 @@
 #include <deal.II/lac/precondition.h>
 #include <deal.II/multigrid/mg_transfer_global_coarsening.h>
 
-#include <algorithm>
-
 using namespace dealii;
 
 namespace latcon::continuum
@@ -53,7 +51,8 @@ Multigrid::Multigrid(const Sheet &fine, const types::global_dof_index coarsest_s
     else
     {
       level->mesh = meshes[n];
-      level->own_sheet = fine.clone_on(dynamic_cast<const Sheet::Mesh &>(*meshes[n]));
+      level->own_sheet = std::make_unique<Sheet>(dynamic_cast<const Sheet::Mesh &>(*meshes[n]), fine.constitution(),
+                                                 fine.degree(), fine.conditions());
       level->sheet = level->own_sheet.get();
     }
     const Sheet &sheet = *level->sheet;

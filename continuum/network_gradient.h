@@ -5,7 +5,7 @@
 namespace latcon::continuum
 {
 /// Isotropic gradient law of a network of bonds: mean of LatticeGradient over all rotations of the reference
-/// configuration (theory-continuum.md, eq. (C.57)), as a sum over equispaced directions. To be combined with
+/// configuration (theory-continuum.md, eq. (C.25)), as a sum over equispaced directions. To be combined with
 /// IsotropicNetwork, as LatticeGradient with CauchyBorn.
 ///
 /// The sum is itself an objective law with exact derivatives. If all fibres are stretched beyond full_stretch, its

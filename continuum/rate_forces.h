@@ -28,7 +28,7 @@ struct BranchEnergy
 
 /// Nodal forces of the rate-dependent laws of a sheet, and the history of its Maxwell branches. Those of viscosity are
 /// C_a = integral of P_v(F, Fdot) : Grad phi_a dX (theory-continuum.md, eq. (C.40)), those of branches Q_a = integral
-/// of P(F, q) : Grad phi_a dX (theory-viscoelastic.md, eqs. (V.1), (V.2)), both with those of their gradient parts,
+/// of P(F, q) : Grad phi_a dX (theory-viscoelastic.md, eq. (V.1)), both with those of their gradient parts,
 /// eqs. (C.63) and (V.9). The history consists of the overstresses q where the densities are evaluated, at the
 /// quadrature points and for the gradient part once for each lifted face, and of the strains at which they were updated
 /// last. Functions of a `duration` [s] >= 0 and u evaluate the state that follows from the history if the strains

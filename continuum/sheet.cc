@@ -123,11 +123,6 @@ Sheet::Sheet(const Mesh &mesh, const Constitution &constitution, const unsigned 
   smallest_cell_ = dealii::Utilities::MPI::min(smallest, communicator());
 }
 
-std::unique_ptr<Sheet> Sheet::clone_on(const Mesh &mesh) const
-{
-  return std::make_unique<Sheet>(mesh, constitution_, degree_, conditions_);
-}
-
 void Sheet::check_input() const
 {
   require(mesh_.n_levels() > 0, "the mesh of a sheet has no cells");

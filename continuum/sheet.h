@@ -13,7 +13,6 @@
 #include <deal.II/lac/trilinos_vector.h>
 
 #include <functional>
-#include <memory>
 #include <vector>
 
 namespace latcon::continuum
@@ -61,9 +60,6 @@ public:
   Sheet(const Mesh &mesh, const Constitution &constitution, unsigned int degree,
         BoundaryConditions conditions = BoundaryConditions());
 
-  /// Creates a sheet with the same laws, elements and conditions on another mesh of the same domain.
-  std::unique_ptr<Sheet> clone_on(const Mesh &mesh) const;
-
   /// Renumbers the unknowns after a change of the mesh. Existing vectors become invalid.
   void distribute();
 
@@ -74,11 +70,11 @@ public:
   double energy(const Vector &u, double load_factor = 1.) const;
 
   /// Computes r_i = dE/du_i [N/m] for every degree of freedom, constrained ones included (theory-continuum.md, eq.
-  /// (C.29), without gradient law eq. (C.16)). `magnitude` is the sum of the absolute values of the terms of r [N/m],
+  /// (C.16), with a gradient law of (C.28)). `magnitude` is the sum of the absolute values of the terms of r [N/m],
   /// which bounds its round-off. Returns E as energy() does, at no additional cost.
   double residual(const Vector &u, Vector &r, Vector &magnitude, double load_factor = 1.) const;
 
-  /// Computes K_ij = d2E/du_i du_j [N/m^2] (theory-continuum.md, eq. (C.30), without gradient law eq. (C.17)),
+  /// Computes K_ij = d2E/du_i du_j [N/m^2] (theory-continuum.md, eq. (C.17), with a gradient law of (C.28)),
   /// condensed by `constraints`. If `lift` g [m] is given, also computes the product K g [N/m] of the uncondensed
   /// matrix. @tparam AnyMatrix Matrix or SinglePrecisionMatrix
   template <class AnyMatrix>

@@ -3,13 +3,15 @@
 #include "continuum/collective.h"
 #include "continuum/errors.h"
 #include "continuum/newton_solver.h"
-#include "continuum/reactions.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/timer.h>
 #include <deal.II/distributed/grid_refinement.h>
 #include <deal.II/distributed/solution_transfer.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/grid/filtered_iterator.h>
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/multigrid/mg_transfer_global_coarsening.h>
 #include <deal.II/numerics/error_estimator.h>
@@ -22,6 +24,16 @@ using namespace dealii;
 
 namespace latcon::continuum
 {
+namespace
+{
+struct HeldBoundary
+{
+  IndexSet dofs;           // held unknowns on the boundary
+  Sheet::Vector tractions; // integral of its traction against each shape function [N/m]
+  Tensor<1, 2> force;      // contribution of this rank [N/m]
+};
+} // namespace
+
 /// Residual of the equilibrium at a displacement; see NewtonSolver.
 struct StaticSolver::Evaluation
 {
@@ -246,8 +258,22 @@ SolverReport StaticSolver::solve(const Observer &observer)
 {
   SolverReport report;
   const bool is_one_step = load_factor_ == 0. && settings_.first_load_step == 1.;
-  if (is_one_step && !linear_solver_->is_direct() && solve_from_coarser_mesh(report) && observer)
-    observer(load_factor_);
+  const auto observe = [&]
+  {
+    try
+    {
+      if (observer)
+        observer(load_factor_);
+    }
+    catch (const NonPhysicalState &state)
+    {
+      throw SolverFailed("the equilibrium at load factor " + std::to_string(load_factor_) +
+                           " is inverted at an edge: " + state.what(),
+                         report);
+    }
+  };
+  if (is_one_step && !linear_solver_->is_direct() && solve_from_coarser_mesh(report))
+    observe();
   double rise = settings_.first_load_step;
   constexpr unsigned int few_iterations = 5;
   while (load_factor_ < 1.)
@@ -260,8 +286,7 @@ SolverReport StaticSolver::solve(const Observer &observer)
     {
       if (report.iterations.size() - before <= few_iterations)
         rise *= 2.;
-      if (observer)
-        observer(load_factor_);
+      observe();
     }
     else
     {
@@ -283,7 +308,9 @@ void StaticSolver::refine(Sheet::Mesh &mesh, const double fraction)
   dealii::Vector<float> jumps(mesh.n_active_cells()); // eq. (C.33)
   KellyErrorEstimator<2>::estimate(sheet_.mapping(), sheet_.dof_handler(), QGauss<1>(sheet_.degree() + 1), {},
                                    displacement_, jumps);
-  parallel::distributed::GridRefinement::refine_and_coarsen_fixed_number(mesh, jumps, fraction, 0.);
+  // Numbers are rounded down: of a few cells one.
+  const double least = std::min(1., (1. + 1e-9) / static_cast<double>(mesh.n_global_active_cells()));
+  parallel::distributed::GridRefinement::refine_and_coarsen_fixed_number(mesh, jumps, std::max(fraction, least), 0.);
   mesh.prepare_coarsening_and_refinement();
   parallel::distributed::SolutionTransfer<2, Vector> transfer(sheet_.dof_handler());
   transfer.prepare_for_coarsening_and_refinement(displacement_);
@@ -318,8 +345,83 @@ double StaticSolver::total_energy() const
   return current().stored;
 }
 
+// A force is the sum of the residual over the unknowns held at the boundary, so the forces add up exactly to the sum of
+// the nodal reactions.
+//
+// The residual of a node on several held boundaries is divided between them: each gets the integral of its own
+// traction P N times the shape function, and an equal part of the remainder, which vanishes under refinement
+// (theory-continuum.md, eq. (C.18)).
 std::map<types::boundary_id, Tensor<1, 2>> StaticSolver::reactions() const
 {
-  return boundary_reactions(sheet_, displacement_, current().residual);
+  const Vector &residual = current().residual;
+  std::map<types::boundary_id, HeldBoundary> boundaries;
+  for (const BoundaryField &condition : sheet_.conditions().displacements)
+  {
+    const IndexSet held =
+      DoFTools::extract_boundary_dofs(sheet_.dof_handler(), condition.components, {condition.boundary});
+    const HeldBoundary none{IndexSet(held.size()), sheet_.make_owned(), {}};
+    boundaries.try_emplace(condition.boundary, none).first->second.dofs.add_indices(held);
+  }
+  const DeferredException guarded(
+    [&]
+    {
+      const auto &element = sheet_.element();
+      FEFaceValues<2> values(sheet_.mapping(), element, QGauss<1>(sheet_.degree() + 1),
+                             update_values | update_gradients | update_hessians | update_normal_vectors |
+                               update_JxW_values | update_quadrature_points);
+      const FEValuesExtractors::Vector displacement(0);
+      std::vector<Tensor<2, 2>> F(values.n_quadrature_points);
+      std::vector<Tensor<3, 2>> G(values.n_quadrature_points);
+      std::vector<types::global_dof_index> dofs(element.n_dofs_per_cell());
+      dealii::Vector<double> forces(element.n_dofs_per_cell());
+      const auto add = [&](const auto &cell, const unsigned int face, Sheet::Vector &tractions)
+      {
+        values.reinit(cell, face);
+        values[displacement].get_function_gradients(displacement_, F);
+        values[displacement].get_function_hessians(displacement_, G);
+        forces = 0.;
+        for (unsigned int q = 0; q < F.size(); ++q)
+        {
+          for (unsigned int i = 0; i < 2; ++i)
+            F[q][i][i] += 1.;
+          const Tensor<1, 2> traction =
+            sheet_.constitution().evaluate(values.quadrature_point(q), F[q], G[q]).first_piola *
+            values.normal_vector(q) * values.JxW(q);
+          for (unsigned int a = 0; a < dofs.size(); ++a)
+            forces[a] += traction[element.system_to_component_index(a).first] * values.shape_value(a, q);
+        }
+        cell->get_dof_indices(dofs);
+        sheet_.conformity_constraints().distribute_local_to_global(forces, dofs, tractions);
+      };
+      for (const auto &cell : sheet_.dof_handler().active_cell_iterators() | IteratorFilters::LocallyOwnedCell())
+        for (const unsigned int face : cell->face_indices())
+          if (const auto held = boundaries.find(cell->face(face)->boundary_id()); held != boundaries.end())
+            add(cell, face, held->second.tractions);
+    });
+  for (auto &[id, boundary] : boundaries)
+    boundary.tractions.compress(VectorOperation::add);
+  guarded.rethrow_collectively(sheet_.communicator());
+
+  const std::vector<IndexSet> owned = DoFTools::locally_owned_dofs_per_component(sheet_.dof_handler());
+  for (unsigned int component = 0; component < 2; ++component)
+    for (const types::global_dof_index i : owned[component])
+    {
+      double rest = residual(i);
+      unsigned int n = 0;
+      for (const auto &[id, boundary] : boundaries)
+        if (boundary.dofs.is_element(i))
+        {
+          rest -= boundary.tractions(i);
+          ++n;
+        }
+      for (auto &[id, boundary] : boundaries)
+        if (boundary.dofs.is_element(i))
+          boundary.force[component] += boundary.tractions(i) + rest / n;
+    }
+
+  std::map<types::boundary_id, Tensor<1, 2>> forces;
+  for (const auto &[id, boundary] : boundaries)
+    forces[id] = dealii::Utilities::MPI::sum(boundary.force, sheet_.communicator());
+  return forces;
 }
 } // namespace latcon::continuum

@@ -3,8 +3,6 @@
 // Vector types of the innermost loops. Sums run over four lanes in a fixed order, and the build does not contract to
 // fused multiply-add, so the bits do not depend on the instruction set.
 
-#include <cstring>
-
 namespace latcon::continuum
 {
 /// Four doubles at once.

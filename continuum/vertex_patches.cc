@@ -25,13 +25,6 @@ namespace
 {
 constexpr unsigned int nowhere = numbers::invalid_unsigned_int;
 
-// Returns the number of entries of a lower triangle of n rows in blocks of 4 by 4, with full diagonal blocks.
-std::size_t packed_size(const std::size_t n)
-{
-  const std::size_t n_blocks = padded_size(n) / n_lanes;
-  return n_blocks * (n_blocks + 1) / 2 * n_lanes * n_lanes;
-}
-
 // Writes the packed inverse of `block`, or of its replacement.
 void invert(Eigen::MatrixXd &block, Eigen::LLT<Eigen::MatrixXd> &cholesky, float *packed)
 {
@@ -238,7 +231,9 @@ VertexPatches::VertexPatches(const Sheet &sheet, const AffineConstraints<double>
     for (const types::global_dof_index dof : patch)
       dofs_.push_back(layout_->global_to_local(dof));
     first_dof_.push_back(dofs_.size());
-    first_entry_.push_back(first_entry_.back() + packed_size(patch.size()));
+    // The lower triangle in blocks of 4 by 4, with full diagonal blocks.
+    const std::size_t n_blocks = padded_size(patch.size()) / n_lanes;
+    first_entry_.push_back(first_entry_.back() + n_blocks * (n_blocks + 1) / 2 * n_lanes * n_lanes);
     largest_patch_ = std::max<std::size_t>(largest_patch_, patch.size());
   }
   inverses_.resize(first_entry_.back());

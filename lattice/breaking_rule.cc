@@ -1,8 +1,5 @@
 #include "lattice/breaking_rule.h"
 
-#include <algorithm>
-#include <limits>
-
 #include "support/require.h"
 
 namespace latcon::lattice

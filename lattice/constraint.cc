@@ -1,9 +1,6 @@
 #include "lattice/constraint.h"
 
 #include <algorithm>
-#include <functional>
-
-#include "support/require.h"
 
 namespace latcon::lattice
 {

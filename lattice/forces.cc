@@ -1,6 +1,5 @@
 #include "lattice/forces.h"
 
-#include <algorithm>
 #include <cmath>
 #include <future>
 

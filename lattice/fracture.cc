@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <stdexcept>
 
 #include "lattice/energy.h"
-#include "support/require.h"
 
 namespace latcon::lattice
 {

@@ -71,10 +71,10 @@ struct RowOfBonds
 /// Sums over the bonds that start in a row.
 struct RowSums
 {
-  /// Of dashpots, A0 eta (v_rel . n)^2 / l [W/m], those in memories included, as bonds_of_row() does not.
+  /// Power of dashpots, A0 eta (v_rel . n)^2 / l [W/m], with those in memories, which bonds_of_row() omits.
   double viscous_power = 0.;
-  /// Of each mechanism of Material::n_mechanisms(): what memories dissipate [W/m], or have since their last update
-  /// [J/m]; see MemoryProperties.
+  /// Power that each mechanism of Material::n_mechanisms() dissipates [W/m], or energy that it has dissipated since its
+  /// last update [J/m]; see MemoryProperties.
   std::vector<double> mechanism_power = {};
   bool has_events = false;      ///< whether one is past its limit, or has retracted; see Forces::evaluate
   bool has_short_bonds = false; ///< whether one has an inverse stretch above RowOfBonds::shortness_limit

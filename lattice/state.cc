@@ -1,7 +1,5 @@
 #include "lattice/state.h"
 
-#include <limits>
-
 #include <Eigen/Geometry>
 
 namespace latcon::lattice

@@ -40,7 +40,7 @@ struct VectorField
   Eigen::Vector2d at(std::size_t place) const { return {x[place], y[place]}; }
   void set(std::size_t place, const Eigen::Vector2d &vector) { x[place] = vector.x(), y[place] = vector.y(); }
   void add(std::size_t place, const Eigen::Vector2d &vector) { set(place, at(place) + vector); }
-  /// What there is more at one place than at another.
+  /// Value at one place minus that at another.
   Eigen::Vector2d difference(std::size_t from, std::size_t to) const { return at(to) - at(from); }
 };
 

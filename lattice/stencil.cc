@@ -1,6 +1,5 @@
 #include "lattice/stencil.h"
 
-#include <cmath>
 #include <cstdlib>
 #include <numeric>
 

@@ -21,7 +21,7 @@ enum class Orientation
 /// Shells of bonds, by increasing rest length: nearest neighbours (d), next-nearest (sqrt3 d) and third-nearest (2 d,
 /// in the directions of the nearest). A material need not have all of them.
 inline constexpr std::size_t n_shells = 3;
-/// What the shells are called in files and messages.
+/// Names of the shells in files and messages.
 inline constexpr std::array<const char *, n_shells> shell_names{{"nearest", "next-nearest", "third-nearest"}};
 
 /// Distance of two rows of a triangular grid over its spacing.

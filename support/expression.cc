@@ -1,9 +1,7 @@
 #include "support/expression.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <stdexcept>
 #include <string>
 
 namespace latcon::support

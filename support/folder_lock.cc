@@ -21,13 +21,6 @@ namespace
 const char *const lock_name = ".latcon.lock";
 constexpr std::chrono::milliseconds poll_interval(20);
 
-std::string this_process()
-{
-  std::array<char, 256> machine{};
-  ::gethostname(machine.data(), machine.size() - 1);
-  return std::to_string(::getpid()) + " on " + machine.data();
-}
-
 // Returns the process ID and machine in the lock file, up to the first character that latcon does not write there.
 std::string owner_in(int descriptor)
 {
@@ -119,7 +112,9 @@ FolderLock::FolderLock(std::filesystem::path folder, std::chrono::milliseconds p
     std::this_thread::sleep_for(poll_interval);
     descriptor_ = open_lock_file(path);
   }
-  write_owner(descriptor_, this_process() + "\n");
+  std::array<char, 256> machine{};
+  ::gethostname(machine.data(), machine.size() - 1);
+  write_owner(descriptor_, std::to_string(::getpid()) + " on " + machine.data() + "\n");
   const std::lock_guard<std::mutex> guard(held_locks().mutex);
   held_locks().by_folder[name_] = this;
 }

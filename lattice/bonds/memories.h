@@ -147,7 +147,7 @@ private:
 /// Memory of the bonds of one shell; none by default.
 using BondMemory = std::variant<MaxwellMemory, PlasticMemory, CustomMemory>;
 
-/// What no motion changes of a memory.
+/// Properties of a memory, which no motion changes.
 inline const MemoryProperties &properties(const BondMemory &memory)
 {
   return std::visit([](const MemoryProperties &m) -> const MemoryProperties & { return m; }, memory);

@@ -170,7 +170,7 @@ class Simulation:
 @functools.cache
 def _module() -> Any:
     program = find_program()
-    # OpenMP reads it while it is loaded with the module; the reason and the number are those of support/waiting_threads.cc.
+    # OpenMP reads it while it is loaded with the module; the reason and the number are those of verification/main.cc.
     if not os.environ.keys() & {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"}:
         os.environ["GOMP_SPINCOUNT"] = "20000"
     for folder in (program.parent, program.parent.parent / "lib" / "latcon"):

@@ -132,9 +132,9 @@ def page_text(series):
     """The whole page."""
     template = pathlib.Path(__file__).with_suffix(".txt").read_text(encoding="utf-8")
     parts = [template.format(series=series["last"].sum(), tolerance=TOLERANCE, summary=summary_table(series))]
-    for gradient in series["gradient"].unique():
-        title = GRADIENT[gradient]
-        parts.append(f"![Errors over h, {title}](images/convergence-{gradient}.png)\n\n*{title[0].upper()}{title[1:]}.*\n")
+    shown = list(series["gradient"].unique())
+    parts += [f"![Errors over h, {GRADIENT[gradient]}](images/convergence-{gradient}.png)\n" for gradient in shown]
+    parts.append(f"*From above: {', '.join(GRADIENT[gradient] for gradient in shown)}.*\n")
     return "\n".join(parts)
 
 

@@ -1,11 +1,9 @@
 // Dynamics of sheets on one rank: orders in time, energy balance, units, and steps that do not converge.
 #include "continuum/errors.h"
 #include "moving_sheets.h"
-#include "support/largest_error.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <limits>
 

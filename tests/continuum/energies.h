@@ -7,7 +7,6 @@
 #include <Sacado.hpp>
 
 #include <array>
-#include <cmath>
 #include <limits>
 
 namespace energies

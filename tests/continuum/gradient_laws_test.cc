@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <tuple>
 
 namespace gradient_laws_test
@@ -178,7 +177,7 @@ TEST(GradientLaw, NormalStiffnessIsThatOfTheStiffestDirection)
   EXPECT_NEAR(law.normal_stiffness(), largest, 1e-3 * largest);
 }
 
-// theory-continuum.md, eq. (C.57): mean of the lattice energy over all rotations of the reference configuration, here a
+// theory-continuum.md, eq. (C.25): mean of the lattice energy over all rotations of the reference configuration, here a
 // sum over 64 directions of each bond. The 32 of the law differ from the mean by rho^32, rho = (l1 - l2)/(l1 + l2),
 // times a power of 32 for the derivatives: by 5e-33 and 2e-11 times that.
 TEST(NetworkGradient, IsTheMeanOfTheLatticeOverAllDirections)

@@ -31,7 +31,7 @@ BoundaryConditions clamped_bump(const double stretch_x, const double stretch_y, 
 
 // Energy, residual and tangent of the discrete functional by Taylor's theorem at a state whose normal gradients jump
 // everywhere, on a mesh with hanging nodes and a clamped edge; the tangent is symmetric. Without and with a penalty.
-// theory-continuum.md, eqs. (C.28) to (C.30).
+// theory-continuum.md, eq. (C.28), with (C.16) and (C.17).
 TEST(GradientEquilibrium, ResidualAndTangentAreDerivativesOfOneFunctional)
 {
   const LatticeGradient lattice = rubber_gradient(2. * internal_length);

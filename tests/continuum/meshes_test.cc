@@ -11,7 +11,6 @@
 #include <deal.II/numerics/vector_tools_rhs.h>
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 
 namespace meshes_test

@@ -213,7 +213,7 @@ std::vector<double> advanced(const FibreMemory &law, const double duration, cons
   return q;
 }
 
-// theory-viscoelastic.md, eq. (V.2), with each overstress on a ramp from its differential equation. Decay and gain are
+// theory.md, eq. (L.28), with each overstress on a ramp from its differential equation. Decay and gain are
 // those of (V.7).
 TEST(FibreMemory, FollowsARampExactly)
 {

@@ -1,7 +1,6 @@
 """Fixtures of the tests of the Python package: separate caches, scripts in place of the program, and one small crack."""
 import csv
 import os
-import pathlib
 import sys
 import tempfile
 
@@ -18,10 +17,7 @@ TINY = {"Sheet/length": "2.5 cm", "Sheet/height": "1.5 cm", "Time/end": "1.5 ms"
 
 
 def tiny_case():
-    case = latcon.Case("quick.prm")
-    for key, value in TINY.items():
-        case = case.set(key, value)
-    return case
+    return latcon.Case("quick.prm").set(TINY)
 
 
 def rows(path):
@@ -45,5 +41,4 @@ def stand_in(tmp_path, monkeypatch):
         program.write_text(f"#!{sys.executable}\nimport pathlib, signal, sys, time\n{body}\n")
         program.chmod(0o755)
         monkeypatch.setenv("LATCON", str(program))
-        return pathlib.Path(program)
     return make

@@ -1,4 +1,4 @@
-#include "verification/analysis/crack_damage.h"
+#include "verification/analysis/crack_measurement.h"
 
 #include <algorithm>
 #include <cmath>

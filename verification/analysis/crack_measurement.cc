@@ -122,7 +122,7 @@ void decide_oscillating_or_straight(CrackMeasurement &m, bool is_long_enough, co
   else
     m.reason = sinusoid +
                support::formatted(", but makes up %.0f %% of the path with log evidence %.1f; an oscillation needs at "
-                                  "least %.0f %% and %.3g: the path wanders",
+                                  "least %.0f %% and %.3g: the path is short or irregular",
                                   share, fit.log_evidence, 100. * o.min_share, o.min_log_evidence);
 }
 

@@ -20,18 +20,18 @@ namespace latcon::bridge
 continuum::CauchyBorn cauchy_born(const lattice::TriangularLattice &lattice, const lattice::Material &material);
 
 /// Returns the isotropic network law of a lattice: mean of its Cauchy-Born law over all rotations
-/// (theory-comparison.md, eq. (H.13)). With Mooney-Rivlin bonds it is the Mooney-Rivlin law that agrees with the
+/// (theory-continuum.md, eq. (C.50)). With Mooney-Rivlin bonds it is the Mooney-Rivlin law that agrees with the
 /// lattice up to anisotropy, without calibration.
 continuum::IsotropicNetwork isotropic_network(const lattice::TriangularLattice &lattice,
                                               const lattice::Material &material);
 
-/// Returns the bond families of a lattice for the gradient energy of its long waves (theory-comparison.md, eq. (H.6)):
+/// Returns the bond families of a lattice for the gradient energy of its long waves (theory-continuum.md, eq. (C.22)):
 /// families as in cauchy_born, each with its undeformed length [m].
 std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattice &lattice,
                                                  const lattice::Material &material);
 
-/// Returns the viscous law of the dashpots of a lattice, with weights as in cauchy_born (theory-comparison.md, eq.
-/// (H.9)); null if there are no dashpots.
+/// Returns the viscous law of the dashpots of a lattice, with weights as in cauchy_born (theory-continuum.md, eq.
+/// (C.41)); null if there are no dashpots.
 /// @param gradient_length l_d of a gradient energy of the bonds, which the viscosity is to match [m]; 0: local
 /// viscosity
 std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::TriangularLattice &lattice,

@@ -44,7 +44,7 @@ private:
   double d_;
 };
 
-/// What rings a spacing h of their grid wide leave of quantities of rings without width.
+/// Quantity of rings that are as wide as the spacing h of their grid, beside that of rings without width.
 struct RingValue
 {
   double limit;   ///< for h = 0

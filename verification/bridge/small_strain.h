@@ -1,19 +1,11 @@
 #pragma once
 
 #include <cmath>
-#include <string>
 
 #include "lattice/material.h"
 
 namespace latcon::bridge
 {
-
-/// Returns the name of the shells of a lattice in results: "NN", then "+NNN" with next-nearest neighbours and "+3NN"
-/// with third-nearest ones.
-[[nodiscard]] inline std::string shells_name(const lattice::Material &material)
-{
-  return std::string("NN") + (material.next_nearest ? "+NNN" : "") + (material.third_nearest ? "+3NN" : "");
-}
 
 /// Returns c = A0 l / V [-] of one bond direction, with the reference volume V of a site: there is one bond of each
 /// direction per site.

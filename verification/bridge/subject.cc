@@ -67,7 +67,7 @@ Subject subject(const input::Case &input, const lattice::Material &material, con
   }
   const SmallStrain theory = small_strain(sheet, material);
   const GradientLengths lengths = gradient_lengths(sheet, material);
-  return {shells_name(material),
+  return {std::string("NN") + (material.next_nearest ? "+NNN" : "") + (material.third_nearest ? "+3NN" : ""),
           input.spacing,
           input.orientation,
           material,

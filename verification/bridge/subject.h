@@ -18,7 +18,7 @@ namespace latcon::bridge
 /// assumptions on how they were derived, so a test can combine a wrong law with a correct lattice.
 struct Subject
 {
-  std::string name; ///< in results: shells_name()
+  std::string name; ///< in results: "NN", then "+NNN" with next-nearest neighbours and "+3NN" with third-nearest ones
   double spacing;   ///< d [m]
   lattice::Orientation orientation;
   lattice::Material material;

@@ -10,7 +10,7 @@
 namespace latcon::claims
 {
 
-/// What the check of a claim is given.
+/// Input of the check of a claim.
 struct ClaimInput
 {
   const bridge::Subject &subject; ///< a lattice, and the laws that should agree with it

@@ -25,15 +25,6 @@ constexpr double strain = 1e-5;
 // 2e-7.
 constexpr double phase_per_step = 0.12;
 
-// cos K.X at the sites of a cell, 0 at other places.
-lattice::Field cosine_of(const WaveCell &cell)
-{
-  lattice::Field shape(cell.sheet.n_places(), 0.);
-  for (const std::size_t place : cell.sheet.sites())
-    shape[place] = std::cos(cell.phase(place));
-  return shape;
-}
-
 // Follows waves of the lattice. @param start displaced from `at_rest` along `directions`, in a cosine for each
 std::vector<Oscillation> measure(const WaveCell &cell, const lattice::Material &material, const lattice::State &at_rest,
                                  lattice::State start, const std::vector<Eigen::Vector2d> &directions,
@@ -41,7 +32,9 @@ std::vector<Oscillation> measure(const WaveCell &cell, const lattice::Material &
 {
   lattice::Simulation simulation(cell.sheet, material, std::move(start),
                                  lattice::TimeStepping(sampling.time_step, stages));
-  const lattice::Field shape = cosine_of(cell);
+  lattice::Field shape(cell.sheet.n_places(), 0.); // cos(K.X) at the sites
+  for (const std::size_t place : cell.sheet.sites())
+    shape[place] = std::cos(cell.phase(place));
   const double norm = std::inner_product(shape.begin(), shape.end(), shape.begin(), 0.);
   const auto amplitudes = [&]
   {

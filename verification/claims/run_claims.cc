@@ -1,9 +1,10 @@
 #include "verification/claims/claim_inputs.h"
 
 #include <map>
-#include <optional>
+#include <memory>
 
-#include "support/one_thread.h"
+#include <omp.h>
+
 #include "verification/bridge/subject.h"
 #include "verification/claims/claim_list.h"
 
@@ -23,9 +24,9 @@ ClaimOutcome check_claim(const std::string &name, const ClaimInput &input)
 ClaimOutcome run_claims(const input::Case &input, const std::vector<Claim> &claims, bool quick, Shells shells,
                         const bridge::Laws &laws, const std::string &frames)
 {
-  std::optional<support::OneThread> one_thread;
+  const std::shared_ptr<void> restored(nullptr, [n = omp_get_max_threads()](void *) { omp_set_num_threads(n); });
   if (quick)
-    one_thread.emplace();
+    omp_set_num_threads(1); // synchronisation of such small lattices costs more than threads save, and changes no bit
   const input::Case read = claim_inputs(input);
   std::vector<bridge::Subject> subjects{bridge::subject(read, read.material(), laws)};
   if ((read.has_next_nearest || read.has_third_nearest) && shells == Shells::own_and_nearest)

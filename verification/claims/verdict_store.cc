@@ -14,7 +14,6 @@
 #include <nlohmann/json.hpp>
 
 #include "support/atomic_file.h"
-#include "support/errors.h"
 #include "verification/input/files.h"
 #include "verification/output/output_file.h"
 #include "verification/output/run_info.h"

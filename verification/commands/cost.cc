@@ -7,7 +7,6 @@
 #include <omp.h>
 
 #include "support/errors.h"
-#include "support/ranks.h"
 #include "support/text_wrap.h"
 #include "verification/bridge/lattice_sheet.h"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iostream>
 
-#include "continuum/errors.h"
 #include "continuum/field_writer.h"
 #include "continuum/static_solver.h"
 #include "verification/output/continuum_record.h"

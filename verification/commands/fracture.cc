@@ -11,7 +11,6 @@
 #include "verification/claims/claim_inputs.h"
 #include "verification/commands/command.h"
 #include "verification/commands/motion.h"
-#include "verification/output/crack_film.h"
 #include "verification/output/near_tip_record.h"
 
 namespace latcon::commands
@@ -38,7 +37,8 @@ support::ExitCode draw_page(Run &run)
   return exit_code;
 }
 
-// Motion until the crack reaches the stop position or the time ends.
+// Motion until the crack reaches the stop position or the time ends, and small frames of it for animations, at equal
+// distances of the tip: a film.
 class CrackMotion : public LatticeMotion
 {
 public:
@@ -46,11 +46,19 @@ public:
               output::Checkpoints &checkpoints, Run &run)
     : LatticeMotion(input, simulation, checkpoints, run), seed_tip_(seed_tip),
       stop_(input.stop_position * simulation.lattice().length()), near_tip_(input, simulation, seed_tip),
-      film_(input, simulation, record_, seed_tip, run.directory(), writing_)
+      film_(std::make_shared<output::FieldWriter>(simulation.lattice(), simulation.material(), run.directory(),
+                                                  "motion", output::FrameFields::motion)),
+      film_pitch_((stop_ - seed_tip) / std::max(1u, input.motion_frames)), next_of_film_(seed_tip + film_pitch_)
   {
   }
   output::NearTipRecord &near_tip() { return near_tip_; }
-  output::CrackFilm &film() { return film_; }
+
+  // Adds the last frame to the film and waits until all are written. Collective.
+  void end_film()
+  {
+    add_to_film();
+    flush();
+  }
 
 private:
   bool is_complete() const override { return !(time() < input_.end_time && record_.tip().X() < stop_); }
@@ -65,18 +73,28 @@ private:
   void start() override
   {
     LatticeMotion::start();
-    film_.begin(false);
+    add_to_film();
+    pass(record_.tip().X());
   }
   void write_resumed() override
   {
     LatticeMotion::write_resumed();
-    film_.begin(true);
+    if (input_.motion_frames > 0 && run_.is_root())
+      film_->write_collection();
+  }
+  void write_failed() override
+  {
+    add_to_film(); // in place of the frames that follow the last valid state
+    write();
   }
   void after_step(const std::vector<lattice::BrokenBond> &broken) override
   {
     record_.step(broken);
     near_tip_.step();
-    film_.step();
+    if (record_.tip().X() < next_of_film_)
+      return;
+    add_to_film();
+    pass(record_.tip().X());
   }
   void archive(output::CheckpointReader &archive) override { parts(archive); }
   void archive(output::CheckpointWriter &archive) override { parts(archive); }
@@ -85,12 +103,47 @@ private:
   {
     LatticeMotion::archive(archive);
     archive("near_tip", near_tip_);
-    archive("film", film_);
+    archive("film/frames", *film_);
+    if constexpr (Archive::loads)
+      follow_record();
+  }
+
+  // Finds the frames of the film from the record of the crack. Throws std::invalid_argument if they are others.
+  void follow_record()
+  {
+    std::vector<double> times{0.};
+    for (const analysis::TipRecord &tip : record_.tip().records())
+      if (tip.X >= next_of_film_)
+      {
+        if (tip.t > 0.)
+          times.push_back(tip.t);
+        pass(tip.X);
+      }
+    if (input_.motion_frames > 0)
+      support::require(film_->times() == times, "`times` of frames do not match the record of the tip");
+  }
+
+  void pass(double tip_X)
+  {
+    while (tip_X >= next_of_film_)
+      next_of_film_ += film_pitch_;
+  }
+
+  void add_to_film()
+  {
+    if (input_.motion_frames == 0)
+      return;
+    const lattice::State &whole = simulation_.gather();
+    if (run_.is_root())
+      writing_.add([frames = film_, state = std::make_shared<const lattice::State>(whole)]
+                   { frames->add_frame(*state); });
   }
 
   double seed_tip_, stop_; // [m]
   output::NearTipRecord near_tip_;
-  output::CrackFilm film_;
+  std::shared_ptr<output::FieldWriter> film_; // also of the tasks that are pending
+  double film_pitch_;                         // advance of the tip between frames [m]
+  double next_of_film_;                       // X of the tip at the next frame [m]
 };
 
 // Returns the rows `fracture` of a crack: its measured quantities beside the published ones, and its energies.
@@ -188,7 +241,7 @@ std::pair<analysis::CrackMeasurement, output::Results> run_crack(const input::Ca
   CrackMotion motion(input, simulation, seed_tip, checkpoints, run);
   motion.go("fracture");
   run.info().add("divided_steps", simulation.n_divided_steps());
-  motion.film().end();
+  motion.end_film();
   output::CrackRecord &record = motion.record();
   const analysis::CrackMeasurement crack = record.measure(seed_tip);
   record.write_measurement(run.directory(), crack, seed_tip, input, skip_verification);

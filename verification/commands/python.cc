@@ -1,17 +1,22 @@
 // Commands above one simulation are Python (python/latcon): this program replaces itself by the interpreter.
+#include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
+#include <fcntl.h>
 #include <mpi.h>
 #include <nlohmann/json.hpp>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
-#include "support/child_process.h"
 #include "support/errors.h"
 #include "support/ranks.h"
 #include "verification/commands/command.h"
@@ -39,15 +44,16 @@ std::string package_folder()
                                                     "bin, a symbolic link to the program does not");
 }
 
-// Returns the environment of the user without variables that would change the interpreter or matplotlib, and with the
-// path of the package.
+// Returns the environment of the user without variables that would change the interpreter or matplotlib, with the path
+// of the package and one thread of BLAS: each process draws or judges on one core.
 std::vector<std::string> environment_of_python(const std::string &package)
 {
-  std::vector<std::string> kept{"PYTHONPATH=" + package};
+  std::vector<std::string> kept{"PYTHONPATH=" + package, "OPENBLAS_NUM_THREADS=1"};
   for (char **variable = environ; *variable != nullptr; ++variable)
   {
     const std::string text = *variable;
-    if (text.rfind("PYTHON", 0) != 0 && text.rfind("MPLBACKEND=", 0) != 0)
+    if (text.rfind("PYTHON", 0) != 0 && text.rfind("MPLBACKEND=", 0) != 0 &&
+        text.rfind("OPENBLAS_NUM_THREADS=", 0) != 0)
       kept.push_back(text);
   }
   return kept;
@@ -61,17 +67,59 @@ std::string python_interpreter()
   return chosen != nullptr && *chosen != '\0' ? chosen : "/usr/bin/python3";
 }
 
-// Waits for a child with a progress line. @return its exit status
-int wait_with_progress(pid_t child, const std::string &what)
+// Pointers to words that live on, followed by a null pointer, as execve() wants them.
+std::vector<char *> pointers(std::vector<std::string> &words)
+{
+  std::vector<char *> list;
+  for (std::string &word : words)
+    list.push_back(word.data());
+  list.push_back(nullptr);
+  return list;
+}
+
+constexpr int not_started = 127; // exit status of a child
+
+// Starts a program without standard input. The child gets SIGTERM if this process dies. It ignores SIGINT: Ctrl-C in a
+// terminal reaches both processes, and this process handles it. Throws OutputError if the process cannot be started.
+pid_t start_child(std::vector<std::string> command, std::vector<std::string> variables)
+{
+  const std::vector<char *> arguments = pointers(command), environment = pointers(variables);
+  const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child == 0)
+  {
+    // Between fork and exec, only async-signal-safe functions may be called.
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != parent)
+      _exit(not_started);
+    signal(SIGINT, SIG_IGN);
+    dup2(nothing, STDIN_FILENO);
+    execve(arguments.front(), arguments.data(), environment.data());
+    _exit(not_started);
+  }
+  const int error = errno;
+  close(nothing);
+  if (child < 0)
+    throw support::OutputError(command.front(), "cannot start a process: " + std::generic_category().message(error));
+  return child;
+}
+
+// Waits for a child, with a progress line if it is wanted. @return its exit status, 128 + the signal that killed it, or
+// not_started
+int wait_for_child(pid_t child, const std::string &what, bool shows_progress)
 {
   using Clock = std::chrono::steady_clock;
-  output::Progress progress(true);
+  output::Progress progress(shows_progress);
   const Clock::time_point start = Clock::now();
   while (true)
   {
-    const int status = support::poll_child(child);
-    if (status != -1)
-      return status;
+    int status = 0;
+    const pid_t ended = waitpid(child, &status, WNOHANG);
+    if (ended > 0)
+      return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    if (ended < 0 && errno != EINTR)
+      return not_started;
     if (progress.due())
       progress.show(what + ", " +
                       std::to_string(std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - start).count()) +
@@ -121,7 +169,7 @@ support::ExitCode continue_in_python(const input::Options &options, const std::s
   words.insert(words.end(), names.begin(), names.end()); // words of their own: paths need not be UTF-8
   words.push_back(chosen.dump(-1, ' ', false, Json::error_handler_t::replace));
   std::vector<std::string> environment = environment_of_python(package);
-  const std::vector<char *> arguments = support::pointers(words), variables = support::pointers(environment);
+  const std::vector<char *> arguments = pointers(words), variables = pointers(environment);
   std::cout << std::flush;
   disregard_signals();
   MPI_Finalize();
@@ -135,10 +183,10 @@ support::ExitCode draw_report(const std::string &directory, const bool shows_pro
 {
   const std::string python = python_interpreter(), package = package_folder(), page = directory + "/report.html";
   const pid_t child =
-    support::start_child({{python, "-sP", package + "/latcon/report/__main__.py", "report", directory, "--quiet"},
-                          environment_of_python(package)});
-  const int status = shows_progress ? wait_with_progress(child, "drawing report.html") : support::wait_for_child(child);
-  if (status == support::not_started)
+    start_child({python, "-sP", package + "/latcon/report/__main__.py", "report", directory, "--quiet"},
+                environment_of_python(package));
+  const int status = wait_for_child(child, "drawing report.html", shows_progress);
+  if (status == not_started)
     throw support::OutputError(page, "cannot start " + python);
   if (status > 128)
     throw support::OutputError(page, "the report script was killed");

@@ -1,8 +1,10 @@
 #include "verification/elements/elements.h"
 
 #include <cstdlib>
+#include <new>
 
 #include <dlfcn.h>
+#include <sys/mman.h>
 
 #include "verification/input/files.h"
 
@@ -26,6 +28,12 @@ const Elements &load()
   void *const module = dlopen(file.c_str(), RTLD_LAZY | RTLD_GLOBAL);
   if (module == nullptr)
     throw support::OutputError(file, std::string("the module with the finite elements cannot be loaded: ") + dlerror());
+  // OpenBLAS asks for a buffer of 128 MiB until it gets one.
+  constexpr std::size_t needed = 160 << 20;
+  void *const buffer = mmap(nullptr, needed, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (buffer == MAP_FAILED)
+    throw std::bad_alloc();
+  munmap(buffer, needed);
   using Entry = const Elements *(*)();
   const auto entry = reinterpret_cast<Entry>(dlsym(module, "latcon_elements"));
   if (entry == nullptr)

@@ -96,7 +96,7 @@ struct LoadingHistory
 /// Entries of a case for the nonlocal continuum, whose bonds have the lengths of the lattice's shells.
 struct NonlocalCase
 {
-  /// Whether the sheet of the case is the continuum. Not an entry: one case describes both sides.
+  /// True if the sheet of the case is the continuum. Not an entry: one case describes both sides.
   bool is_used = false;
 
   lattice::Grid::Kind grid = lattice::Grid::Kind::square;

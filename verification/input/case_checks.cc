@@ -5,7 +5,6 @@
 #include <tuple>
 
 #include "lattice/chebyshev_stages.h"
-#include "lattice/contact.h"
 #include "support/full_precision.h"
 
 namespace latcon::input

@@ -1,7 +1,6 @@
 #include "verification/input/expression_parser.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>

@@ -68,7 +68,7 @@ enum class ValueType
   text          ///< any text on one line
 };
 
-/// What reads an entry besides the runs of its case.
+/// Readers of an entry besides the runs of its case.
 enum class ReadBy
 {
   runs,                ///< nothing

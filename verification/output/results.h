@@ -22,7 +22,7 @@ enum class Verdict
 /// Returns the name of a verdict: "holds", "fails", "reported".
 [[nodiscard]] std::string to_string(Verdict verdict);
 
-/// What a row compares, and so what its failure means.
+/// Subject of a row, and so the meaning of its failure.
 enum class RowKind
 {
   claim,    ///< lattice, continuum and theory: the program, or the material, is not what the claim states

@@ -4,7 +4,6 @@
 #include "support/errors.h"
 
 #include <chrono>
-#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>

@@ -1,7 +1,6 @@
 #include "verification/analysis/fragments.h"
 
 #include <array>
-#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -16,6 +15,19 @@ using namespace latcon;
 using namespace lattice;
 using namespace analysis;
 
+// Removes all bonds between a site in `inner` and another site.
+void cut_around(State &state, const TriangularLattice &sheet, const std::vector<std::size_t> &inner)
+{
+  const auto is_inner = [&](std::size_t place)
+  { return std::find(inner.begin(), inner.end(), sheet.canonical_place(place)) != inner.end(); };
+  for_each_bond(state, sheet,
+                [&](const Bond &bond)
+                {
+                  if (is_inner(bond.near) != is_inner(bond.far))
+                    state.bonds.remove(bond.near, bond.kind);
+                });
+}
+
 class Cut : public testing::Test
 {
 protected:
@@ -23,19 +35,6 @@ protected:
     : sheet(sheets::square(16)), material(sheets::rubber()),
       state(homogeneous_state(sheet, material, sheets::stretched(1.2, 1.4), Edges::held))
   {
-  }
-
-  // Removes all bonds between a site in `inner` and another site.
-  void cut_around(const std::vector<std::size_t> &inner)
-  {
-    const auto is_inner = [&](std::size_t place)
-    { return std::find(inner.begin(), inner.end(), place) != inner.end(); };
-    for_each_bond(state, sheet,
-                  [&](const Bond &bond)
-                  {
-                    if (is_inner(bond.near) != is_inner(bond.far))
-                      state.bonds.remove(bond.near, bond.kind);
-                  });
   }
 
   TriangularLattice sheet;
@@ -50,7 +49,7 @@ TEST_F(Cut, FragmentsAreNumberedByFallingSize)
   const std::vector<std::size_t> lower{sheet.index(6, 8), sheet.index(6, 9), sheet.index(7, 8)};
   const std::vector<std::size_t> upper{sheet.index(11, 4), sheet.index(11, 5), sheet.index(12, 5)};
   for (const auto &piece : {upper, lone, lower})
-    cut_around(piece);
+    cut_around(state, sheet, piece);
   const Fragments fragments = find_fragments(state, sheet);
   EXPECT_EQ(fragments.sizes, (std::vector<std::size_t>{3, 3, 1}));
   std::vector<std::uint32_t> wanted(sheet.n_places(), 0);
@@ -69,7 +68,7 @@ TEST_F(Cut, HalvesOfTheSheetAreNoFragments)
   for (std::size_t row = 0; row < 8; ++row)
     for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
       half.push_back(sheet.index(row, column));
-  cut_around(half);
+  cut_around(state, sheet, half);
   Fracture fracture(sheet, material, 2., Toughening{}, Eigen::Matrix2d::Identity());
   fracture.remove_sites(state, {sheet.index(10, 6)});
   EXPECT_TRUE(find_fragments(state, sheet).sizes.empty());
@@ -78,7 +77,7 @@ TEST_F(Cut, HalvesOfTheSheetAreNoFragments)
 TEST_F(Cut, WithoutHeldSitesTheLargestPieceIsTheSheet)
 {
   state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free);
-  cut_around({sheet.index(0, 0), sheet.index(0, 1)});
+  cut_around(state, sheet, {sheet.index(0, 0), sheet.index(0, 1)});
   const Fragments fragments = find_fragments(state, sheet);
   EXPECT_EQ(fragments.sizes, std::vector<std::size_t>{2});
   EXPECT_EQ(fragments.number[sheet.index(0, 1)], 1u);
@@ -92,17 +91,7 @@ TEST(Fragments, GoOnAcrossAPeriodicEdge)
   const Material material = sheets::nearest_only();
   State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
   const std::size_t row = 5, last = sheet.columns() - 1;
-  const auto is_inner = [&](std::size_t place)
-  {
-    return sheet.canonical_place(place) == sheet.index(row, 0) ||
-           sheet.canonical_place(place) == sheet.index(row, last);
-  };
-  for_each_bond(state, sheet,
-                [&](const Bond &bond)
-                {
-                  if (is_inner(bond.near) != is_inner(bond.far))
-                    state.bonds.remove(bond.near, bond.kind);
-                });
+  cut_around(state, sheet, {sheet.index(row, 0), sheet.index(row, last)});
   EXPECT_EQ(find_fragments(state, sheet).sizes, std::vector<std::size_t>{2});
 }
 
@@ -119,7 +108,7 @@ TEST_F(Cut, OverstretchedBondsAreThoseThatOnlyTougheningKept)
   EXPECT_EQ(n_overstretched_bonds(state, sheet, CriticalStretch(2.)), 12u);
   EXPECT_EQ(n_overstretched_bonds(state, sheet, CriticalStretch(std::array{2., 20., 2.})), 6u); // of the nearest neighbours
   EXPECT_EQ(n_overstretched_bonds(state, sheet, CriticalStretch(20.)), 0u);
-  cut_around({place});
+  cut_around(state, sheet, {place});
   EXPECT_EQ(n_overstretched_bonds(state, sheet, CriticalStretch(2.)), 0u);
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include "tests/lattice/sheets.h"
 #include "tests/verification/claims/subjects.h"
 #include "verification/claims/states.h"
 
@@ -17,6 +18,7 @@ using namespace bridge;
 using namespace claims;
 using namespace input;
 using namespace output;
+using sheets::stretched;
 
 double squared_speed(const lattice::TriangularLattice &sheet, const lattice::Material &material,
                      const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
@@ -24,11 +26,6 @@ double squared_speed(const lattice::TriangularLattice &sheet, const lattice::Mat
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(bloch_matrices(sheet, material, F, K).stiffness)
            .eigenvalues()[0] /
          K.squaredNorm();
-}
-
-Eigen::Matrix2d stretched(double x, double y)
-{
-  return Eigen::Vector2d(x, y).asDiagonal();
 }
 
 // None of a thousand other waves is slower, nor one close by. theory-comparison.md, eq. (W.1).

@@ -257,8 +257,8 @@ TEST_P(FaultMatrix, FailsTheRowsThatSeeIt)
   }
 }
 
-// What a crack may use besides: contact and absorbing ends, either integrator, and damped waves (theory-comparison.md,
-// eq. (H.9); in finite elements theory-continuum.md, eq. (C.62)).
+// What a crack may use besides: contact and absorbing ends, either integrator, and damped waves
+// (theory-continuum.md, eqs. (C.41) and (C.62)).
 TEST(Surroundings, AreThoseOfTheirClosedForms)
 {
   for (const auto integrator :

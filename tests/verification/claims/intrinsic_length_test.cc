@@ -65,7 +65,7 @@ TEST(EdgeLayer, HasTheKnownDeviationAndDecay)
   EXPECT_EQ(edge_decay(input.spacing, nearest, 1.05, relaxed_edge(input.spacing, nearest, 1.05, 8).stretch_across), 0.);
 }
 
-// theory-comparison.md, eq. (H.6).
+// theory-continuum.md, eq. (C.26).
 TEST(GradientPositivity, IsLostBelowTheCriticalLengthAndNotAboveIt)
 {
   const Case input = subjects::paper_case();

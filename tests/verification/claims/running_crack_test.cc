@@ -9,7 +9,6 @@
 #include "continuum/flank.h"
 #include "support/fits.h"
 #include "tests/verification/claims/faults.h"
-#include "verification/bridge/homogeneous_response.h"
 #include "verification/claims/bonds.h"
 
 namespace running_crack_test

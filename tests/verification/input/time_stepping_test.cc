@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "lattice/chebyshev_stages.h"
-#include "lattice/contact.h"
 #include "tests/verification/input/small_case.h"
 
 namespace time_stepping_test

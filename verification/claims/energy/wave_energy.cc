@@ -47,12 +47,6 @@ double closed_stiffness(const WaveContinuum &medium, const Eigen::Matrix2d &F, c
   return 0.25 * mass * p.dot(continuum_matrices(medium, F, K).stiffness * p);
 }
 
-double bloch_stiffness(const lattice::TriangularLattice &sheet, const lattice::Material &material,
-                       const Eigen::Matrix2d &F, const Eigen::Vector2d &K, const Eigen::Vector2d &p)
-{
-  return 0.25 * material.density * p.dot(bridge::bloch_matrices(sheet, material, F, K).stiffness * p);
-}
-
 void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const WaveEnergyOptions &options,
                 ClaimOutcome &outcome)
 {
@@ -78,7 +72,8 @@ void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
         const Eigen::Vector2d &p = waves[w].polarisation;
         const double local = closed_stiffness(media.local, F, cell.K, p),
                      gradient = closed_stiffness(media.gradient, F, cell.K, p),
-                     bloch = bloch_stiffness(cell.sheet, material, F, cell.K, p),
+                     bloch = 0.25 * material.density *
+                             p.dot(bridge::bloch_matrices(cell.sheet, material, F, cell.K).stiffness * p),
                      measured = lattice_stiffness(cell, material, F, p),
                      elements =
                        sinusoidal_energy(media.gradient, F, cell.K, p, wave_strain / cell.K.norm(), options.mesh);

@@ -84,15 +84,6 @@ double effective_tip(const TipField &first, const TipField &second, const Region
   return support::golden_section(distance, -1.5, 1.5, 1e-3);
 }
 
-// Cells of about `size` spacings, in strides: a power of two, as the path of the tip is divided.
-CrackMesh mesh_of(const CrackDrive &drive, double size, unsigned int degree)
-{
-  CrackMesh mesh{1., degree};
-  while (2. * mesh.finest * drive.stride() < 1.2 * size * drive.spacing)
-    mesh.finest *= 2.;
-  return mesh;
-}
-
 // Rows and tables of one lattice.
 class CrackComparison
 {
@@ -112,8 +103,12 @@ public:
     const std::string &name = side.name;
     const auto drive = [&](double size, const std::optional<CrackFrame> &frame)
     {
+      // Cells of about `size` spacings, in strides: a power of two, as the path of the tip is divided.
+      CrackMesh mesh{1., options_.degree};
+      while (2. * mesh.finest * sides_.drive.stride() < 1.2 * size * sides_.drive.spacing)
+        mesh.finest *= 2.;
       return drive_continuum_crack(sides_.drive, sides_.half, side.medium, side.cut, subject_.cauchy_born,
-                                   subject_.deformation, mesh_of(sides_.drive, size, options_.degree), reach_, frame);
+                                   subject_.deformation, mesh, reach_, frame);
     };
     const TipRun coarse = drive(2. * options_.finest, {}), fine = drive(options_.finest, frame(name));
     add_side(name, fine);

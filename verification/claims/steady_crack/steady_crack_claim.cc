@@ -77,13 +77,6 @@ std::array<double, 3> tolerances(const CrackRunOptions &options, const TheoryCom
   return sum;
 }
 
-// d ln v / d ln (Delta / Delta_G) of the exact solution.
-double sensitivity(const CrackStrip &strip, double speed)
-{
-  constexpr double step = 1e-3;
-  return 2. * step / std::log(steady_driving(strip, speed * (1. + step)) / steady_driving(strip, speed * (1. - step)));
-}
-
 std::string place(double viscosity, double driving)
 {
   return support::text_of(", beta ", viscosity, ", Delta/Delta_G ", driving);
@@ -98,8 +91,12 @@ void add_run(ClaimOutcome &outcome, const CrackRunOptions &options, const Theory
   const double speed_error = support::relative_error(run.speed, comparison.speed);
   const auto limited = [](double estimate)
   { return output::limited(estimate, smallest_tolerance, largest_tolerance, reason); };
-  const output::Tolerance speed_tolerance =
-    limited(tolerance[0] * std::abs(sensitivity(options.strip, comparison.speed)));
+  constexpr double step = 1e-3;
+  const double sensitivity = // d ln v / d ln (Delta / Delta_G) of the exact solution
+    2. * step /
+    std::log(steady_driving(options.strip, comparison.speed * (1. + step)) /
+             steady_driving(options.strip, comparison.speed * (1. - step)));
+  const output::Tolerance speed_tolerance = limited(tolerance[0] * std::abs(sensitivity));
   const double released = options.driving * options.driving;
   const double c_S = shear_speed();
 
@@ -172,13 +169,6 @@ void add_curves(ClaimOutcome &outcome, const std::vector<SteadyCrackSeries> &ser
     }
 }
 
-std::vector<SteadyCrackSeries> steady_crack_series(bool quick)
-{
-  if (quick)
-    return {{0.5, {1.75, 1.92}, 2.2, 0.05}, {1.5, {2.5}, 0., 0.05}};
-  return {{0.5, {1.57, 1.65, 1.75, 1.85, 1.92}, 2.2}, {3., {1.88, 1.95, 2.1, 2.3, 2.6, 3.}, 0.}};
-}
-
 } // namespace
 
 ClaimOutcome steady_cracks(const SteadyCrackSeries &series)
@@ -215,7 +205,10 @@ ClaimOutcome steady_crack_claim(bool quick)
 {
   ClaimOutcome outcome;
   crack_rows(outcome).attempt("cracks at rest and creeping", [&] { add_quasi_static(outcome); });
-  const std::vector<SteadyCrackSeries> every = steady_crack_series(quick);
+  std::vector<SteadyCrackSeries> every{{0.5, {1.57, 1.65, 1.75, 1.85, 1.92}, 2.2},
+                                       {3., {1.88, 1.95, 2.1, 2.3, 2.6, 3.}, 0.}};
+  if (quick)
+    every = {{0.5, {1.75, 1.92}, 2.2, 0.05}, {1.5, {2.5}, 0., 0.05}};
   // A strip is too small for threads of its own, but the series do not need each other.
   const auto when = omp_get_max_threads() > 1 ? std::launch::async : std::launch::deferred;
   std::vector<std::future<ClaimOutcome>> outcomes;

@@ -15,7 +15,7 @@ struct ViscoelasticWavesOptions
   std::vector<Eigen::Matrix2d> states; ///< F about which waves are evaluated
   /// w tau of the swept branch, w being the frequency without it [rad/s]; increasing; three or more show the peak.
   std::vector<double> frequencies{0.1, 0.3, 0.6, 1., 1.7, 3., 10.};
-  /// The same for the finite elements; three or more show the peak; none: no finite elements.
+  /// Frequencies of the finite elements, as above; three or more show the peak; none: no finite elements.
   std::vector<double> element_frequencies{1.};
   std::size_t element_states = 1; ///< number of states, from the first, with finite elements
   PlantedBranches planted = [](const lattice::Material &material) { return material; }; ///< for tests
