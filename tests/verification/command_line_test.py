@@ -213,6 +213,27 @@ def test_motion_conserves_energy_unless_its_steps_are_too_long(out, integrator, 
     assert row["reason"] != ""
 
 
+def ledger_of(out, command, *entries):
+    latcon(command, CASES / "quick.prm", "--output-dir", out, "--quiet", *settings(*(f"{side}/solution=motion" for side in ("Lattice", "Continuum")), *entries))
+    row, = (row for row in read_csv(out / "results.csv") if row["quantity"] == "energy imbalance over energy exchanged")
+    return float(row["error"]), float(row["tolerance"])
+
+
+def test_noise_without_dashpots_has_the_ledger_of_its_shortest_waves(out):
+    """The bound (L.44), which steps of half the length do not change: the imbalance is of second order."""
+    undamped = *(f"{shell} neighbours/viscosity=0" for shell in ("Nearest", "Next-nearest")), "Time/end=0.5 ms"
+    error, tolerance = ledger_of(out, "lattice", *undamped)
+    assert 0.7 * tolerance < error
+    assert ledger_of(out, "lattice", *undamped, "Time/step=5.8e-7") == (pytest.approx(error / 4, rel=0.3), tolerance)
+
+
+def test_sheet_at_rest_balances_and_can_be_pulled(out):
+    rest = "Loading/strain x=0", "Loading/strain y=0", "Lattice/noise amplitude=0", "Time/end=0.2 ms"
+    assert ledger_of(out, "continuum", *rest)[0] == ledger_of(out, "lattice", *rest)[0] == 0
+    pulled = "Loading/history times=0.1 ms, 0.2 ms", "Loading/history strain y=0, 0.5"
+    assert 0 < ledger_of(out, "lattice", *rest, *pulled)[0] < 1e-4
+
+
 def test_slit_runs_between_ends_that_absorb(out):
     latcon("fracture", CASES / "quick.prm", "--output-dir", out, *BARE, "--skip-verification", "--set",
            "Fracture/left end=free", "--set", "Fracture/right end=absorbing", "--set",

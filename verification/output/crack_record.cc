@@ -95,7 +95,8 @@ Json crack_json(const analysis::CrackMeasurement &measurement)
 CrackRecord::CrackRecord(lattice::Simulation &simulation, std::string step_entry)
   : simulation_(simulation), step_entry_(std::move(step_entry)),
     tip_(simulation.lattice().lattice_spacing(), simulation.lattice().length()),
-    energies_(mechanism_names(simulation.material()))
+    energies_(mechanism_names(simulation.material())),
+    at_rest_(energy_at_rest(simulation.material(), simulation.lattice().length() * simulation.lattice().height()))
 {
 }
 
@@ -132,7 +133,7 @@ lattice::EnergyBalance CrackRecord::checked_energies()
 {
   const lattice::EnergyBalance balance = simulation_.energies();
   const double available = balance.initial + std::abs(balance.boundary_work);
-  if (balance.elastic + balance.kinetic <= 2. * available)
+  if (balance.elastic + balance.kinetic <= 2. * available + at_rest_)
   {
     simulation_.save(last_valid_state_);
     return balance;
@@ -171,9 +172,8 @@ void CrackRecord::check_loaded() const
 double CrackRecord::imbalance() const
 {
   return energies_.imbalance(
-    [](double time, const lattice::EnergyBalance &e) {
-      return LedgerState{time, e.elastic, e.kinetic, e.viscous, e.broken, e.boundary_work, e.imbalance()};
-    });
+    at_rest_, [](double time, const lattice::EnergyBalance &e)
+    { return LedgerState{time, e.elastic, e.kinetic, e.viscous, e.broken, e.boundary_work, e.imbalance()}; });
 }
 
 analysis::CrackMeasurement CrackRecord::measure(double seed_tip_X) const

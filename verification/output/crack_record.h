@@ -76,6 +76,7 @@ private:
   TipHistory tip_;
   std::vector<lattice::BrokenBond> broken_;
   EnergyHistory<lattice::EnergyBalance> energies_;
+  double at_rest_; // energy_at_rest() [J/m]
   lattice::Snapshot last_valid_state_;
 };
 

@@ -43,11 +43,11 @@ double LedgerCheck::exchanged() const
   return broken > 0. ? spent : spent + largest_work_ + largest_conversion_;
 }
 
-double LedgerCheck::imbalance() const
+double LedgerCheck::imbalance(double at_rest) const
 {
   if (n_states_ == 0)
     return std::numeric_limits<double>::quiet_NaN();
-  if (largest_imbalance_ <= round_off * largest_energy_)
+  if (largest_imbalance_ <= round_off * largest_energy_ + at_rest)
     return 0.;
   return largest_imbalance_ / exchanged();
 }

@@ -44,9 +44,9 @@ public:
   /// supplied and converted.
   double exchanged() const;
 
-  /// Returns the largest |imbalance| over exchanged() [-]; 0 where it is round-off of the energies of the sheet, NaN
-  /// without a state or with one that is not finite.
-  double imbalance() const;
+  /// Returns the largest |imbalance| over exchanged() [-]; 0 where it is round-off of the energies of the sheet or of
+  /// one at rest, NaN without a state or with one that is not finite. @param at_rest energy_at_rest() of the sheet
+  double imbalance(double at_rest) const;
 
   /// Returns the angular frequency of an oscillation with the largest power between two states, or the largest change
   /// of power, that exchanges the same energy [1/s]; 0 where nothing was exchanged.
@@ -74,6 +74,12 @@ private:
   double largest_imbalance_ = 0., largest_energy_ = 0., largest_work_ = 0., largest_conversion_ = 0.; // [J/m]
   double power_ = 0., largest_power_ = 0., largest_surge_ = 0.; // last and largest [W/m], its change [W/(m s)]
 };
+
+/// Returns the energy that round-off can leave in a sheet at rest, of strains of 1e-10 [J/m]. @param area [m^2]
+inline double energy_at_rest(const lattice::Material &material, double area)
+{
+  return 1e-20 * lattice::stiffness(material.nearest.law, 1.) * area;
+}
 
 // Largest LedgerCheck::imbalance() with which a motion holds: multiples of the imbalances that shipped cases have at
 // the automatic step (docs/verification.md, "Energy ledger"). A longer step does not raise them. `n_steps` is the

@@ -223,7 +223,7 @@ void FieldWriter::add_frame(const lattice::State &state)
   data.SetActiveVectors("displacement");
   add_field<vtkDoubleArray>(*frame->GetFieldData(), "TimeValue", "s", 1, [&](std::size_t) { return state.time; });
 
-  if (!times_.empty() && times_.back() == state.time)
+  while (!times_.empty() && times_.back() >= state.time) // of a state that was restored after a failure
     times_.pop_back();
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetInputData(frame);

@@ -39,7 +39,7 @@ public:
   FieldWriter(const lattice::TriangularLattice &lattice, const lattice::Material &material,
               std::filesystem::path directory, std::string name = "lattice", FrameFields fields = FrameFields::all);
 
-  /// Adds the state as the next frame; replaces the last frame if it has the same time. @throws support::OutputError if
+  /// Adds the state as the next frame; in place of frames that are not earlier. @throws support::OutputError if
   /// a file cannot be written
   void add_frame(const lattice::State &state);
 

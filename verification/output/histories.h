@@ -110,14 +110,14 @@ public:
   double last_time() const { return rows_.empty() ? -std::numeric_limits<double>::infinity() : rows_.back().time; }
   bool empty() const { return rows_.empty(); }
 
-  /// Returns the imbalance of the ledger. @param state_of LedgerState of a time and its energies
+  /// Returns LedgerCheck::imbalance(). @param state_of LedgerState of a time and its energies
   template <class StateOf>
-  double imbalance(const StateOf &state_of) const
+  double imbalance(double at_rest, const StateOf &state_of) const
   {
     LedgerCheck check;
     for (const auto &[time, energies] : rows_)
       check.add(state_of(time, energies));
-    return check.imbalance();
+    return check.imbalance(at_rest);
   }
 
   /// Returns energy.csv. @param names of the columns between time and mechanisms @param values_of numbers in them
