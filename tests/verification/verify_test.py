@@ -106,6 +106,18 @@ def test_only_a_case_or_an_option_chooses_the_laws_that_are_judged(out):
 
 
 @quick_only
+@quick_only
+@pytest.mark.parametrize("claim, entries, fails", [
+    ("intrinsic-length", ["Next-nearest neighbours/area factor=0.07"], None),  # layers of an edge that decay fast
+    ("energy", ["Contact/viscosity=10"], None),  # overdamped contact
+    ("nonlocal", ["Sheet/orientation=rows-across-crack", "Next-nearest neighbours/present=false", "Nonlocal/refinement=1.5", "Loading/strain x=-0.17",
+                  "Loading/strain y=1.3", "Nearest neighbours/a=3e4", "Nearest neighbours/b=8e5", "Fracture/breaking stretch=auto"],
+     "NN: square grid, m = 1.5: not computed: a wave does not oscillate")])
+def test_valid_cases_hold_and_a_stencil_that_buckles_does_not(out, claim, entries, fails):
+    latcon("verify", claim, "--quick", "--quiet", "--case", CASES / "quick.prm", "--output-dir", out, *settings(*entries), expect=3 if fails else 0)
+    assert fails is None or any(row["quantity"].startswith(fails) for row in read_csv(out / "results.csv") if row["verdict"] == "fails")
+
+
 def test_a_claim_that_is_named_judges_something_or_fails(out):
     run = latcon("verify", "running-crack", "--quick", "--set", "Loading/strain y=0", "--output-dir", out, expect=3)
     assert "running-crack: rows that are judged: not computed: this case has none" in run.stdout

@@ -70,7 +70,8 @@ PLOTS = (
          "relative difference from the lattice, triangles longitudinal, circles shear; the order is the slope over "
          "the half of the points with the smallest k d."),
     Plot("travelling_waves", draw_travelling_waves,
-         "A travelling wave stores the same energy on both sides, half of it elastic and half kinetic.",
+         "A travelling wave stores half of its energy as elastic and half as kinetic energy on both sides; with "
+         "micro-inertia the finite elements have 1 + l_d² k² times the lattice's.",
          "Mean energies per undeformed volume in a travelling wave, over that of the theory (dashed), against k d; "
          "the kinetic energy of the finite elements includes that of micro-inertia. Triangles longitudinal, "
          "circles shear waves of the lattice; solid with crosses: finite elements. Right: finite elements against "

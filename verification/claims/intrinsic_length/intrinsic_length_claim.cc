@@ -17,14 +17,6 @@ const output::Tolerance equal_closed_forms{1e-10, "two closed forms of the same 
 const output::Tolerance sign{0., "a sign"};
 const output::Tolerance positive{1e-12, "round-off of an eigenvalue that may be zero"};
 
-// Of alpha fitted to runs of four waves.
-output::Tolerance run_tolerance(const bridge::Subject &subject)
-{
-  return {subject.material.third_nearest ? 1.6e-5 : 1e-5,
-          "fourth term of the series of w(k), left out of the fit to four waves: 2.4e-6, with third-nearest neighbours "
-          "7.6e-6; errors of the waves, 2e-7, times twenty; half of both for a margin"};
-}
-
 // alpha at F = I: its dependence on direction, from Bloch, from runs, in the continua.
 void dispersion(const bridge::Subject &subject, double angle_step, const Rows &rows, ClaimOutcome &outcome)
 {
@@ -71,6 +63,10 @@ void dispersion(const bridge::Subject &subject, double angle_step, const Rows &r
   }
 
   // Directions in which waves are run.
+  const output::Tolerance run_tolerance{
+    subject.material.third_nearest ? 1.6e-5 : 1e-5,
+    "fourth term of the series of w(k), left out of the fit to four waves: 2.4e-6, with third-nearest neighbours "
+    "7.6e-6; errors of the waves, 2e-7, times twenty; half of both for a margin"};
   output::Table &runs = outcome.table("dispersion_runs", {"shells", "angle [deg]", "alpha_L", "alpha_S"});
   for (const WaveDirection &direction : wave_directions(subject.orientation))
   {
@@ -84,7 +80,7 @@ void dispersion(const bridge::Subject &subject, double angle_step, const Rows &r
     const Alpha closed = lattice_alpha(sheet, material, I, N), continuum = continuum_alpha(media.gradient, I, N, d);
     for (std::size_t w = 0; w < 2; ++w)
       rows.add("alpha of " + wave_names[w] + " waves" + at + ", lattice run against closed form", "1",
-               of_both(run[w], continuum[w], closed[w]), std::abs(run[w] - closed[w]), run_tolerance(subject));
+               of_both(run[w], continuum[w], closed[w]), std::abs(run[w] - closed[w]), run_tolerance);
   }
 
   rows.add("alpha in all directions, Bloch against closed form", "1", {}, bloch_error, bloch_tolerance);
@@ -198,16 +194,24 @@ void edge_layer(const bridge::Subject &subject, const Rows &rows, ClaimOutcome &
     return;
   }
   rows.add("edge layer: deviation of the first row spacing, stretch 1.05", "1", of_lattice(layer.deviations[0]));
-  // Rows four to seven: the second power of the deviation is gone, round-off not yet met.
-  constexpr std::size_t first = 3, last = 6;
-  const double decay = -std::pow(std::abs(layer.deviations[last] / layer.deviations[first]), 1. / (last - first));
+  // Rows four to seven, where the second power of the deviation is gone, or earlier ones of a layer that decays faster:
+  // those before round-off, which is 1e-12.
+  std::size_t last = 6;
+  while (last > 0 && std::abs(layer.deviations[last]) < 5e-9)
+    --last;
+  if (last == 0)
+    return;
+  const std::size_t first = last > 3 ? 3 : last - 1;
+  const double decay =
+    -std::pow(std::abs(layer.deviations[last] / layer.deviations[first]), 1. / static_cast<double>(last - first));
   const bool alternates = layer.deviations[first] * layer.deviations[first + 1] < 0.;
   const double factor = alternates ? decay : -decay;
   rows.add(
     "edge layer: decay from row to row, against its characteristic equation", "1", of_lattice(factor, root),
     support::relative_error(factor, root),
-    output::limited(10. * std::abs(layer.deviations[first]), 1e-5, 1e-3,
-                    "terms of second order: deviation of the fourth row times third over second moduli, up to 10"));
+    output::limited(10. * std::abs(layer.deviations[first]) + 1e-12 / std::abs(layer.deviations[last]), 1e-5, 1e-3,
+                    "terms of second order: deviation of the fourth row, or an earlier one, times third over second "
+                    "moduli, up to 10; round-off of the last row"));
   // Layer of a continuum with that gradient energy: exp(-Y / l), of one sign.
   const WaveContinuum gradient{{subject.cauchy_born, *subject.lattice_gradient}, {subject.material.density, 0.}};
   const Eigen::Matrix2d F = Eigen::Vector2d(stretch, layer.stretch_across).asDiagonal();

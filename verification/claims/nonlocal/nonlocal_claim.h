@@ -19,9 +19,10 @@ struct NonlocalStencil
   std::string name; ///< in rows: "square grid, m = 2"
   lattice::Grid grid;
   double half_width = M_PI / 6.; ///< of the arcs of its rings [rad]
+  bool is_of_case = true;        ///< whether it must be accurate in the loaded sheet: others are if their bounds say so
 };
 
-/// What the claim is checked for.
+/// Options of the claim.
 struct NonlocalOptions
 {
   /// Each has the rows of homogeneous deformations and waves, grids also of length and cut.

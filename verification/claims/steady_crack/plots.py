@@ -17,8 +17,8 @@ def draw_steady_crack(tables):
     for (beta,), part in groups(points, "beta"):
         # With the elongation at which bonds broke, up to a time step late.
         driving = part["driving"] / part["breaking elongation"]
-        axes.plot(driving, part["exact speed"], "o", markersize=9, markerfacecolor="none", color=colours[beta])
-        axes.plot(driving, part["lattice speed"], "x", markersize=6, color=colours[beta])
+        axes.plot(driving, part["exact speed"], "o", markersize=9, markerfacecolor="none", color=colours[beta], clip_on=False)
+        axes.plot(driving, part["lattice speed"], "x", markersize=6, color=colours[beta], clip_on=False)
         metrics.append(f"β = {beta:g}: speed off the exact solution by "
                        f"{largest_text(part['lattice speed'] / part['exact speed'] - 1)}")
         if curve is not None and np.any(curve["beta"] == beta):
