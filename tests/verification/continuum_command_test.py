@@ -1,5 +1,6 @@
 """Tests of finite element cases from the command line: closed forms, files, refusals."""
 import math
+import re
 
 import numpy as np
 import pytest
@@ -87,7 +88,7 @@ def test_is_the_mean_of_the_bonds_and_close_to_the_lattice(tmp_path):
     names = ["elastic energy per thickness", "force on the right edge per thickness, x", "force on the top edge per thickness, y"]
     expected = weight * np.array([energy * extent.prod(), P[0, 0] * extent[1], P[1, 1] * extent[0]])
     np.testing.assert_allclose([network[name] for name in names], expected, rtol=2e-6)
-    # The sixfold anisotropy that the law neglects (theory-comparison.md, after eq. (H.13)).
+    # The sixfold anisotropy that the law neglects (theory-comparison.md, eq. (H.14)).
     np.testing.assert_allclose(network[names[0]], lattice[names[0]], rtol=1e-6)
     np.testing.assert_allclose([network[name] for name in names[1:]], [lattice[name] for name in names[1:]], rtol=1e-4)
 
@@ -166,6 +167,22 @@ def test_cells_are_small_at_the_rim(once):
     assert area[at_rim].min() < 4.1 * area.min()
     assert area.max() > 16. * area[at_rim].min()
     assert distance[area > 0.5 * area.max()].min() > 5e-3
+
+
+def test_small_fraction_refines_one_cell(once):
+    out = once.parent / "one"
+    latcon("continuum", HOLE, "--output-dir", out, *settings("Continuum/adaptive cycles=1", "Continuum/refined fraction=0.02"), expect=3)
+    assert np.diff(numbers(out / "meshes.csv")["cells"]) >= 3
+
+
+def test_inversion_at_an_edge_leaves_its_iterations(once):
+    out = once.parent / "inverted"
+    run = latcon("continuum", CASES / "quick.prm", "--output-dir", out, *settings(
+        "Loading/strain x=-0.7", "Loading/strain y=0.5", "Loading/shear=3", "Left edge/condition=free", "Right edge/condition=free",
+        "Fracture/breaking stretch=auto", "Sheet/length=2 cm", "Sheet/height=1.5 cm", "Continuum/cells x=6", "Continuum/cells y=5",
+        "Continuum/degree=2"), expect=4)
+    assert re.search("the equilibrium at load factor 0.[45][0-9]* is inverted at an edge: det F", run.stderr)
+    assert len(numbers(out / "newton.csv")["residual"]) > 5
 
 
 def test_reaction_that_does_not_settle_is_3(once):

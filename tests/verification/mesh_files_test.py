@@ -1,5 +1,7 @@
 """Tests of meshes from Gmsh from the command line."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -47,6 +49,18 @@ def test_curves_of_other_numbers_are_refused(out, tmp_path):
         run = latcon("continuum", HOLE, "--output-dir", out, *write_mesh(tmp_path, shift=shift), expect=2)
         assert "four.msh" in run.stderr
         assert not out.exists()
+
+
+def test_loads_of_edges_that_the_mesh_does_not_have_are_refused(out, tmp_path):
+    case = write_mesh(tmp_path)
+    run = latcon("continuum", HOLE, "--output-dir", out, *case, "--set", "Inner edge/traction x=1e3", expect=2)
+    assert "four.msh has no Inner edge, which the case loads" in run.stderr
+    mesh = settings("Continuum/gradient=lattice", "Left edge/normal gradient=loading")
+    latcon("continuum", HOLE, "--output-dir", out, *case, *mesh)
+    text = (tmp_path / "four.msh").read_text()
+    (tmp_path / "four.msh").write_text(re.sub(r"^1 0\.0 ", "1 0.001 ", text, flags=re.M))  # a corner of the left edge
+    run = latcon("continuum", HOLE, "--output-dir", out, *case, *mesh, expect=2)
+    assert "the Left edge of the mesh file" in run.stderr and "is not parallel to y" in run.stderr
 
 
 def test_extent_is_shown_and_must_be_that_of_a_sheet_in_metres(out, tmp_path):

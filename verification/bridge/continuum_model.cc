@@ -94,9 +94,14 @@ void ContinuumModel::make_conditions(const input::Case &input)
   {
     const input::EdgeCase &edge = c.edges[id];
     // A mesh from a file may lack edges; the inner edge exists only with a hole or a notch.
+    const bool is_held = edge.condition == input::EdgeCase::Condition::held;
     if (std::find(ids.begin(), ids.end(), id) == ids.end())
+    {
+      if (!edge.traction.is_zero() || !edge.double_traction.is_zero() || (id == 4 && is_held))
+        throw support::InputError("the mesh file " + c.mesh_file + " has no " + edge.name + ", which the case loads");
       continue;
-    if (edge.condition == input::EdgeCase::Condition::held)
+    }
+    if (is_held)
       conditions_.displacements.push_back(
         {id, std::make_shared<FieldFunction>(edge.displacement, extent_, F),
          dealii::ComponentMask(std::vector<bool>{edge.displacement.x != "free", edge.displacement.y != "free"})});
@@ -112,6 +117,13 @@ void ContinuumModel::make_conditions(const input::Case &input)
     {
       // (F - I) N with the outward normal of an outer edge; the rim of a hole has no unique normal.
       const Eigen::Vector2d normals[4] = {{-1., 0.}, {1., 0.}, {0., -1.}, {0., 1.}};
+      for (const auto &cell : mesh_.cell_iterators_on_level(0)) // of the coarse mesh, which all ranks hold
+        for (const unsigned int face : cell->face_indices())
+          if (const auto along = cell->face(face)->vertex(1) - cell->face(face)->vertex(0);
+              cell->face(face)->boundary_id() == id &&
+              std::abs(along[0] * normals[id].x() + along[1] * normals[id].y()) > 1e-6 * along.norm())
+            throw support::InputError("the " + edge.name + " of the mesh file " + c.mesh_file + " is not parallel to " +
+                                      "yx"[id / 2] + "; its normal gradient cannot be that of the loading");
       const Eigen::Vector2d slope = (F - Eigen::Matrix2d::Identity()) * normals[id];
       conditions_.normal_gradients.push_back(
         {id, std::make_shared<dealii::Functions::ConstantFunction<2>>(std::vector<double>{slope.x(), slope.y()})});

@@ -75,7 +75,7 @@ void require_fracture_case(const input::Case &input, input::Parameters &p)
   for (std::size_t id = 0; id < 4; ++id)
     if (input.continuum.edges[id].condition != Condition::held)
       p.error(input.continuum.edges[id].name + "/condition",
-              command + " needs every edge of the sheet held; give held");
+              command + " needs every edge of the sheet held; give held (free ends: Fracture/left end, right end)");
   for (std::size_t id = 0; id < 5; ++id)
     check_edge(input.continuum.edges[id], p, command, id == 2 || id == 3);
   check_unused(input.continuum, p, command, true);

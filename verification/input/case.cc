@@ -6,7 +6,6 @@
 
 #include "lattice/contact.h"
 #include "lattice/cutout.h"
-#include "lattice/end_loads.h"
 #include "support/dense.h"
 #include "verification/input/files.h"
 
@@ -76,7 +75,8 @@ void Case::declare(Parameters &p)
         "delta: behind-tip toughens bonds whose undeformed midpoint is more than this behind the tip");
   p.add("Fracture", "fraction", toughening_fraction, Range{0.01, 0.999}, "1",
         "retraction toughens bonds whose stretch falls below this fraction of that in the loaded sheet");
-  p.add("Fracture", "factor", toughening_factor, Range{1., 1e6}, "1", "toughened bonds break at this multiple of lam_f")
+  p.add("Fracture", "factor", toughening_factor, Range{1., 1e6}, "1",
+        "toughened bonds break at this multiple of lam_f (bond-energy: of the critical energy)")
     .read_by = ReadBy::claims_on_user_laws;
   p.add("Fracture", "seed shape", seed_shape, {{"sites", SeedShape::sites}, {"slit", SeedShape::slit}},
         "shape of the seed crack: a line of removed sites along x, or a rectangle of removed sites");
@@ -107,7 +107,8 @@ void Case::declare(Parameters &p)
   p.add("Contact", "viscosity", contact_viscosity, magnitude_or_zero, "1",
         "viscosity of a contact over that of a nearest-neighbour bond");
 
-  p.add("Time", "end", end_time, magnitude_or_zero, "s", "latest end time of the motion");
+  p.add("Time", "end", end_time, magnitude_or_zero, "s",
+        "end of the motion; a given step passes it by less than a step");
   p.add("Time", "step", time_step, magnitude, "s",
         "time step of the lattice; auto: the safety factor times the stability limit");
   p.add(

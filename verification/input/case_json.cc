@@ -99,7 +99,7 @@ public:
     const std::size_t comma = text.find(',');
     if (text.compare(0, prefix.size(), prefix) == 0 && comma != std::string::npos)
       place += ":" + text.substr(prefix.size(), comma - prefix.size());
-    result_.push_back(SyntaxProblem{place, "not JSON: " + printable(text), true});
+    result_.push_back(SyntaxProblem{place, "not JSON: " + printable(text, 400), true});
     return false;
   }
 

@@ -189,10 +189,10 @@ void ContinuumCase::declare(Parameters &p)
   p.add("Continuum", "first load step", first_load_step, Range{0.001, 1.}, "1", "first increment of the load factor");
   p.add("Continuum", "relative tolerance", relative_tolerance, Range{1e-14, 1e-4}, "1",
         "relative residual at which Newton's method stops, not below its round-off");
-  p.add(
-    "Continuum", "direct limit", direct_limit, Range{0., 1e7},
-    "largest number of unknowns for the direct solver; above it multigrid with conjugate gradients or, with viscosity "
-    "or Maxwell branches, GMRES");
+  p.add("Continuum", "direct limit", direct_limit, Range{0., 1e7},
+        "largest number of unknowns for the direct solver; above it, and in periodic sheets, multigrid with conjugate "
+        "gradients or, "
+        "with viscosity or Maxwell branches, GMRES");
   p.add("Continuum", "solution", solution, {{"equilibrium", Solution::equilibrium}, {"motion", Solution::motion}},
         "what `latcon continuum` computes: static equilibrium, or the motion until the end time");
   p.add(
@@ -249,6 +249,12 @@ void ContinuumCase::check(Parameters &p, const Case &input) const
     p.error("Continuum/adaptive cycles", "the mesh of a motion is not refined; give 0", {"Continuum/solution"});
   if (solution == Solution::motion && time_step && input.end_time > 0. && *time_step > input.end_time)
     p.error("Continuum/time step", "a step is longer than the motion; give at most Time/end", {"Time/end"});
+  if (const EdgeCase &inner = edges[4];
+      !has_inner_edge && mesh_file.empty() &&
+      (inner.condition != EdgeCase::Condition::free || inner.normal_gradient != EdgeCase::NormalGradient::free ||
+       !inner.traction.is_zero() || !inner.double_traction.is_zero()))
+    p.error(inner.name + "/condition", "the sheet has neither hole nor notch; omit the entries of the inner edge",
+            {"Sheet/hole radius", "Sheet/notch length"});
   if (edges[4].normal_gradient == EdgeCase::NormalGradient::loading)
     p.error("Inner edge/normal gradient", "an inner edge has no single normal; give free or clamped");
   const Points inside = points_in(input);
@@ -261,7 +267,7 @@ void ContinuumCase::require_equilibrium(Parameters &p, const Case &input, const 
 {
   std::string loose;
   for (const std::size_t axis : {0, 1})
-    if (std::none_of(edges.begin(), edges.end() - (input.has_inner_edge() || !mesh_file.empty() ? 0 : 1),
+    if (std::none_of(edges.begin(), edges.end(),
                      [axis](const EdgeCase &edge)
                      {
                        const FieldCase &given = edge.displacement;

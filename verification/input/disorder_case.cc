@@ -27,8 +27,8 @@ void DisorderCase::declare(Parameters &parameters)
   const Range width({1e-4, true}, {1., true});
   parameters.add(
     "Disorder", "strength", strength.kind, kinds,
-    "distribution of the factor, with mean 1, that multiplies lam_f of each bond, toughened or not; normal "
-    "is cut off at three standard deviations");
+    "distribution of the factor, with mean 1, that multiplies lam_f (bond-energy: the critical energy) of each bond, "
+    "toughened or not; normal is cut off at three standard deviations");
   parameters.add("Disorder", "strength width", strength.width, width, "1",
                  "standard deviation of the factor of lam_f; below 0.577 if uniform, below 0.328 if normal");
   parameters.add("Disorder", "stiffness", stiffness.kind, kinds,

@@ -34,6 +34,11 @@ void ShellCase::check(Parameters &parameters, const std::string &section, const 
     user_law.check(parameters, section, law == Law::library, constants(), longest);
   else if (!has_stiffness())
     parameters.error(section + "/a", "a bond needs stiffness: a + b must be positive", {section + "/b"});
+  for (const auto &[entry, value] : {std::pair("psi", user_law.psi), std::pair("parameters", user_law.parameters),
+                                     std::pair("library", user_law.library)})
+    if (!has_user_law() && !value.empty())
+      parameters.error(section + "/" + entry, "the law does not read it; omit it, or give it empty",
+                       {section + "/law"});
   check_memory(parameters, section);
 }
 
