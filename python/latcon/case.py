@@ -141,7 +141,7 @@ class Case:
         return {key: (own.get(key), others.get(key)) for key in {**own, **others} if own.get(key) != others.get(key)}
 
     def __eq__(self, other: object) -> bool:
-        """Whether all entries have the same values, however they are written."""
+        """Returns whether all entries have the same values, however they are written."""
         return isinstance(other, Case) and not self.diff(other)
 
     def text(self) -> str:

@@ -123,7 +123,7 @@ class Job:
 
     @property
     def is_running(self) -> bool:
-        """Whether the run has not ended."""
+        """True until the run has ended."""
         return self._process.is_running
 
     def wait(self, timeout: float | None = None) -> Run:
@@ -143,7 +143,9 @@ class Job:
         return open_run(self.directory)
 
     def stop(self) -> Run:
-        """Stops the run, which writes a checkpoint and its results, and returns them. Errors are those of :meth:`wait`."""
+        """Stops the run, which writes a checkpoint and its results, and returns them.
+
+        Errors are those of :meth:`wait`, and UnreadableFile if it had not begun."""
         if self.is_running:
             self._process.interrupt()
         try:

@@ -233,8 +233,8 @@ def norms(lattice: SideFrame, continuum: SideFrame, comparison: Comparison, tole
     root-mean-square difference, relative to the larger of these norms of the two sides.
 
     The norm of tensors and vectors is the root of the sum of squares of their components in the plane, for deformation_gradient of
-    F - 1. The loads are the same if held sites of the lattice on edges of the continuum have the same displacement to 1e-4 of the
-    largest; sheets without such sites have no such row. `tolerances` are of root-mean-square differences, by field.
+    F - 1. The loads are the same if the lattice's sites on edges that are held all along have the same displacement to 1e-4 of the
+    largest; sheets without such edges have no such row. `tolerances` are of root-mean-square differences, by field.
     """
     for name in tolerances:
         if name not in continuum.fields:
@@ -255,8 +255,10 @@ def norms(lattice: SideFrame, continuum: SideFrame, comparison: Comparison, tole
     moves = "motion" in (lattice.kind, continuum.kind)
     add("time" if moves else "load factor", "s" if moves else "1", (lattice.time, continuum.time))
     sides = lattice.fields, comparison.continuum, comparison.difference
-    is_on_edge = (abs(lattice.points - continuum.bounds[:, None]) <= position_tolerance(continuum)).any(axis=(0, 2))
-    held = is_on_edge & lattice.held & ~comparison.outside & ~comparison.excluded
+    is_on = abs(lattice.points - continuum.bounds[:, None]) <= position_tolerance(continuum)
+    # Without edges that are free but for their ends, which other edges hold.
+    is_on &= (lattice.held[:, None] | ~is_on).all(axis=1, keepdims=True)
+    held = is_on.any(axis=(0, 2)) & ~comparison.outside & ~comparison.excluded
     if held.any():
         add(_LOAD, "m", [_norms(side["displacement"][held])[0] for side in sides], 1e-4,
             "positions in files: 1e-6 of the longer side, at most a hundred times the shorter")

@@ -65,7 +65,7 @@ class FolderLock(contextlib.AbstractContextManager["FolderLock"]):
         self.release()
 
     def is_in_place(self) -> bool:
-        """Whether the path still refers to the locked folder."""
+        """Returns whether the path still refers to the locked folder."""
         try:
             return os.path.samestat(os.fstat(self._file), os.lstat(self._path))
         except FileNotFoundError:

@@ -284,7 +284,7 @@ def read_vtk(path: pathlib.Path, only: Collection[str] | None = None, is_strict:
 
 
 def _is_survived(act: Callable[[], Any]) -> bool:
-    """Whether a child survives an act; exceptions of C++, as of an array of impossible size, would end this process."""
+    """Returns whether a child survives an act; exceptions of C++, as of an array of impossible size, would end this process."""
     if (child := os.fork()) == 0:
         try:
             faulthandler.disable()

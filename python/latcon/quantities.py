@@ -93,9 +93,10 @@ def number_text(value: float | None, uncertainty: float | None, sign: str = "±"
     value, uncertainty = scale * value, None if uncertainty is None else scale * uncertainty
     if uncertainty is None or not 1e-12 * abs(value) < uncertainty < math.inf:  # of equal values it is round-off
         return f"{value:.4g}"
-    digits = min(max(1 - math.floor(math.log10(uncertainty)), 0), 12)
+    digits = max(1 - math.floor(math.log10(uncertainty)), 0)
     if digits > 6 and abs(value) < 1e-3:
-        return f"{value:.1e} {sign} {uncertainty:.1e}"
+        figures = max(digits + math.floor(math.log10(abs(value))), 1) if value else 1
+        return f"{value:.{figures}e} {sign} {uncertainty:.1e}"
     return f"{value:.{digits}f} {sign} {uncertainty:.{digits}f}"
 
 

@@ -187,6 +187,10 @@ def test_finds_other_loads_at_the_held_edges(paths):
     # Inside, sheets of other material may differ.
     inside = continuum(paths[1], lambda X, Y: (stretched(X, Y)[0] + 40 * X * (LENGTH - X) * Y * (HEIGHT - Y), 0.2 * Y), 4)
     assert rows_of(here, inside)[LOAD]["error"] < 1e-14
+    # Of a free edge the ends alone are held.
+    here.held &= (here.points[:, 1] < HEIGHT) | (abs(here.points[:, 0] - LENGTH / 2) > 0.4 * LENGTH)
+    free = continuum(paths[1], lambda X, Y: (stretched(X, Y)[0], 0.2 * Y * (1 + 0.1 * (Y > 0.999 * HEIGHT) * X * (LENGTH - X) / LENGTH**2)))
+    assert rows_of(here, free)[LOAD]["error"] < 1e-14
 
 
 def test_leaves_sites_that_lack_bonds_out_of_stress_and_energy(paths):

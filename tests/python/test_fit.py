@@ -17,7 +17,7 @@ from latcon.fit.misfit import UNDETERMINED
 STRETCH, DENSITY, SEED = "Fracture/breaking stretch", "Material/density", "Lattice/noise seed"
 SPEED, WAVELENGTH = "crack.speed_lagrangian", "crack.wavelength"
 
-PARAMETERS = [Parameter(STRETCH, 2.8, 3.2), Parameter(DENSITY, 500, 1500)]
+PARAMETERS = [Parameter(STRETCH, 2.8, 3.2), Parameter(DENSITY, np.int64(500), np.float32(1500))]
 OBSERVATIONS = [Observation(SPEED, 19.0, 0.3), Observation(WAVELENGTH, 0.01, 0.0005)]
 SOLUTION = {STRETCH: 3.03417, DENSITY: 1000}  # of 20 - 30 e + 20 e^2 = 19
 

@@ -28,10 +28,11 @@ def made_evaluation(problem, number, at, measured):
     return Evaluation(number, "", problem.values(at), outcomes)
 
 
-def test_misfit_knows_the_scatter_over_seeds():
+@pytest.mark.parametrize("unknown", [math.nan, math.inf])
+def test_misfit_knows_the_scatter_over_seeds(unknown):
     problem = made_problem(1, [Observation("a", 1.0, 0.3), Observation("b", "word", 0.5)], seeds=3)
     rows = [made_evaluation(problem, 0, [0.2], [(1.0, "word"), (2.0, "word"), (3.0, "other")]),
-            made_evaluation(problem, 1, [0.4], [(math.nan, "word"), (2.0, "word"), (4.0, "word")])]
+            made_evaluation(problem, 1, [0.4], [(unknown, "word"), (2.0, "word"), (4.0, "word")])]
     table = tabulate(problem, rows)
     ratios = np.array([(1 - 2 / 18)**3, (1 - 2 / 9)**3])  # medians of the variances of three and two numbers
     variance = np.median([1.0 / ratios[0], 2.0 / ratios[1]])

@@ -168,7 +168,7 @@ def test_refinement_compares_seeds_and_ignores_what_was_not_measured():
 
 @pytest.mark.parametrize("value, deviation, unit, text", [
     (0.0229, None, "m", "2.29 cm"), (0.0229, 4e-4, "m", "2.290 ± 0.040 cm"), (1e-5, None, "m^2", "10 mm²"),
-    (30.0, None, "degrees", "30°"), (1e-9, 2e-10, "1", "1.0e-09 ± 2.0e-10"), (123456.0, None, "Pa", "1.235e+05 Pa")])
+    (30.0, None, "degrees", "30°"), (1e-9, 2e-10, "1", "1.00e-09 ± 2.0e-10"), (123456.0, None, "Pa", "1.235e+05 Pa")])
 def test_numbers_have_readable_units(value, deviation, unit, text):
     assert quantity_text(value, deviation, unit) == text
 

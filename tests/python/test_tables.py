@@ -44,4 +44,4 @@ def test_energies_per_area_are_those_of_the_window(tmp_path):
     values = table_values(str(tmp_path), 1e-3, 0.04, 0.08)
     assert values["viscous_per_area"] == pytest.approx(70.0) and values["broken_per_area"] == pytest.approx(20.0)
     assert values["path_rms"] == pytest.approx(1e-3, rel=0.01)
-    assert table_values(str(tmp_path), 1e-3, 0.2, 0.3) == {} == table_values(str(tmp_path / "none"), 1e-3, 0.0, 1.0)
+    assert table_values(str(tmp_path), 1e-3, 0.2, 0.3) == {}

@@ -256,5 +256,6 @@ def test_gives_the_digits_that_the_uncertainty_leaves():
     assert number_text(20.0576, 0.2328) == "20.06 ± 0.23"
     assert number_text(2.34468, 0.0225) == "2.345 ± 0.022"
     assert number_text(1234.5, 120.0) == "1234 ± 120"
+    assert number_text(1.23456e-4, 2e-9) == "1.234560e-04 ± 2.0e-09"
     for unknown in (None, 0.0, math.nan):
         assert number_text(20.0576, unknown) == "20.06"

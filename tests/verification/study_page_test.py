@@ -174,6 +174,14 @@ class TestMaps(MadeUpStudy):
         np.testing.assert_allclose(bars, [[[1.5, 100], [2, 100]], [[1, 200], [2, 200]]])
         assert "boundary" in [text.get_text() for text in axes.figure.legends[0].get_texts()]
 
+    def test_map_over_decades_is_logarithmic(self):
+        self.vary({"Sheet/width": [0.01] * 2 + [0.1] * 2 + [1.0] * 2, "Sheet/depth": [1.0, 2.0] * 3}, [self.CALM] * 4 + [self.WAVY] * 2)
+        with mock.patch.object(phase_map, "save", wraps=phase_map.save) as saved:
+            study_plots.draw_map(self.read(), self.folder / "map.png")
+        axes = saved.call_args.args[0].axes[0]
+        assert axes.get_xlim() == pytest.approx((-0.5, 2.5)) and axes.get_ylim() == pytest.approx((50, 250))
+        assert [axes.xaxis.get_major_formatter()(power, 0) for power in (0, 1, 2)] == ["1", "10", "100"]
+
     def brackets(self, patterns, values=(0, 1, 2, 3, 4), levels=None):
         cells = [phase_map.Cell(x, 5.0, dict.fromkeys(both, 1), level=level)
                  for x, both, level in zip(values, patterns, levels or [0] * len(patterns))]

@@ -140,10 +140,11 @@ class TestStudy(Studies):
         info = self.out / "runs" / "thin-1" / "run.json"
         document = read_json(info)
         info.write_text(json.dumps(dict(document, program_hash="0" * 64)))
-        assert "2 runs, 2 are finished already" in self.study(
+        (self.out / "runs" / "base-2" / "crack.csv").unlink()
+        assert "3 runs, 1 are finished already" in self.study(
             "--resume", change=lambda document: document["runs"]["low"]["set"].update({"Sheet/height": "1.1 cm"}))
         after = self.times()
-        assert [name for name in FOLDERS if after[name] != before[name]] == ["low-1", "thin-1"]
+        assert [name for name in FOLDERS if after[name] != before[name]] == ["base-2", "low-1", "thin-1"]
 
     def start(self, *arguments, change=None, threads="1"):
         """Starts the tiny study in the background."""
@@ -167,6 +168,7 @@ class TestStudy(Studies):
         os.kill(child()[0], signal.SIGKILL)
         assert process.wait(300) == 4
         assert [line["state"] for line in read_csv(self.out / "study.csv")] == ["failed", "measured"]
+        assert "killed by signal 9" in self.text("study.json")
         process = self.start("--resume", change=longer)
         assert wait_for(child, process)
         (run,) = child()

@@ -64,6 +64,7 @@ def tabulate(problem: Problem, evaluations: Sequence[Evaluation]) -> Table:
                         value = value == observation.value
                     samples[row, column, seed] = value
     is_known = np.isfinite(samples)
+    samples[~is_known] = np.nan
     known = is_known.sum(axis=2)
     means = np.where(known > 0, np.where(is_known, samples, 0).sum(axis=2) / np.maximum(known, 1), np.nan)
     scatter = np.array([0.0 if observation.is_word else _scatter(samples[:, column], own[:, column])

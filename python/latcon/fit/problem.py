@@ -213,11 +213,11 @@ def resolve_problem(case: CaseLike, parameters: Sequence[Parameter], observation
             raise ValueError(f"observation {name!r}: needs a finite value and a positive uncertainty")
     own_seed = base[SEED_ENTRY]
     chosen = [own_seed] if seeds is None else list(seeds)
-    if not chosen or len(set(chosen)) < len(chosen) or not all(isinstance(seed, int) for seed in chosen):
+    if not chosen or len(set(chosen)) < len(chosen) or not all(isinstance(seed, (int, np.integer)) for seed in chosen):
         raise ValueError("seeds must be different integers, at least one")
     axes = tuple(_axis(base, parameter) for parameter in parameters)
     problem = Problem(command, base.text(), axes, tuple(observations),
-                      tuple(seed for seed in chosen if isinstance(seed, int)), skip_verification, entries)
+                      tuple(int(seed) for seed in chosen if isinstance(seed, (int, np.integer))), skip_verification, entries)
     if entries is None:
         if derived := [axis.key for axis in axes if axis.key not in schema()]:
             raise ValueError(f"parameter {derived[0]}: is no entry of the case; `entries` must make entries of it")
@@ -248,7 +248,7 @@ def _axis(base: Case, parameter: Parameter) -> Axis:
     bounds = []
     for bound in (parameter.lower, parameter.upper):
         value = base.set(parameter.key, bound)[parameter.key] if isinstance(bound, str) else bound
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)) or not math.isfinite(value):
             raise ValueError(f"parameter {parameter.key}: the bound {bound!r} is no finite number")
         bounds.append(float(value))
     lower, upper = bounds

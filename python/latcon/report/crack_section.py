@@ -17,8 +17,8 @@ CAPTIONS = {
                         "undeformed sheet. Stress is force per current length and undeformed thickness. The colour "
                         "scales exclude 1 % of the sites.",
     "crack_path.png": "The crack in the undeformed sheet. Above: its tip, the right-most site that has lost at least a "
-                      "quarter of its bonds; the dashed sinusoid has the measured wavelength and amplitude, and phase, "
-                      "offset and slope from a least-squares fit. Below: positions of broken bonds, coloured by time.",
+                      "quarter of its bonds; a dashed sinusoid, where one was measured, has its wavelength and amplitude, and "
+                      "phase, offset and slope from a least-squares fit. Below: positions of broken bonds, coloured by time.",
     "energy.png": "Energy balance per metre of sheet thickness, since the cut of the seed crack. The dashed line is the "
                   "elastic energy released, with the work of the edges; the areas are the energies that it was converted to; "
                   "the small axis is the difference, the imbalance.",
@@ -26,8 +26,8 @@ CAPTIONS = {
                              "descends were mirrored first, which keeps the two sides of an oscillating crack "
                              "separate. White: the opening, or points with material in fewer than half of the samples. "
                              "The numbers are in the table below.",
-    "near_tip_stress.png": "Opening stress, averaged in the same way. Two off-axis lobes make the contours "
-                           "kidney-shaped.",
+    "near_tip_stress.png": "Opening stress, averaged in the same way. With two off-axis lobes (ratios above 1 in the "
+                           "table) its contours are kidney-shaped.",
 }
 
 # Pictures of each part of the section; plots and a viewer take the place of the first three.

@@ -1,10 +1,11 @@
 """Map of patterns over two quantities: cells coloured by pattern, boundaries, contours of a third quantity."""
 from collections import namedtuple
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.colors import to_rgb
 from matplotlib.patches import Patch, Rectangle
+from matplotlib.ticker import MaxNLocator
 
 from .pictures import BLACK, BLUE, GREEN, GREY, RED, WIDTH, Page, save
 
@@ -35,6 +36,11 @@ class Cell:
 Bracket = namedtuple("Bracket", "axis across low high patterns")
 
 
+def is_over_decades(values):
+    """Whether an axis is logarithmic."""
+    return min(values) > 0 and max(values) > 30 * min(values)
+
+
 def draw_phase_map(cells, x_label, y_label, path, contour_label=None, height=5.2):
     """Draws the map. Cells whose seeds disagree are divided between their patterns, in proportion, and marked by a dot.
 
@@ -45,10 +51,15 @@ def draw_phase_map(cells, x_label, y_label, path, contour_label=None, height=5.2
     if not any(cell.patterns for cell in cells):
         return False
     cells = sorted(cells, key=lambda cell: cell.level)
-    xs, ys = grid_of(cells)
-    x_edges, y_edges = edges(xs), edges(ys)
     page = Page(HEAD + height + FOOT)
     axes = page.axes(LEFT, HEAD, WIDTH - LEFT - RIGHT, height)
+    for name, axis in (("x", axes.xaxis), ("y", axes.yaxis)):
+        if is_over_decades([getattr(cell, name) for cell in cells]):
+            cells = [replace(cell, **{name: np.log10(getattr(cell, name))}) for cell in cells]
+            axis.set_major_locator(MaxNLocator(integer=True))
+            axis.set_major_formatter(lambda power, _: f"{10**power:.4g}")
+    xs, ys = grid_of(cells)
+    x_edges, y_edges = edges(xs), edges(ys)
     values = np.full((len(ys), len(xs)), np.nan)
     mixed, unmeasured = [], []
     for cell in cells:

@@ -6,7 +6,7 @@ from matplotlib.lines import Line2D
 
 from ..files import if_present, read_columns
 from ..quantities import shown_unit
-from .phase_map import COLOURS, Cell, draw_phase_map
+from .phase_map import COLOURS, Cell, draw_phase_map, is_over_decades
 from .pictures import BLACK, BLUE, GREEN, GREY, RED, SKY, WIDTH, Page, save
 from .study_runs import mean_of, patterns_of
 
@@ -70,7 +70,6 @@ PATTERNS = {pattern: (marker, COLOURS[pattern]) for pattern, marker in (
 LEFT, RIGHT, GAP = 0.75, 0.2, 0.75  # of a grid of panels [in]
 SEED_COLOURS = [BLUE, RED, GREEN, SKY, BLACK, GREY]
 CONTOURS = ("wavelength", "speed_lagrangian")  # of the map of patterns: the first that was measured
-DECADES = 30.0  # ratio of the largest to the smallest abscissa above which the axis is logarithmic
 
 
 def panels(count, columns, height):
@@ -160,7 +159,7 @@ def draw_sweep(study, row, quantities, path, onsets=None):
         if axes.get_ylim()[0] >= 0:  # the axis begins at 0 unless values are negative
             top = max(axes.get_ylim()[1], 1e-12)
             axes.set_ylim(-0.04 * top, top)
-        if min(x for x, _ in points) > 0 and max(x for x, _ in points) > DECADES * min(x for x, _ in points):
+        if is_over_decades([x for x, _ in points]):
             axes.set_xscale("log")
     shown = {next(iter(patterns_of(seeds))) for _, seeds in points}
     handles = [Line2D([], [], linestyle="none", marker=marker, color=colour, label=pattern)

@@ -3,10 +3,8 @@ from __future__ import annotations
 
 import dataclasses
 import enum
-import functools
 import json
 import math
-import operator
 import pathlib
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -63,17 +61,23 @@ def read_outcome(program: Program, run: PlannedRun, folder: str, exit_code: int 
     if outcome.exit_code not in (DONE, CLAIM_FAILED) or not isinstance(pattern, str) or not pattern:
         outcome.state = RunState.REFUSED if outcome.exit_code == CLAIM_FAILED else RunState.FAILED
         outcome.problem = printable(last_words(content(f"{folder}/log.txt")), 300)
+        if not outcome.problem and outcome.exit_code > 128:
+            outcome.problem = f"killed by signal {outcome.exit_code - 128}"
         return outcome
     if outcome.exit_code == CLAIM_FAILED:
         outcome.problem = unfit_rows(info)
     if outcome.problem:
         outcome.state = RunState.REJECTED
         return outcome
+    try:
+        outcome.values |= measured_values(program, folder, run.spacing)
+    except UnreadableFile as error:
+        outcome.state, outcome.problem = RunState.FAILED, printable(str(error), 300)
+        return outcome
     outcome.state = RunState.MEASURED
     outcome.pattern = pattern
     reason = crack.get("reason")
     outcome.reason = reason if isinstance(reason, str) else ""
-    outcome.values |= measured_values(program, folder, run.spacing)
     return outcome
 
 
@@ -193,6 +197,11 @@ def group_by_run(outcomes: Sequence[RunOutcome]) -> dict[str, list[RunOutcome]]:
     return groups
 
 
+def total(numbers: Iterable[float]) -> float:
+    """Adds in order: the sum of Python 3.12 is compensated, and tables would depend on the version."""
+    return float(np.cumsum([0.0, *numbers])[-1])
+
+
 def statistics(run: str, quantity: str, outcomes: Sequence[RunOutcome]) -> SeedStatistics:
     """Computes the statistics of one quantity over the outcomes of the seeds of a run."""
     seeds = SeedStatistics(run, len(outcomes))
@@ -213,11 +222,6 @@ def statistics(run: str, quantity: str, outcomes: Sequence[RunOutcome]) -> SeedS
             seeds.missing.append(f"seed {outcome.seed} {outcome.pattern}")
     seeds.patterns = dict(sorted(patterns.items()))
     seeds.n = len(values) + patterns.total()
-
-    def total(numbers: Iterable[float]) -> float:
-        """Adds in order: the sum of Python 3.12 is compensated, and tables would depend on the version."""
-        return functools.reduce(operator.add, numbers, 0.0)
-
     if values:
         mean = seeds.mean = total(values) / len(values)
         if len(values) > 1:
@@ -238,11 +242,8 @@ def table_values(folder: str, spacing: float, begin: float, end: float) -> dict[
     measurement, undeformed [m]. Returns ``path_rms`` [m], ``path_growth`` [1/m] and its uncertainty, ``viscous_per_area`` and
     ``broken_per_area`` [J/m^2]; those that can be measured.
     """
-    try:
-        tip = read_columns(pathlib.Path(folder, "crack.csv"), ("t", "X", "Y"))
-        energy = read_columns(pathlib.Path(folder, "energy.csv"), ("t", "viscous", "broken"))
-    except UnreadableFile:
-        return {}
+    tip = read_columns(pathlib.Path(folder, "crack.csv"), ("t", "X", "Y"))
+    energy = read_columns(pathlib.Path(folder, "energy.csv"), ("t", "viscous", "broken"))
     inside = (tip["X"] >= begin) & (tip["X"] <= end)
     X, Y, t = tip["X"][inside], tip["Y"][inside], tip["t"][inside]
     if len(X) < 2:

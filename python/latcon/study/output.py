@@ -3,11 +3,9 @@ from __future__ import annotations
 
 import csv
 import dataclasses
-import functools
 import io
 import json
 import math
-import operator
 import re
 import textwrap
 from collections.abc import Iterable, Sequence
@@ -16,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..rows import finite_or_text
-from .outcome import RunOutcome, RunState, group_by_run, statistics
+from .outcome import RunOutcome, RunState, group_by_run, statistics, total
 from .plan import PlannedRun, Verification
 from .program import Program
 from .study_file import Rule, Study
@@ -108,8 +106,8 @@ def plan_table(study: Study, plan: Sequence[PlannedRun], n_cores: int) -> str:
     lines = [f"{'run':<{width}}{'size':>10}{'evaluations':>12}{'core time':>12}"]
     lines += [f"{run.folder:<{width}}{_rounded(run.size):>10}{_rounded(run.evaluations):>12}{math.ceil(run.seconds):>10} s"
               for run in plan]
-    total = functools.reduce(operator.add, (run.seconds for run in plan), 0.0)  # in order, see statistics()
-    lines.append(f"{len(plan)} runs, about {math.ceil(total / 60)} core minutes, {math.ceil(total / 60 / n_cores)} minutes on "
+    minutes = total(run.seconds for run in plan) / 60
+    lines.append(f"{len(plan)} runs, about {math.ceil(minutes)} core minutes, {math.ceil(minutes / n_cores)} minutes on "
                  f"{n_cores} cores")
     if study.refine:
         lines.append(f"refined {study.refine} time{'s' if study.refine > 1 else ''} where neighbours differ, at a cost that depends "

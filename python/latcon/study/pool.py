@@ -6,8 +6,10 @@ import ctypes
 import os
 import signal
 import subprocess
+import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from types import FrameType
 from typing import Any
 
 _POLL_INTERVAL = 0.02  # [s]
@@ -42,7 +44,7 @@ def run_processes(n_jobs: int, limit: int, start: Callable[[int], tuple[Sequence
                 command, log = start(following)
                 running[following] = None  # unless it starts
                 with (open(log, "wb", opener=lambda path, flags: os.open(path, flags | os.O_NOFOLLOW, 0o666)) as output,
-                      contextlib.suppress(FileNotFoundError)):
+                      contextlib.suppress(FileNotFoundError), _deferred_interrupt()):
                     running[following] = start_child(command, signal.SIGTERM, stdin=subprocess.DEVNULL, stdout=output, stderr=output)
                 following += 1
             waiting(list(running))
@@ -68,6 +70,23 @@ def run_processes(n_jobs: int, limit: int, start: Callable[[int], tuple[Sequence
             except subprocess.TimeoutExpired:
                 child.kill()
                 child.wait()
+
+
+@contextlib.contextmanager
+def _deferred_interrupt() -> Iterator[None]:
+    """Handles Ctrl-C afterwards: an exception in what Python calls at a fork would be lost."""
+    handler = signal.getsignal(signal.SIGINT)
+    if not callable(handler) or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    received: list[tuple[int, FrameType | None]] = []
+    signal.signal(signal.SIGINT, lambda number, frame: received.append((number, frame)))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    for number, frame in received:
+        handler(number, frame)
 
 
 def start_child(command: Sequence[str], last_signal: int, **streams: Any) -> subprocess.Popen[bytes]:

@@ -73,7 +73,7 @@ class Signals:
 
 def printable(text: str, longest: int = 80) -> str:
     """Returns a text for a message: on one line, what does not show as ``\\xNN``, the middle omitted if it is longer."""
-    if len(text.encode("utf-8", "surrogateescape")) > longest:
+    if len(text) > longest:
         text = text[:longest - 20] + " ... " + text[-20:]
     # Control characters, a no-break space, and U+200B to U+200F and U+FEFF, which do not show.
     return re.sub("[\0-\x1f\x7f-\xa0\u200b-\u200f\ufeff\ud800-\udfff]",

@@ -132,9 +132,8 @@ def combinations(sweeps: Sequence[Sweep], n_seeds: int) -> dict[str, dict[str, s
     Raises InputError for an entry that is swept twice, or more than 100,000 runs.
     """
     entries = [sweep.entry for sweep in sweeps]
-    for i, entry in enumerate(entries):
-        if entry in entries[:i]:
-            raise InputError(f"sweep: {entry} is swept twice")
+    if twice := [entry for i, entry in enumerate(entries) if entry in entries[:i]]:
+        raise InputError(f"sweep: {twice[0]} is swept twice")
     if math.prod(len(sweep.values) for sweep in sweeps) > MAX_RUNS // n_seeds:
         raise InputError(f"sweep: more than {MAX_RUNS} runs, with {n_seeds} seeds for each combination of values")
     cases: dict[str, dict[str, str]] = {}

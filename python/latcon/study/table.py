@@ -209,7 +209,7 @@ def _judge_each(outcome: RowOutcome, other: SeedStatistics) -> None:
                 return
             misfit = p
         elif rule is Rule.IS_NEAR:
-            misfit = abs(number / bound - 1) if bound else math.nan
+            misfit = abs(number / bound - 1) if bound else 0.0 if number == bound else math.nan
         else:
             misfit = bound - number if rule is Rule.ABOVE else number - bound
         pairs.append((misfit, number))
