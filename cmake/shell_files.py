@@ -157,7 +157,7 @@ def plain(what):
     """An option or argument without the type that CLI11 appends."""
     what = re.sub(r":UINT in \[.*?\]", "", what)
     what = re.sub(r" :\{.*?\}| REQUIRED", "", what)
-    return what.replace(",", ", ")
+    return what.replace(",-", ", -")
 
 
 def roff(text):
@@ -211,7 +211,7 @@ def completion(latcon, data, program, commands):
         "cases": quoted(schema["cases"]),
         "folder_options": of_type(r" DIR"),
         "file_options": of_type(r" FILE"),
-        "other_options": of_type(r" (N:|TIME|FIELD=VALUE)"),
+        "other_options": of_type(r" (N:|TIME|FIELD=VALUE|LAWS|SIDE|I/N|NAME|X,Y,R)"),
         "global_options": r"\n".join(shared),
         "options": "\n".join(f"      {name}) COMPREPLY=($(compgen -W $'"
                              + r"\n".join(dict.fromkeys(shared + command.option_names())) + "' -- \"$cur\")) ;;"
