@@ -106,7 +106,6 @@ def test_only_a_case_or_an_option_chooses_the_laws_that_are_judged(out):
 
 
 @quick_only
-@quick_only
 @pytest.mark.parametrize("claim, entries, fails", [
     ("intrinsic-length", ["Next-nearest neighbours/area factor=0.07"], None),  # layers of an edge that decay fast
     ("energy", ["Contact/viscosity=10"], None),  # overdamped contact
@@ -118,6 +117,7 @@ def test_valid_cases_hold_and_a_stencil_that_buckles_does_not(out, claim, entrie
     assert fails is None or any(row["quantity"].startswith(fails) for row in read_csv(out / "results.csv") if row["verdict"] == "fails")
 
 
+@quick_only
 def test_a_claim_that_is_named_judges_something_or_fails(out):
     run = latcon("verify", "running-crack", "--quick", "--set", "Loading/strain y=0", "--output-dir", out, expect=3)
     assert "running-crack: rows that are judged: not computed: this case has none" in run.stdout

@@ -62,6 +62,7 @@ output::Results equilibrium(const input::Case &input, bridge::ContinuumModel &mo
     {
       const continuum::SolverReport report = find();
       record.newton(report);
+      write_tables(); // what follows may refuse the state
       note(run, report);
     }
     catch (const continuum::SolverFailed &failure)

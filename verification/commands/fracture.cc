@@ -82,11 +82,6 @@ private:
     if (input_.motion_frames > 0 && run_.is_root())
       film_->write_collection();
   }
-  void write_failed() override
-  {
-    add_to_film(); // in place of the frames that follow the last valid state
-    write();
-  }
   void after_step(const std::vector<lattice::BrokenBond> &broken) override
   {
     record_.step(broken);

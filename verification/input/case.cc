@@ -108,7 +108,7 @@ void Case::declare(Parameters &p)
         "viscosity of a contact over that of a nearest-neighbour bond");
 
   p.add("Time", "end", end_time, magnitude_or_zero, "s",
-        "end of the motion; a given step passes it by less than a step");
+        "end of the motion; cracks, and given steps, pass it by less than a step");
   p.add("Time", "step", time_step, magnitude, "s",
         "time step of the lattice; auto: the safety factor times the stability limit");
   p.add(

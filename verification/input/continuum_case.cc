@@ -190,9 +190,8 @@ void ContinuumCase::declare(Parameters &p)
   p.add("Continuum", "relative tolerance", relative_tolerance, Range{1e-14, 1e-4}, "1",
         "relative residual at which Newton's method stops, not below its round-off");
   p.add("Continuum", "direct limit", direct_limit, Range{0., 1e7},
-        "largest number of unknowns for the direct solver; above it, and in periodic sheets, multigrid with conjugate "
-        "gradients or, "
-        "with viscosity or Maxwell branches, GMRES");
+        "largest number of unknowns for the direct solver, which periodic sheets always use; above it multigrid with "
+        "conjugate gradients or, with viscosity or Maxwell branches, GMRES");
   p.add("Continuum", "solution", solution, {{"equilibrium", Solution::equilibrium}, {"motion", Solution::motion}},
         "what `latcon continuum` computes: static equilibrium, or the motion until the end time");
   p.add(
@@ -253,7 +252,8 @@ void ContinuumCase::check(Parameters &p, const Case &input) const
       !has_inner_edge && mesh_file.empty() &&
       (inner.condition != EdgeCase::Condition::free || inner.normal_gradient != EdgeCase::NormalGradient::free ||
        !inner.traction.is_zero() || !inner.double_traction.is_zero()))
-    p.error(inner.name + "/condition", "the sheet has neither hole nor notch; omit the entries of the inner edge",
+    p.error(inner.name + (inner.traction.is_zero() ? "/condition" : std::string("/traction ") + inner.traction.given()),
+            "the sheet has neither hole nor notch; omit the entries of the inner edge",
             {"Sheet/hole radius", "Sheet/notch length"});
   if (edges[4].normal_gradient == EdgeCase::NormalGradient::loading)
     p.error("Inner edge/normal gradient", "an inner edge has no single normal; give free or clamped");

@@ -85,8 +85,8 @@ def _deferred_interrupt() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, handler)
-    for number, frame in received:
-        handler(number, frame)
+        for number, frame in received:
+            handler(number, frame)
 
 
 def start_child(command: Sequence[str], last_signal: int, **streams: Any) -> subprocess.Popen[bytes]:

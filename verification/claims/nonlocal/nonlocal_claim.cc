@@ -387,12 +387,14 @@ ClaimOutcome check_nonlocal(const ClaimInput &input)
            fixed.grid.scatter.amplitude == own.scatter &&
            std::abs(fixed.grid.spacing * own.refinement / subject.spacing - 1.) < 1e-12;
   };
+  const bool has_shells_of_case = subject.material.next_nearest.has_value() == input.entries.has_next_nearest;
   for (NonlocalStencil &stencil : options.stencils)
-    stencil.is_of_case = is_own(stencil);
+    stencil.is_of_case = has_shells_of_case && is_own(stencil);
   if (std::none_of(options.stencils.begin(), options.stencils.end(), is_own))
     options.stencils.push_back({"stencil of the case",
                                 {own.grid, subject.spacing / own.refinement, subject.orientation, {own.scatter, 1}},
-                                support::smallest_of({own.half_width, M_PI / 6.})});
+                                support::smallest_of({own.half_width, M_PI / 6.}),
+                                has_shells_of_case});
   options.samples = input.quick ? 10 : 100;
   options.breaking_stretch = input.entries.breaking_stretch.value_or(options.breaking_stretch);
   ClaimOutcome outcome{nonlocal_claim(subject, options), {}};
