@@ -110,7 +110,7 @@ public:
   double last_time() const { return rows_.empty() ? -std::numeric_limits<double>::infinity() : rows_.back().time; }
   bool empty() const { return rows_.empty(); }
 
-  /// Returns LedgerCheck::imbalance(). @param state_of LedgerState of a time and its energies
+  /// Returns LedgerCheck::imbalance() [-]. @param at_rest [J/m] @param state_of LedgerState of a time and its energies
   template <class StateOf>
   double imbalance(double at_rest, const StateOf &state_of) const
   {

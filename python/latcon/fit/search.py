@@ -40,8 +40,8 @@ def propose(table: Table, parameters: int, first: int, batch: int, evaluations: 
     """Next points to evaluate, with the name of their stage.
 
     They depend on the evaluated points before `first`, the number of the first, and the seed of the search alone: not on how
-    often the fit was interrupted. Of all `evaluations` the first quarter, at least 2 `parameters` + 1, are Sobol points and the next TPE's, up to half; `batch` is the
-    size of a batch, of which the last may be shorter.
+    often the fit was interrupted. Of all `evaluations` the first quarter, at least 2 `parameters` + 1, are Sobol points and the
+    next, up to half, TPE's; `batch` is the size of a batch, of which the last may be shorter.
     """
     count = min(batch, evaluations - first)
     sobol = min(evaluations, max(2 * parameters + 1, evaluations // 4))
@@ -155,9 +155,9 @@ def fit_case(case: CaseLike, parameters: Sequence[Parameter], observations: Sequ
     """Fits parameters of a case to observations.
 
     Sobol points come first, then those of Optuna's TPE sampler; those of the second half lie around the minimum of a local
-    quadratic model of the quantities where there is one. Each point is a run per seed. A fit that was interrupted or killed continues if it
-    is called again with the same directory, also with more evaluations, or with other observed values of the same quantities.
-    Without an interruption the points are the same, and for any number of workers.
+    quadratic model of the quantities where there is one. Each point is a run per seed. A fit that was interrupted or killed
+    continues if it is called again with the same directory, also with more evaluations, or with other observed values of the
+    same quantities. Without an interruption the points are the same, and for any number of workers.
 
     Parameters
     ----------

@@ -37,7 +37,7 @@ Bracket = namedtuple("Bracket", "axis across low high patterns")
 
 
 def is_over_decades(values):
-    """Whether an axis is logarithmic."""
+    """Returns whether the largest value is so many times the smallest that their axis is logarithmic."""
     return min(values) > 0 and max(values) > 30 * min(values)
 
 

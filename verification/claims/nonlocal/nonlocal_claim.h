@@ -19,7 +19,7 @@ struct NonlocalStencil
   std::string name; ///< in rows: "square grid, m = 2"
   lattice::Grid grid;
   double half_width = M_PI / 6.; ///< of the arcs of its rings [rad]
-  bool is_of_case = true;        ///< whether it must be accurate in the loaded sheet: others are if their bounds say so
+  bool is_of_case = true;        ///< must be accurate in the loaded sheet, others only where their bound is below 0.1
 };
 
 /// Options of the claim.
