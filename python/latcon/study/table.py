@@ -287,10 +287,14 @@ def _judge_bracket(outcome: RowOutcome) -> None:
         problems.append(f"no {row.to} above {_number(points[-1].abscissa)}")
     if reached is not None:
         problems.append(f"{row.start} at {_number(points[returned].abscissa)} above {row.to} at {_number(points[reached].abscissa)}")
+    if not problems:
+        ends = points[low - 1].abscissa, points[high].abscissa
+        # Seeds contradict in runs too that do not count because others of theirs are undecided.
+        problems = [f"{run.text('')} at {_number(run.abscissa)}" for run in outcome.runs if run.abscissa is not None and (
+            run.abscissa < ends[0] and run.patterns.keys() - {row.start} or run.abscissa > ends[1] and run.patterns.keys() - {row.to})]
     outcome.misfit = float(len(problems))
     outcome.measured += problems
     if not problems:
-        ends = points[low - 1].abscissa, points[high].abscissa
         outcome.number = (ends[0] + ends[1]) / 2
         outcome.measured.append(f"{row.against} between {_number(ends[0])} and {_number(ends[1])}")
 
