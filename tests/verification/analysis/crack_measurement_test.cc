@@ -102,6 +102,7 @@ TEST(CrackMeasurement, CrestsOfASinusoidAreItsAmplitude)
     // entries: at most two standard deviations too high.
     EXPECT_NEAR(m.crest_amplitude->value, amplitude, 2. * 0.5 * d / std::sqrt(2.));
     EXPECT_GT(m.crest_amplitude->uncertainty, 0.09 * d);
+    EXPECT_GT(m.amplitude->uncertainty, 0.09 * d);
   }
   crack.path = straight;
   EXPECT_FALSE(measure(crack).crest_amplitude);
