@@ -14,15 +14,6 @@ namespace memory_archive
 {
 using Store = std::map<std::string, std::string>; // the bytes of each value
 
-template <class T>
-struct IsVector : std::false_type
-{
-};
-template <class T>
-struct IsVector<std::vector<T>> : std::true_type
-{
-};
-
 template <bool is_loading>
 class Archive
 {
@@ -36,17 +27,18 @@ public:
   {
     if constexpr (std::is_arithmetic_v<T>)
       bytes(name, &value, 1);
-    else if constexpr (IsVector<T>::value)
-    {
-      if constexpr (loads)
-        value.resize(store_.at(prefix_ + name).size() / sizeof(value[0]));
-      bytes(name, value.data(), value.size());
-    }
     else
     {
       Archive inside(store_, prefix_ + name + "/");
       value.archive(inside);
     }
+  }
+  template <class T>
+  void operator()(const std::string &name, std::vector<T> &values)
+  {
+    if constexpr (loads)
+      values.resize(store_.at(prefix_ + name).size() / sizeof(T));
+    bytes(name, values.data(), values.size());
   }
 
   template <class Record>

@@ -1,28 +1,24 @@
 // Dashpots and Maxwell branches at a point, the local and the gradient part: stresses and their derivatives, compared
 // with automatic differentiation, and the update of the branches, compared with closed forms.
 #include "continuum/errors.h"
+#include "energies.h"
 #include "moving_sheets.h"
 #include "support/largest_error.h"
 
 #include <deal.II/base/quadrature_lib.h>
 
-#include <Sacado.hpp>
 #include <gtest/gtest.h>
-
-#include <limits>
 
 namespace rate_laws_test
 {
 
 using namespace latcon;
+using namespace energies;
 using namespace moving_sheets;
 using namespace latcon::continuum;
 
-const double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double micro_length = 0.12, spacing = micro_length / 0.6; // [m]
 
-using Fad = Sacado::Fad::DFad<double>;
-using FadFad = Sacado::Fad::DFad<Fad>;
 template <class Number>
 using Derivatives = std::array<std::array<Number, n_derivatives>, 2>;
 

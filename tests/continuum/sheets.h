@@ -27,12 +27,7 @@ inline const double pi = std::acos(-1.);
 
 inline Tensor<2, 2> matrix(const double xx, const double xy, const double yx, const double yy)
 {
-  Tensor<2, 2> F;
-  F[0][0] = xx;
-  F[0][1] = xy;
-  F[1][0] = yx;
-  F[1][1] = yy;
-  return F;
+  return Tensor<2, 2>({{xx, xy}, {yx, yy}});
 }
 
 inline Tensor<2, 2> rotation(const double angle)

@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from program import CASES, LATCON, frames, latcon, latcon_on_ranks, on_ranks, wait_for
+from program import CASES, LATCON, frames, latcon, latcon_on_ranks, on_ranks, settings, wait_for
 from studies import files_in
 from verdicts_fixture import REFUSED
 
@@ -97,11 +97,10 @@ def test_ranks_hold_it_and_respect_it(start, out):
 
 VICTIMS = {
     "crack": LONG,
-    "lattice": ["lattice", QUICK, "--quiet", "--set", "Lattice/solution=motion", "--set", "Time/end=10 ms",
-                "--set", "Output/frame interval=0.02 ms", "--set", "Checkpoints/steps=32"],
-    "continuum": ["continuum", CASES / "shear_layer.prm", "--quiet", "--set", "Continuum/solution=motion",
-                  "--set", "Continuum/time step=5 us", "--set", "Time/end=10 ms", "--set", "Checkpoints/steps=3",
-                  "--set", "Output/frame interval=0.02 ms"]}
+    "lattice": ["lattice", QUICK, "--quiet", *settings(
+        "Lattice/solution=motion", "Time/end=10 ms", "Output/frame interval=0.02 ms", "Checkpoints/steps=32")],
+    "continuum": ["continuum", CASES / "shear_layer.prm", "--quiet", *settings(
+        "Continuum/solution=motion", "Continuum/time step=5 us", "Time/end=10 ms", "Checkpoints/steps=3", "Output/frame interval=0.02 ms")]}
 
 
 def remove(out, process):

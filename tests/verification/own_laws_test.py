@@ -19,8 +19,8 @@ MOONEY_RIVLIN = {"law": "expression", "psi": "a*(lam^2/2 + 1/lam) + k/2*(2*lam +
 
 def bonds(**entries):
     """Options that set entries of both kinds of bonds."""
-    return [word for section in ("Nearest neighbours", "Next-nearest neighbours") for name, value in entries.items()
-            for word in ("--set", f"{section}/{name.replace('_', ' ')}={value}")]
+    return settings(*(f"{section}/{name.replace('_', ' ')}={value}"
+                      for section in ("Nearest neighbours", "Next-nearest neighbours") for name, value in entries.items()))
 
 
 def crack(tmp_path, name, *options, **entries):
@@ -81,8 +81,8 @@ def test_library_cracks_as_the_same_expression(tmp_path, compiled):
 def test_claims_need_the_law_up_to_their_largest_stretch(tmp_path):
     # Locks between 2.9, the largest stretch of this case's bonds, and 3.5.
     law = {"law": "expression", "psi": "-lam - (k-1)*log(k-lam)", "parameters": "k=3.2"}
-    case = (CASES / "quick.prm", "--set", "Fracture/toughening=none", "--set", "Fracture/factor=1",
-            "--set", "Fracture/breaking stretch=2.9", *bonds(**law), "--output-dir", tmp_path / "bad")
+    case = (CASES / "quick.prm", *settings("Fracture/toughening=none", "Fracture/factor=1", "Fracture/breaking stretch=2.9"),
+            *bonds(**law), "--output-dir", tmp_path / "bad")
     sweep = ("--sweep", "Sheet/height=1 cm,1.5 cm", *case)
     for command in (("fracture", *case), ("verify", "energy", "--quick", "--case", *case), ("study", *sweep), ("batch", "--slurm", *sweep)):
         run = latcon(*command, expect=2)

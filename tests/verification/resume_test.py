@@ -12,12 +12,11 @@ import signal
 import h5py
 import pytest
 
-from program import CASES, LATCON, checkpoints, expect_same, files, frames, latcon, numbers, read, read_json, wait_for
+from program import CASES, LATCON, checkpoints, expect_same, files, frames, latcon, numbers, read, read_json, settings, wait_for
 from verdicts_fixture import REFUSED
 
-STRIP = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report", "--set", "Sheet/length=2.5 cm", "--set",
-         "Sheet/height=1.25 cm", "--set", "Output/frame interval=0.1 ms", "--set", "Checkpoints/steps=160", "--set",
-         "Time/end=0.8 ms", "--set", "Near tip/interval=0"]
+STRIP = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report", *settings(
+    "Sheet/length=2.5 cm", "Sheet/height=1.25 cm", "Output/frame interval=0.1 ms", "Checkpoints/steps=160", "Time/end=0.8 ms", "Near tip/interval=0")]
 
 
 @pytest.fixture(scope="module")
@@ -179,9 +178,8 @@ def push(checkpoint, speed):
 
 def test_last_sound_state_is_left_with_when_and_where(out):
     """Steps are stable, and divided where bonds are short, so that no case makes a sheet blow up."""
-    motion = ["lattice", CASES / "quick.prm", "--output-dir", out, "--set", "Lattice/solution=motion", "--set",
-              "Time/end=0.1 ms", "--set", "Fracture/breaking stretch=auto", "--set", "Output/energy interval=1",
-              "--set", "Checkpoints/steps=20"]
+    motion = ["lattice", CASES / "quick.prm", "--output-dir", out, *settings(
+        "Lattice/solution=motion", "Time/end=0.1 ms", "Fracture/breaking stretch=auto", "Output/energy interval=1", "Checkpoints/steps=20")]
     latcon(*motion)
     push(checkpoints(out)[-1], 1e4)
     run = latcon(*motion, "--resume", expect=4)
@@ -206,11 +204,10 @@ def test_last_sound_state_is_left_with_when_and_where(out):
 
 def test_last_sound_frame_has_the_stresses_of_its_time(out, tmp_path):
     """Bonds have a memory, and steps are too long for the springs of their branches."""
-    case = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report"]
-    for entry in ("Sheet/length=2.5 cm", "Sheet/height=1.5 cm", "Contact/present=false", "Nearest neighbours/viscosity=1 Pa s", "Next-nearest neighbours/viscosity=1 Pa s",
-                  "Nearest neighbours/branch moduli=5 MPa", "Nearest neighbours/relaxation times=0.2 ms",
-                  "Output/energy interval=80", "Output/frame interval=20 us", "Fracture/breaking stretch=1000"):
-        case += ["--set", entry]
+    case = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report", *settings(
+        "Sheet/length=2.5 cm", "Sheet/height=1.5 cm", "Contact/present=false", "Nearest neighbours/viscosity=1 Pa s",
+        "Next-nearest neighbours/viscosity=1 Pa s", "Nearest neighbours/branch moduli=5 MPa", "Nearest neighbours/relaxation times=0.2 ms",
+        "Output/energy interval=80", "Output/frame interval=20 us", "Fracture/breaking stretch=1000")]
     latcon(*case, "--output-dir", tmp_path / "sound", "--set", "Time/end=10 us", expect=(0, 3))
     run = latcon(*case, "--output-dir", out, "--set", "Time/step=9.4e-6 s", expect=4)
     assert "valid state, at 0 s; try a smaller Time/step\n" in run.stderr

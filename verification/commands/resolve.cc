@@ -3,6 +3,7 @@
 #include <iostream>
 #include <numeric>
 
+#include <boost/algorithm/hex.hpp>
 #include <nlohmann/json.hpp>
 
 #include "support/available_cores.h"
@@ -33,10 +34,7 @@ public:
   {
     if (request.contains("base"))
     {
-      base_file_.clear(); // in hexadecimal: a path may not be UTF-8
-      const std::string digits = request["base"];
-      for (std::size_t i = 0; i + 1 < digits.size(); i += 2)
-        base_file_ += static_cast<char>(std::stoi(digits.substr(i, 2), nullptr, 16));
+      base_file_ = boost::algorithm::unhex(request["base"].get<std::string>()); // a path may not be UTF-8
       base_ = input::read_input_file(base_file_);
       return nullptr;
     }

@@ -20,27 +20,20 @@ enum class Role
 };
 
 // Collects values as the JSON parser meets them, so that repeated keys and the digits of numbers are seen.
-class CaseReader
+class CaseReader : public nlohmann::json_sax<nlohmann::json>
 {
 public:
-  using number_integer_t = nlohmann::json::number_integer_t;
-  using number_unsigned_t = nlohmann::json::number_unsigned_t;
-  using number_float_t = nlohmann::json::number_float_t;
-  using string_t = nlohmann::json::string_t;
-  using binary_t = nlohmann::json::binary_t;
-
   CaseReader(const std::string &name, CaseText &result) : name_(name), result_(result) {}
 
-  bool null() { return refuse("null"); }
-  bool boolean(const bool value) { return take(value ? "true" : "false"); }
-  bool number_integer(const number_integer_t value) { return take(std::to_string(value)); }
-  bool number_unsigned(const number_unsigned_t value) { return take(std::to_string(value)); }
-  bool number_float(const number_float_t, const string_t &digits) { return take(digits); }
-  // cppcheck-suppress constParameter ; as the parser calls it
-  bool string(string_t &value) { return take(value); }
-  bool binary(binary_t &) { return refuse("binary data"); }
+  bool null() override { return refuse("null"); }
+  bool boolean(const bool value) override { return take(value ? "true" : "false"); }
+  bool number_integer(const number_integer_t value) override { return take(std::to_string(value)); }
+  bool number_unsigned(const number_unsigned_t value) override { return take(std::to_string(value)); }
+  bool number_float(const number_float_t, const string_t &digits) override { return take(digits); }
+  bool string(string_t &value) override { return take(value); }
+  bool binary(binary_t &) override { return refuse("binary data"); }
 
-  bool start_object(std::size_t)
+  bool start_object(std::size_t) override
   {
     if (role() == Role::entries || role() == Role::list)
       refuse("an object");
@@ -50,7 +43,7 @@ public:
     return true;
   }
 
-  bool start_array(std::size_t)
+  bool start_array(std::size_t) override
   {
     if (role() != Role::entries)
       refuse("a list");
@@ -60,8 +53,7 @@ public:
     return true;
   }
 
-  // cppcheck-suppress constParameter ; as the parser calls it
-  bool key(string_t &value)
+  bool key(string_t &value) override
   {
     if (role() == Role::sections)
       section_ = value;
@@ -70,7 +62,7 @@ public:
     return true;
   }
 
-  bool end_object()
+  bool end_object() override
   {
     if (role() == Role::entries)
       key_.clear();
@@ -78,7 +70,7 @@ public:
     return true;
   }
 
-  bool end_array()
+  bool end_array() override
   {
     if (role() == Role::list && list_)
       result_.push_back(Assignment{place(), section_, key_, *list_});
@@ -86,7 +78,7 @@ public:
     return true;
   }
 
-  bool parse_error(std::size_t, const std::string &, const nlohmann::json::exception &exception)
+  bool parse_error(std::size_t, const std::string &, const nlohmann::json::exception &exception) override
   {
     // "[json.exception.parse_error.101] parse error at line 1, column 2: ..." holds the line, which is the better
     // place.

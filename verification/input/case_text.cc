@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include <boost/algorithm/string.hpp>
+
 namespace latcon::input
 {
 namespace
@@ -25,10 +27,7 @@ std::string place_of(const std::string &name, const std::size_t line)
 // @return whether the line begins with it
 bool take_word(std::string &line, const std::string &word)
 {
-  std::string capitals = word;
-  std::transform(capitals.begin(), capitals.end(), capitals.begin(),
-                 [](const char c) { return static_cast<char>(c - 'a' + 'A'); });
-  if (line.compare(0, word.size(), word) != 0 && line.compare(0, word.size(), capitals) != 0)
+  if (!boost::starts_with(line, word) && !boost::starts_with(line, boost::to_upper_copy(word)))
     return false;
   if (line.size() > word.size() && std::string(blanks).find(line[word.size()]) == std::string::npos)
     return false;
@@ -87,18 +86,12 @@ std::vector<Line> logical_lines(const std::string &text, const std::string &name
 
 std::string trimmed(const std::string &text)
 {
-  const std::size_t first = text.find_first_not_of(blanks);
-  if (first == std::string::npos)
-    return "";
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+  return boost::trim_copy_if(text, boost::is_any_of(blanks));
 }
 
 std::string comma_separated(const std::vector<std::string> &words)
 {
-  std::string text;
-  for (const std::string &word : words)
-    text += (text.empty() ? "" : ", ") + word;
-  return text;
+  return boost::join(words, ", ");
 }
 
 std::string unwritable(const std::string &text)

@@ -62,32 +62,19 @@ inline void turn_sign_of_fourth_order(latcon::bridge::Subject &subject)
   subject.lattice_gradient = std::make_shared<Combination>(2., longer, -3., subject.lattice_gradient);
 }
 
-/// Rows of an outcome with a verdict and whose name contains a text; any text: "". There must be judged rows with that
-/// text: the test fails where they have other names.
-inline std::size_t with_verdict(const latcon::output::Results &results, latcon::output::Verdict verdict,
-                                const std::string &text)
+/// Rows of an outcome that fail and whose name contains a text; any text: "". There must be judged rows with that text:
+/// the test fails where they have other names.
+inline std::size_t failing(const latcon::output::Results &results, const std::string &text = "")
 {
   std::size_t count = 0, judged = 0;
   for (const latcon::output::Result &row : results.rows())
     if (row.quantity.find(text) != std::string::npos)
     {
-      count += row.verdict() == verdict;
+      count += row.verdict() == latcon::output::Verdict::fails;
       judged += row.verdict() != latcon::output::Verdict::reported;
     }
   EXPECT_GT(judged, 0u) << "no row is judged whose name contains: " << text;
   return count;
-}
-
-/// Rows that fail, see with_verdict.
-inline std::size_t failing(const latcon::output::Results &results, const std::string &text = "")
-{
-  return with_verdict(results, latcon::output::Verdict::fails, text);
-}
-
-/// Rows that hold, see with_verdict.
-inline std::size_t holding(const latcon::output::Results &results, const std::string &text = "")
-{
-  return with_verdict(results, latcon::output::Verdict::holds, text);
 }
 
 /// Returns rest or the state of a case, so that each occurs with one set of shells of expect_holds.

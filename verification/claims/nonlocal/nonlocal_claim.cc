@@ -334,18 +334,6 @@ private:
 
 } // namespace
 
-std::vector<lattice::HalfBond> planted_bonds(const bridge::Subject &subject, const lattice::Grid &grid,
-                                             const NonlocalOptions &options, double half_width)
-{
-  std::vector<lattice::Ring> rings =
-    bridge::rings_of(subject.material, subject.spacing, subject.orientation, half_width);
-  options.planted_rings(rings);
-  std::vector<lattice::HalfBond> bonds = lattice::ring_stencil(grid, rings);
-  if (grid.scatter.amplitude == 0.)
-    options.planted_bonds(bonds);
-  return bonds;
-}
-
 std::vector<NonlocalStencil> fixed_stencils(const bridge::Subject &subject)
 {
   std::vector<NonlocalStencil> list;

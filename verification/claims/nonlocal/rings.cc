@@ -221,4 +221,16 @@ Eigen::Matrix2d StencilSheet::relaxed_stress(const lattice::Material &material, 
   return bridge::edge_stress(sheet_, material, [&](std::size_t place) { return forces.on_sites().at(place); });
 }
 
+std::vector<lattice::HalfBond> planted_bonds(const bridge::Subject &subject, const lattice::Grid &grid,
+                                             const NonlocalOptions &options, double half_width)
+{
+  std::vector<lattice::Ring> rings =
+    bridge::rings_of(subject.material, subject.spacing, subject.orientation, half_width);
+  options.planted_rings(rings);
+  std::vector<lattice::HalfBond> bonds = lattice::ring_stencil(grid, rings);
+  if (grid.scatter.amplitude == 0.)
+    options.planted_bonds(bonds);
+  return bonds;
+}
+
 } // namespace latcon::claims
