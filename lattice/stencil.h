@@ -52,10 +52,10 @@ struct Grid
   Orientation orientation = Orientation::rows_along_crack;
   Scatter scatter = {}; ///< of the points; none by default
 
-  /// Vector of so many spacings along the rows and rows across them [m].
+  /// Vector of a number of spacings along the rows and of rows across them [m].
   Eigen::Vector2d from_row_frame(double along, double across) const;
 
-  /// Reference vector from a point to the one that is so many columns and rows away [m].
+  /// Reference vector from a point to the one at a distance of these columns and rows [m].
   Eigen::Vector2d vector(int columns, int rows) const
   {
     return from_row_frame(columns + (kind == Kind::triangular ? 0.5 * rows : 0.), rows);

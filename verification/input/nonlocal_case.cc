@@ -21,7 +21,7 @@ void NonlocalCase::declare(Parameters &p)
         "deg: in all directions");
   p.add(
     "Nonlocal", "scatter", scatter, Range{0., 0.5}, "1",
-    "points are displaced from the grid at random by up to so many of its spacings along x and along y, from `noise "
+    "points are displaced from the grid at random by up to this share of its spacing along x and along y, from `noise "
     "seed`; 0: a grid; 0.5: without any long-range order");
 }
 
