@@ -118,6 +118,8 @@ class Case:
         changed._cached = None
         return changed
 
+    __iter__ = None  # Python would try to iterate by []
+
     def __getitem__(self, key: str) -> EntryValue:
         """Value of an entry in SI units; None means ``auto``."""
         values = self._resolve().values

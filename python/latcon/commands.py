@@ -27,7 +27,7 @@ def fracture(case: CaseLike, directory: Directory, *, threads: int | None = None
         Output directory; created if needed. Files of earlier runs are moved to `earlier-run`, `earlier-run-2`, ... in it,
         unless `resume`.
     threads
-        Threads; default: all cores that this process may use.
+        Threads; default: ``OMP_NUM_THREADS``, or all cores that this process may use.
     resume
         Whether to continue from the last checkpoint.
     skip_verification

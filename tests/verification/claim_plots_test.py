@@ -112,7 +112,7 @@ def test_damaged_table_is_named(tmp_path, plot):
             damaged[2] = whole.replace(",L,", ",P,", 1)
         for text in damaged:
             path.write_text(text)
-            assert re.search(rf"\Aerror: .*{name}\.csv: .+\n\Z", drawn(folder, "--quiet", expect=2)[1])
+            assert re.search(rf"\Alatcon: .*{name}\.csv: .+\n\Z", drawn(folder, "--quiet", expect=2)[1])
         path.write_text(whole)
 
 

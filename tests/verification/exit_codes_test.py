@@ -6,10 +6,9 @@ import sys
 import numpy as np
 import pytest
 
-from program import CASES, LATCON, latcon, latcon_on_ranks, read_json
+from program import CASES, LATCON, latcon, latcon_on_ranks, read_json, settings
 
-SHEET = ["fracture", CASES / "quick.prm", "--skip-verification", "--set", "Sheet/length=10 mm", "--set",
-         "Sheet/height=6 mm"]
+SHEET = ["fracture", CASES / "quick.prm", "--skip-verification", *settings("Sheet/length=10 mm", "Sheet/height=6 mm")]
 TINY = [*SHEET, "--set", "Time/end=0.01 ms"]
 BAD_INPUT, OUTPUT_FAILED = 2, 5
 
@@ -29,8 +28,8 @@ def test_script_that_fails(out):
 @pytest.mark.parametrize("ranks, frame", [(1, "lattice-0000.vtp"), (2, "motion-0000.vtp")])
 def test_frame_that_cannot_be_written_ends_a_run_that_takes_hours(out, ranks, frame):
     (out / frame).mkdir(parents=True)
-    arguments = [*SHEET, "--set", "Time/end=10 s", "--set", "Fracture/breaking stretch=1000",
-                 "--set", "Output/frame interval=0", "--no-report", "--output-dir", out]
+    arguments = [*SHEET, *settings("Time/end=10 s", "Fracture/breaking stretch=1000", "Output/frame interval=0"),
+                 "--no-report", "--output-dir", out]
     run = latcon_on_ranks(ranks, *arguments, expect=OUTPUT_FAILED)
     assert f"cannot write {out}/{frame}: it is a folder" in run.stderr
     assert read_json(out / "run.json")["exit_code"] == OUTPUT_FAILED

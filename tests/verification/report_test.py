@@ -148,7 +148,7 @@ def test_names_the_damaged_file(runs):
         (runs / "report.html").write_text("stale")
         out, err = drawn(runs, expect=2)
         assert "cannot be read" in out
-        assert re.search(rf"\Aerror: .*{re.escape(name)}: .+\n\Z", err)
+        assert re.search(rf"\Alatcon: .*{re.escape(name)}: .+\n\Z", err)
         _, page = read_page(runs)
         assert re.search(rf"cannot be read, not shown : .*{re.escape(name)}: ", page.text)
         assert "Holds: all" not in page.text

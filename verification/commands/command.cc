@@ -114,9 +114,15 @@ Run::Run(const input::Options &options, const input::Parameters *parameters, con
   }
   if (is_root_)
   {
+    const std::filesystem::path own = directory_ + "/case.prm";
+    std::error_code none;
+    if (parameters != nullptr && std::filesystem::equivalent(own, options.case_file, none) &&
+        !output::is_listed_output(own))
+      throw support::InputError("the run would overwrite its own case " + options.case_file +
+                                "; give another --output-dir, or move the case out of it");
     support::create_folders(directory_);
     record_->lock = lock_directory(directory_);
-    clear(options, parameters != nullptr);
+    clear(options);
     if (parameters != nullptr)
       output::write_file(directory_ + "/case.prm", parameters->resolved_text());
     begin_log(options);
@@ -133,13 +139,9 @@ Run::Run(const input::Options &options, const input::Parameters *parameters, con
     std::cout << "No checkpoint in " << directory_ << ": starting from the beginning\n";
 }
 
-void Run::clear(const input::Options &options, bool has_case) const
+void Run::clear(const input::Options &options) const
 {
-  const std::filesystem::path own = directory_ + "/case.prm";
   std::error_code none;
-  if (has_case && std::filesystem::equivalent(own, options.case_file, none) && !output::is_listed_output(own))
-    throw support::InputError("the run would overwrite its own case " + options.case_file +
-                              "; give another --output-dir, or move the case out of it");
   if (const std::filesystem::path page = directory_ + "/report.html"; resumes_ && output::is_listed_output(page))
     std::filesystem::remove(page, none); // describes the run before it continues
   if (!resumes_)

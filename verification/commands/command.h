@@ -147,7 +147,7 @@ public:
 private:
   void record_checkpoint(const output::Checkpoints &checkpoints);
   // Moves the files of an earlier run aside, unless this run resumes.
-  void clear(const input::Options &options, bool has_case) const;
+  void clear(const input::Options &options) const;
   void print(const output::Results &results) const;
 
   struct Record

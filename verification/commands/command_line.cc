@@ -78,6 +78,13 @@ void keep(CLI::App *command, Json &chosen, const std::string &key, const std::st
     name, [&chosen, key] { chosen[key] = true; }, help);
 }
 
+// Adds an argument that is given without the name of an option; the help states no type of it.
+template <class Value>
+CLI::Option *add_word(CLI::App *command, const std::string &name, Value &value, const std::string &help)
+{
+  return command->add_option(name, value, help)->type_name("");
+}
+
 support::ExitCode print_help(const CLI::App &app, const input::Options &options, const std::string &topic)
 {
   const std::vector<std::string> names = command_names(app);
@@ -124,7 +131,9 @@ support::ExitCode run_program(int argc, char **argv)
     .add_option("-o,--output-dir", options.output_dir, "output directory; default: output/CASE, or as the command says")
     ->check(no_tilde)
     ->type_name("DIR");
-  app.add_option("--threads", options.threads, "threads of the lattice on each rank; default: all cores")
+  app
+    .add_option("--threads", options.threads,
+                "threads of the lattice on each rank; default: OMP_NUM_THREADS, or the cores of a rank")
     ->check(CLI::Range(1u, max_threads))
     ->type_name("N");
   app.add_flag("--quiet", options.quiet, "print errors only");
@@ -161,9 +170,8 @@ support::ExitCode run_program(int argc, char **argv)
                                            default_folder("verify");
                                            return verify(options);
                                          });
-  verify_command->add_option("CLAIM", options.claims, "claims to check; default: all but those marked (only if named)")
-    ->check(CLI::Validator([](const std::string &name) { return unknown_claim(name); }, claim_choices()))
-    ->type_name("");
+  add_word(verify_command, "CLAIM", options.claims, "claims to check; default: all but those marked (only if named)")
+    ->check(CLI::Validator([](const std::string &name) { return unknown_claim(name); }, claim_choices()));
   verify_command
     ->add_option("--case", options.case_file,
                  "case whose material, loading and laws to verify; default: the rubber of Fig. 1")
@@ -187,11 +195,9 @@ support::ExitCode run_program(int argc, char **argv)
                                                         suffix + (options.on_continuum ? "-continuum-crack" : ""));
                                          return run(options);
                                        });
-    subcommand
-      ->add_option("CASE", options.case_file,
-                   "case file, .prm or .json, or a shipped case: " + input::comma_separated(input::shipped_cases()))
-      ->required()
-      ->type_name("");
+    add_word(subcommand, "CASE", options.case_file,
+             "case file, .prm or .json, or a shipped case: " + input::comma_separated(input::shipped_cases()))
+      ->required();
     return subcommand;
   };
   add_case_command("lattice", "equilibrium or motion of the unbroken lattice sheet", "latcon lattice hole", "-lattice",
@@ -225,12 +231,10 @@ support::ExitCode run_program(int argc, char **argv)
   {
     CLI::App *subcommand =
       add_command(name, help, example, [&, name] { return continue_in_python(options, name, {study}, chosen); });
-    subcommand
-      ->add_option("STUDY", study,
-                   "study file (.json), or a shipped one: " + input::comma_separated(input::shipped_studies()) +
-                     "; with --sweep a case")
-      ->required()
-      ->type_name("");
+    add_word(subcommand, "STUDY", study,
+             "study file (.json), or a shipped one: " + input::comma_separated(input::shipped_studies()) +
+               "; with --sweep a case")
+      ->required();
     keep(subcommand, chosen, "sweeps", "--sweep", "ENTRY", Words(),
          "Section/Name=START:STOP:COUNT or =VALUE,VALUE,...: run the case STUDY for these values; repeatable: "
          "all combinations");
@@ -272,17 +276,13 @@ support::ExitCode run_program(int argc, char **argv)
                   default_folder("compare");
                   return continue_in_python(options, "compare", {first, second}, compared);
                 });
-  compare_command
-    ->add_option("LATTICE", first,
-                 "output directory of a crack; or frame (.vtp), series (.pvd) or output directory of a lattice")
-    ->required()
-    ->type_name("");
-  compare_command
-    ->add_option("CONTINUUM", second,
-                 "output directory of a second crack; or frame (.vtu, .pvtu), series (.pvd) or output directory of a "
-                 "continuum")
-    ->required()
-    ->type_name("");
+  add_word(compare_command, "LATTICE", first,
+           "output directory of a crack; or frame (.vtp), series (.pvd) or output directory of a lattice")
+    ->required();
+  add_word(compare_command, "CONTINUUM", second,
+           "output directory of a second crack; or frame (.vtu, .pvtu), series (.pvd) or output directory of a "
+           "continuum")
+    ->required();
   keep(compare_command, compared, "time", "--time", "TIME", std::string(),
        "time of both frames, or load factor; default: the last");
   keep(compare_command, compared, "lattice_time", "--lattice-time", "TIME", std::string(), "time of the lattice frame");
@@ -303,32 +303,26 @@ support::ExitCode run_program(int argc, char **argv)
                 [&] {
                   return continue_in_python(options, "report", {directory}, {{"animation", animation}});
                 });
-  report_command
-    ->add_option("DIR", directory,
-                 "output directory of a run, or a folder of several; with --output-dir it is only read")
-    ->required()
-    ->type_name("");
+  add_word(report_command, "DIR", directory,
+           "output directory of a run, or a folder of several; with --output-dir it is only read")
+    ->required();
   report_command->add_flag("--animation", animation, "draw animation.gif of each crack as well");
 
   CLI::App *init_command = add_command("init", "a folder with a commented case to start from", "latcon init my-strip",
                                        [&] { return continue_in_python(options, "init", {directory}, {}); });
-  init_command->add_option("DIR", directory, "folder; the case in it has its name")
-    ->required()
-    ->check(no_tilde)
-    ->type_name("");
+  add_word(init_command, "DIR", directory, "folder; the case in it has its name")->required()->check(no_tilde);
 
   std::string section;
   CLI::App *entries_command =
     add_command("entries", "entries of a case: name, unit, default, meaning", "latcon entries Fracture",
                 [&] { return continue_in_python(options, "entries", {section}, {}); });
-  entries_command->add_option("SECTION", section, "section whose entries to list; default: all")->type_name("");
+  add_word(entries_command, "SECTION", section, "section whose entries to list; default: all");
 
   std::vector<std::string> topic; // names with blanks need no quotes
   CLI::App *help_command =
     add_command("help", "help on a command, a section or an entry of a case", "latcon help Fracture/toughening",
                 [&] { return print_help(app, options, CLI::detail::join(topic, " ")); });
-  help_command->add_option("TOPIC", topic, "command, section, or entry (Section/Name or its name alone)")
-    ->type_name("");
+  add_word(help_command, "TOPIC", topic, "command, section, or entry (Section/Name or its name alone)");
 
   CLI::App *schema_command =
     add_command("schema", "all entries of a case as JSON, with the values of one", "latcon schema quick",
@@ -337,8 +331,7 @@ support::ExitCode run_program(int argc, char **argv)
                   options.case_is_given = is_given("schema", "CASE");
                   return print_schema(options);
                 });
-  schema_command->add_option("CASE", options.case_file, "case whose values to print; default: declarations only")
-    ->type_name("");
+  add_word(schema_command, "CASE", options.case_file, "case whose values to print; default: declarations only");
 
   return run_command(
     [&]

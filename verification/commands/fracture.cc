@@ -263,7 +263,6 @@ support::ExitCode run_fracture(const input::Options &options)
   parameters.finish();
 
   const lattice::TriangularLattice sheet = input.sheet();
-  const lattice::Material material = input.material();
   if (!is_to_be_run(options, parameters, input, input.fracture_time_stepping(), resources::RunKind::fracture))
     return support::ExitCode::done;
 
@@ -279,7 +278,7 @@ support::ExitCode run_fracture(const input::Options &options)
   run.info().add("skip_verification", options.skip_verification);
   output::Results results;
   if (!options.skip_verification)
-    results = passed_or_reported(input, claims_before_fracture(material, options.on_continuum),
+    results = passed_or_reported(input, claims_before_fracture(input.material(), options.on_continuum),
                                  bridge::laws_of_lattice(), options, run);
   const auto [crack, rows] = run_crack(input, sheet, options.skip_verification, checkpoints, run);
   results.add(rows);

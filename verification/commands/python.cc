@@ -1,4 +1,5 @@
 // Commands above one simulation are Python (python/latcon): this program replaces itself by the interpreter.
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -70,10 +71,8 @@ std::string python_interpreter()
 // Pointers to words that live on, followed by a null pointer, as execve() wants them.
 std::vector<char *> pointers(std::vector<std::string> &words)
 {
-  std::vector<char *> list;
-  for (std::string &word : words)
-    list.push_back(word.data());
-  list.push_back(nullptr);
+  std::vector<char *> list(words.size() + 1);
+  std::transform(words.begin(), words.end(), list.begin(), [](std::string &word) { return word.data(); });
   return list;
 }
 
@@ -101,7 +100,8 @@ pid_t start_child(std::vector<std::string> command, std::vector<std::string> var
   const int error = errno;
   close(nothing);
   if (child < 0)
-    throw support::OutputError(command.front(), "cannot start a process: " + std::generic_category().message(error));
+    throw support::Error(support::ExitCode::output_failed,
+                         command.front() + ": cannot start a process: " + std::generic_category().message(error));
   return child;
 }
 

@@ -44,6 +44,9 @@ Failure describe(const std::exception &error)
     return {support::ExitCode::output_failed, error.what()};
   if (dynamic_cast<const std::bad_alloc *>(&error) != nullptr)
     return {support::ExitCode::bad_input, "out of memory: the run takes more than this machine gives; see --dry-run"};
+  if (const auto *system = dynamic_cast<const std::system_error *>(&error);
+      system != nullptr && system->code() == std::errc::resource_unavailable_try_again)
+    return {support::ExitCode::bad_input, "no further thread can be started: raise the limit of processes (ulimit -u)"};
   return {support::ExitCode::internal_error, std::string("internal error: ") + error.what()};
 }
 
@@ -84,10 +87,10 @@ support::ExitCode run_command(const std::function<support::ExitCode()> &command)
     {
       // Most likely a full disk, which is then the failure itself.
     }
-    // Most errors occur on all ranks: the root rank reports them. An error on another rank alone is reported a moment
-    // later.
+    // Most errors occur on all ranks: the root rank reports them, and Open MPI has killed the others two seconds later.
+    // An error on another rank alone is reported then.
     if (rank != 0)
-      std::this_thread::sleep_for(std::chrono::seconds(1));
+      std::this_thread::sleep_for(std::chrono::seconds(3));
     std::cerr << "latcon: " << (n_ranks > 1 ? "rank " + std::to_string(rank) + ": " : "") << failure.message
               << std::endl;
     // Ranks that wait for this one in a collective call would wait forever.

@@ -19,15 +19,18 @@ const Elements &load()
 {
   const std::string file = input::module_file();
   if (file.empty())
-    throw support::OutputError(input::module_name, "the module with the finite elements is neither beside the program nor in "
-                                          "../lib/latcon; install latcon as a whole, or link to the program");
+    throw support::Error(support::ExitCode::output_failed,
+                         std::string(input::module_name) +
+                           ", the module with the finite elements, is neither beside the "
+                           "program nor in ../lib/latcon; install latcon as a whole, or link to the program");
   // The sums of a threaded BLAS depend on the number of threads, and its threads would be idle. OpenBLAS starts them
   // while it is loaded.
   setenv("OPENBLAS_NUM_THREADS", "1", 1);
   // Lazily: binding every function of its libraries takes a quarter of a short command.
   void *const module = dlopen(file.c_str(), RTLD_LAZY | RTLD_GLOBAL);
   if (module == nullptr)
-    throw support::OutputError(file, std::string("the module with the finite elements cannot be loaded: ") + dlerror());
+    throw support::Error(support::ExitCode::output_failed,
+                         std::string("the module with the finite elements cannot be loaded: ") + dlerror());
   // OpenBLAS asks for a buffer of 128 MiB until it gets one.
   constexpr std::size_t needed = 160 << 20;
   void *const buffer = mmap(nullptr, needed, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -37,7 +40,7 @@ const Elements &load()
   using Entry = const Elements *(*)();
   const auto entry = reinterpret_cast<Entry>(dlsym(module, "latcon_elements"));
   if (entry == nullptr)
-    throw support::OutputError(file, "it is not the module of this program");
+    throw support::Error(support::ExitCode::output_failed, file + ": not the module of this program");
   started = entry()->start();
   return *entry();
 }

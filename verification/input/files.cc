@@ -105,7 +105,8 @@ std::string shipped_case_hint(const std::string &path)
   const std::string nearest = nearest_word(fs::path(path).stem(), names);
   if (!nearest.empty())
     return "; nearest shipped case: " + nearest;
-  return names.empty() ? "" : "; shipped cases: " + comma_separated(names);
+  return names.empty() ? "; the folder of shipped cases is missing: " + data_folder()
+                       : "; shipped cases: " + comma_separated(names);
 }
 
 } // namespace latcon::input

@@ -179,7 +179,10 @@ std::string Results::verdict_text(const std::size_t most) const
   std::size_t named = 0;
   for (const Result &row : rows_)
     if (row.verdict() == Verdict::fails && named++ < most)
-      text += "  " + row.claim + ": " + row.quantity + ": error " + (row.error ? table_number(row.error, 3) : "none") +
+      text += "  " + row.claim + ": " + row.quantity + ": error " +
+              (!row.error               ? "none"
+               : std::isnan(*row.error) ? "not measured"
+                                        : table_number(row.error, 3)) +
               ", tolerance " + table_number(row.tolerance, 3) + "\n";
   if (failing > most)
     text += "  and " + std::to_string(failing - most) + " more, see results.csv\n";

@@ -38,7 +38,7 @@ def require_packages():
             missing.append(package)
     if missing:
         names = " ".join(missing)
-        print(f"error: cannot import the Python modules of the Debian packages {names}; install them "
+        print(f"latcon: cannot import the Python modules of the Debian packages {names}; install them "
               f"(apt-get install {names}){reason}", file=sys.stderr)
         sys.exit(PACKAGES_MISSING)
 
@@ -63,10 +63,10 @@ def main(words=None):
             print(page)
         return DONE
     except UnreadableFile as error:
-        print(f"error: {error}", file=sys.stderr)
+        print(f"latcon: {error}", file=sys.stderr)
         return BAD_INPUT
     except OSError as error:
-        print(f"error: cannot write {error.filename or 'standard output'}: {error.strerror}", file=sys.stderr)
+        print(f"latcon: cannot write {error.filename or 'standard output'}: {error.strerror}", file=sys.stderr)
         return IO_FAILED
 
 

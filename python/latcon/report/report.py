@@ -102,7 +102,7 @@ def report(folder, output_dir=None, quiet=False, animated=False, dry_run=False):
             for run in [] if quiet else readable:
                 print(run.folder)
         for one in unreadable:
-            print(f"error: {one.problem}", file=sys.stderr)
+            print(f"latcon: {one.problem}", file=sys.stderr)
         return 2 if unreadable else 0
     # By folder of the run: {name in CAPTIONS: (picture, still or None)}, {plot: (PNG, error metrics)}, data of the viewer or None.
     runs, pictures, plots, sheets = [], {}, {}, {}
@@ -137,7 +137,7 @@ def report(folder, output_dir=None, quiet=False, animated=False, dry_run=False):
             run.info, indent=2, ensure_ascii=False)} for run in runs],
         with_plots=has_dygraphs() and bool(cracks), with_viewer=any(sheet is not None for sheet in sheets.values()))
     for one in unreadable:
-        print(f"error: {one.problem}", file=sys.stderr)
+        print(f"latcon: {one.problem}", file=sys.stderr)
     with suppress(BrokenPipeError):  # the reader does not want more
         if not quiet:
             print(text_summary(runs, unreadable), os.path.join(output_dir or folder, "report.html"), sep="\n\n")
