@@ -51,11 +51,12 @@ void Forces::evaluate(const State &state, const VectorField &velocity, const Row
     scratch_.emplace_back(lattice_, n_kinds_);
   const Motion motion{state, velocity, state.history.empty() ? nullptr : history};
   const auto first = static_cast<std::ptrdiff_t>(own.begin), rows = static_cast<std::ptrdiff_t>(own.end) - first;
-  // The others find the bonds of the rows below theirs too, most of the work on these.
-  const std::ptrdiff_t fewer = std::lround(fewer_rows_ - 0.7 * static_cast<double>(reach_)), least = rows > 0 ? 1 : 0;
+  const std::ptrdiff_t fewer = std::lround(fewer_rows_), least = rows > 0 ? 1 : 0;
   std::packaged_task<void()> task_beside(beside ? beside : [] {}); // keeps an exception, which cannot leave a thread
   if (band_.is_shared()) // rows may read the positions that are received in it
     task_beside();
+  scratch_.back().duration = 0.; // of a thread that may not take part
+  const double start = omp_get_wtime();
 #pragma omp parallel if (threads)
   {
     const std::ptrdiff_t n = omp_get_num_threads(), i = omp_get_thread_num();
@@ -63,14 +64,10 @@ void Forces::evaluate(const State &state, const VectorField &velocity, const Row
     { return first + (thread == 0 ? 0 : std::clamp((rows + fewer) * thread / n - fewer, least, rows)); };
     const std::ptrdiff_t begin = bound(i), end = bound(i + 1);
     Scratch &scratch = scratch_[static_cast<std::size_t>(i)];
-    const double start = omp_get_wtime();
     if (i == 0 && !band_.is_shared())
       task_beside();
-    const double start_of_rows = omp_get_wtime();
     evaluate_rows(motion, begin, end, scratch, post_force);
-    if (i == 0 && n > 1)
-      fewer_rows_ = 0.5 * (fewer_rows_ + std::min(double(rows), double(end - begin) * (start_of_rows - start) /
-                                                                  (omp_get_wtime() - start_of_rows)));
+    scratch.duration = omp_get_wtime() - start;
     if (motion.history != nullptr)
     {
       // The rows whose bonds the thread above computed too, and those below the band.
@@ -82,6 +79,9 @@ void Forces::evaluate(const State &state, const VectorField &velocity, const Row
           bonds_of_row(motion, *row, below, below, scratch);
     }
   }
+  if (const double of_first = scratch_[0].duration, of_last = scratch_.back().duration; of_last > 0.)
+    fewer_rows_ = std::clamp(fewer_rows_ + 0.5 * double(rows) * (of_first - of_last) / (of_first + of_last),
+                             -double(rows), double(rows));
   task_beside.get_future().get();
   if (motion.history != nullptr)
     set_elapsed(0.);

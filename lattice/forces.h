@@ -124,6 +124,7 @@ private:
     std::vector<kernels::BondsOfKind> kinds = {};
     std::vector<kernels::RememberedRow> remembered = {}; // by kind
     Field lengths;                                       // of the bonds of a row with a memory, and their inverse
+    double duration = 0.;                                // from the start of an evaluation to the end of its rows [s]
   };
 
   void evaluate_rows(const Motion &updating, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
@@ -146,7 +147,8 @@ private:
   double shortness_limit_ = std::numeric_limits<double>::infinity();
   bool columns_repeat_; // periodic along the rows
   double lookahead_ = 0.;
-  double fewer_rows_ = 0.; // than other threads the first one evaluated in the time of what it did beside
+  // That the first thread gets than others, so that all end at once: they start later, and it works beside its rows.
+  double fewer_rows_ = 0.;
 
   std::vector<Scratch> scratch_; // one a thread
   VectorField on_sites_;
