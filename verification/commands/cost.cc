@@ -45,7 +45,8 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
   double steps = 0., parts = 1.;
   double frames = 2.;  // the first and the last
   double at_most = 1.; // maximum number of steps over the expected one
-  double later_frames = 0.;
+  const auto frames_in = [&](double n)
+  { return input.frame_interval > 0. ? std::min(n, std::floor(n * stepping.step / input.frame_interval)) : 0.; };
   if (run != resources::RunKind::equilibrium)
   {
     steps = std::ceil(input.end_time / stepping.step);
@@ -59,12 +60,7 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
       out << ", " << steps << " if the crack is as fast as shear waves of the unloaded sheet";
     }
     out << "\n";
-    if (input.frame_interval > 0.)
-    {
-      const auto in_steps = [&](double n) { return std::min(n, std::floor(n * stepping.step / input.frame_interval)); };
-      frames += in_steps(steps);
-      later_frames = in_steps(at_most * steps) - in_steps(steps);
-    }
+    frames += frames_in(steps);
     parts = resources::parts_of_first_step(input, stepping, run);
     if (parts > 1.)
       out << "# bonds of the loaded sheet are so short that the first step is made in " << parts
@@ -83,8 +79,8 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
     out << ", and " << seconds_text(resources::seconds_of_report) << " for pictures and page";
   const double bytes = bytes_of_site_on_disk * static_cast<double>(sites);
   out << "\n# disk: about " << frames * bytes << " bytes for frames";
-  if (later_frames > 0.)
-    out << ", at most " << (frames + later_frames) * bytes << " if the crack is slower or does not run";
+  if (at_most > 1.)
+    out << ", at most " << (frames + frames_in(at_most * steps) - frames_in(steps)) * bytes;
   out << "\n";
   return out.str();
 }

@@ -20,9 +20,8 @@ const Elements &load()
   const std::string file = input::module_file();
   if (file.empty())
     throw support::Error(support::ExitCode::output_failed,
-                         std::string(input::module_name) +
-                           ", the module with the finite elements, is neither beside the "
-                           "program nor in ../lib/latcon; install latcon as a whole, or link to the program");
+                         "the module with the finite elements is neither beside the program nor in ../lib/latcon; "
+                         "install latcon as a whole, or link to the program");
   // The sums of a threaded BLAS depend on the number of threads, and its threads would be idle. OpenBLAS starts them
   // while it is loaded.
   setenv("OPENBLAS_NUM_THREADS", "1", 1);
