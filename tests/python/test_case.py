@@ -65,6 +65,8 @@ def test_unknown_entries_are_refused_with_the_nearest():
         assert isinstance(caught.value, KeyError) and caught.value.exit_code == 2
     with pytest.raises(TypeError, match="Sheet/height"):
         case.set("Sheet/height", object())
+    with pytest.raises(TypeError, match="iterable"):
+        list(case)
 
 
 def test_bad_values_are_reported_by_the_program_all_at_once():
