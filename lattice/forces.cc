@@ -79,9 +79,11 @@ void Forces::evaluate(const State &state, const VectorField &velocity, const Row
           bonds_of_row(motion, *row, below, below, scratch);
     }
   }
-  if (const double of_first = scratch_[0].duration, of_last = scratch_.back().duration; of_last > 0.)
-    fewer_rows_ = std::clamp(fewer_rows_ + 0.5 * double(rows) * (of_first - of_last) / (of_first + of_last),
-                             -double(rows), double(rows));
+  const auto n_all = static_cast<double>(scratch_.size()), n_rows = static_cast<double>(rows);
+  // Half of what would make all end at once if all rows took the same time.
+  if (const double of_first = scratch_[0].duration, of_last = scratch_.back().duration; n_all > 1. && of_last > 0.)
+    fewer_rows_ = std::clamp(fewer_rows_ + n_rows / n_all * (of_first - of_last) / (of_first + of_last), -n_rows,
+                             n_rows / (n_all - 1.));
   task_beside.get_future().get();
   if (motion.history != nullptr)
     set_elapsed(0.);

@@ -147,7 +147,8 @@ private:
   double shortness_limit_ = std::numeric_limits<double>::infinity();
   bool columns_repeat_; // periodic along the rows
   double lookahead_ = 0.;
-  // That the first thread gets than others, so that all end at once: they start later, and it works beside its rows.
+  // By which the first thread gets fewer than each other, negative: more, so that all end at once: others start later,
+  // and the first has work beside its rows.
   double fewer_rows_ = 0.;
 
   std::vector<Scratch> scratch_; // one a thread

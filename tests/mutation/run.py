@@ -62,10 +62,14 @@ def sources(root, only):
     return [file for file in known if file.startswith(tuple(only))] if only else known
 
 
-def equivalents():
-    """Reason by (file, line, line with the fault)."""
+def equivalents(root):
+    """Reason by (file, line, line with the fault). @throws ValueError for a line that its file does not have"""
     with MATRIX.open(encoding="utf-8", newline="") as file:
-        return {(row["file"], row["before"], row["after"]): row["answer"] for row in csv.DictReader(file) if row["outcome"] == "equivalent"}
+        rows = [row for row in csv.DictReader(file) if row["outcome"] == "equivalent"]
+    for row in rows:
+        if row["before"] not in (root / row["file"]).read_text(encoding="utf-8"):
+            raise ValueError(f"{MATRIX.name}: {row['file']} has no line {row['before']}")
+    return {(row["file"], row["before"], row["after"]): row["answer"] for row in rows}
 
 
 def worktree():
@@ -153,7 +157,7 @@ def main():
     try:
         root = ROOT if options.list else worktree()
         chosen = [mutant for file in sources(root, options.only) for mutant in mutants.of_file(root / file, file)]
-        n_all, reasons = len(chosen), equivalents()
+        n_all, reasons = len(chosen), equivalents(root)
         chosen = mutants.in_random_order(chosen, options.seed)[:options.sample]
         if options.list:
             print("\n".join(map(str, chosen)))

@@ -193,6 +193,7 @@ S, O, B = (["straight"] * 3, ["oscillating"] * 3, ["straight", "oscillating", "b
     ([S, S, O], Verdict.HOLDS, 2.5), ([S, B, O], Verdict.HOLDS, 2.0), ([O, O, S], Verdict.DOES_NOT_HOLD, None),
     ([S, O, S, O], Verdict.DOES_NOT_HOLD, None), ([S, S, S], Verdict.DOES_NOT_HOLD, None),
     ([S, S, O, ["oscillating", "straight", "undecided"]], Verdict.DOES_NOT_HOLD, None),
+    ([["straight", "oscillating", "undecided"], S, O], Verdict.DOES_NOT_HOLD, None),
     ([S, S, O, ["oscillating", "undecided", "undecided"]], Verdict.HOLDS, 2.5)])
 def test_brackets(patterns, verdict, number):
     row = StudyRow(quantity="pattern", rule=Rule.BRACKET, start="straight", to="oscillating", against="zeta")

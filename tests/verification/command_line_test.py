@@ -157,7 +157,7 @@ def test_resolved_case_is_the_case(once):
 def test_size_of_frames(once):
     def dry(*more):
         text = latcon("fracture", CASES / "quick.prm", *TINY, *more, "--dry-run").stdout
-        return [float(number) for number in re.search("^# disk: about (.*) bytes for frames, at most (.*)$", text, re.M).groups()]
+        return [float(number) for number in re.search("^# disk: about (.*) bytes for frames, at most (.*) bytes$", text, re.M).groups()]
 
     said, most = dry()
     assert said < most < 1e4 * said

@@ -124,7 +124,7 @@ Run::Run(const input::Options &options, const input::Parameters *parameters, con
     record_->lock = lock_directory(directory_);
     clear(options);
     if (parameters != nullptr)
-      output::write_file(directory_ + "/case.prm", parameters->resolved_text());
+      output::write_file(own.string(), parameters->resolved_text());
     begin_log(options);
     const SignalDeferral deferral; // once run.json exists, it gets the exit code
     record_->write(std::nullopt);

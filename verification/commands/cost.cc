@@ -80,7 +80,7 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
   const double bytes = bytes_of_site_on_disk * static_cast<double>(sites);
   out << "\n# disk: about " << frames * bytes << " bytes for frames";
   if (at_most > 1.)
-    out << ", at most " << (frames + frames_in(at_most * steps) - frames_in(steps)) * bytes;
+    out << ", at most " << (frames + frames_in(std::round(at_most * steps)) - frames_in(steps)) * bytes << " bytes";
   out << "\n";
   return out.str();
 }

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <new>
 #include <string>
+#include <system_error>
 #include <thread>
 
 #include <mpi.h>
@@ -46,7 +47,8 @@ Failure describe(const std::exception &error)
     return {support::ExitCode::bad_input, "out of memory: the run takes more than this machine gives; see --dry-run"};
   if (const auto *system = dynamic_cast<const std::system_error *>(&error);
       system != nullptr && system->code() == std::errc::resource_unavailable_try_again)
-    return {support::ExitCode::bad_input, "no further thread can be started: raise the limit of processes (ulimit -u)"};
+    return {support::ExitCode::bad_input,
+            "no further thread can be started: raise the limit of processes (ulimit -u, container)"};
   return {support::ExitCode::internal_error, std::string("internal error: ") + error.what()};
 }
 
@@ -87,8 +89,8 @@ support::ExitCode run_command(const std::function<support::ExitCode()> &command)
     {
       // Most likely a full disk, which is then the failure itself.
     }
-    // Most errors occur on all ranks: the root rank reports them, and Open MPI has killed the others two seconds later.
-    // An error on another rank alone is reported then.
+    // Most errors occur on all ranks: the root rank reports them, and Open MPI kills the others within two seconds,
+    // before they report too. An error on another rank alone is reported after the wait.
     if (rank != 0)
       std::this_thread::sleep_for(std::chrono::seconds(3));
     std::cerr << "latcon: " << (n_ranks > 1 ? "rank " + std::to_string(rank) + ": " : "") << failure.message

@@ -84,7 +84,7 @@ std::string reason(unsigned long code)
 void write_vtk_file(vtkXMLWriter &writer, const std::filesystem::path &path)
 {
   support::AtomicFile file(path);
-  vtkObject::GlobalWarningDisplayOff(); // it would print an object before the message
+  vtkObject::GlobalWarningDisplayOff(); // VTK would print lines of its own before the message
   writer.SetFileName(file.name().c_str());
   writer.SetDataModeToAppended();
   writer.EncodeAppendedDataOff();

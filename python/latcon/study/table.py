@@ -268,7 +268,8 @@ def _judge_bracket(outcome: RowOutcome) -> None:
     """Up to one value of `against` every run shows one pattern, and from another value on every run shows the other.
 
     Runs between the two values belong to the bracket, with mixed or other patterns, unless the first pattern comes back after the
-    second: then there is no one critical value.
+    second: then there is no one critical value. Seeds outside the bracket may show no other pattern than that of their side, those
+    of runs that are not measured included.
     """
     row, points = outcome.row, _points(outcome)
     n = len(points)
@@ -289,7 +290,6 @@ def _judge_bracket(outcome: RowOutcome) -> None:
         problems.append(f"{row.start} at {_number(points[returned].abscissa)} above {row.to} at {_number(points[reached].abscissa)}")
     if not problems:
         ends = points[low - 1].abscissa, points[high].abscissa
-        # Seeds contradict in runs too that do not count because others of theirs are undecided.
         problems = [f"{run.text('')} at {_number(run.abscissa)}" for run in outcome.runs if run.abscissa is not None and (
             run.abscissa < ends[0] and run.patterns.keys() - {row.start} or run.abscissa > ends[1] and run.patterns.keys() - {row.to})]
     outcome.misfit = float(len(problems))
