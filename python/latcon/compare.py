@@ -65,7 +65,7 @@ def compare(program: Program, printed: Printed, options: Mapping[str, Any]) -> i
 
 
 def is_same_folder(one: str, other: str | os.PathLike[str]) -> bool:
-    """Whether both exist and are the same."""
+    """True if both exist and are the same."""
     return os.path.exists(one) and os.path.exists(other) and os.path.samefile(one, other)
 
 

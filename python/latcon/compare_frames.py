@@ -173,7 +173,7 @@ def require_same_bounds(lattice: SideFrame, continuum: SideFrame) -> None:
 
 
 def _is_ratio_of_units(ratio: float) -> bool:
-    """Whether a ratio is that of a unit with a prefix to the unit itself, to 5 %."""
+    """True if a ratio is that of a unit with a prefix to the unit itself, to 5 %."""
     return any(abs(r / units - 1) < 0.05 for units in (1e2, 1e3, 1e6, 1e9) for r in (ratio, ratio and 1 / ratio))
 
 

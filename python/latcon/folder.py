@@ -196,7 +196,7 @@ def _is_in(names: set[str], name: str) -> bool:
 
 
 def is_listed(folder: str, name: str) -> bool:
-    """Whether a file is in the list of its folder, where ``*`` is the number of a frame."""
+    """True if a file is in the list of its folder, where ``*`` is the number of a frame."""
     return _is_in(_listed(folder), name)
 
 

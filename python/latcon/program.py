@@ -131,7 +131,7 @@ class Process:
 
     @property
     def is_running(self) -> bool:
-        """Whether the program has not ended."""
+        """True if the program has not ended."""
         return self.child.poll() is None
 
     def interrupt(self) -> None:

@@ -39,7 +39,7 @@ _TIME_TOLERANCE = 1e-9
 
 
 def is_same_time(one: float, other: float) -> bool:
-    """Whether two times [s], or load factors, are equal but for round-off."""
+    """True if two times [s], or load factors, are equal but for round-off."""
     return abs(one - other) <= _TIME_TOLERANCE * max(abs(one), abs(other))
 
 

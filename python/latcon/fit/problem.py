@@ -73,7 +73,7 @@ class Observation:
 
     @property
     def is_word(self) -> bool:
-        """Whether the quantity is a word or truth value."""
+        """True if the quantity is a word or truth value."""
         return isinstance(self.value, (str, bool))
 
     @property

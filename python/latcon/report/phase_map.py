@@ -112,7 +112,7 @@ def ends(centre, values, value_edges, level):
 
 
 def brackets(cells):
-    """Where the pattern changes along lines of the map: between the last point at which all seeds show one pattern and the
+    """Changes of the pattern along lines of the map: between the last point at which all seeds show one pattern and the
     first at which all show another, with only mixed and undecided ones in between, and no gap wider than the grid's."""
     found = []
     for axis, (name, other) in enumerate((("x", "y"), ("y", "x"))):

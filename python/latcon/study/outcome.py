@@ -157,14 +157,14 @@ class SeedStatistics:
 
     @property
     def is_measured(self) -> bool:
-        """Whether at least three quarters of the seeds have the quantity, as every rule requires. The mean is biased if seeds lack
+        """True if at least three quarters of the seeds have the quantity, as every rule requires. The mean is biased if seeds lack
         it systematically: by 0.42 standard deviations without the lowest quarter of a normal distribution, by 0.80 without the
         lowest half."""
         return self.n > 0 and 4 * self.n >= 3 * self.n_seeds
 
     @property
     def is_lost(self) -> bool:
-        """Whether more than a quarter of the seeds ended without a measurement. A run that is not lost may still lack the quantity,
+        """True if more than a quarter of the seeds ended without a measurement. A run that is not lost may still lack the quantity,
         as a straight crack has no amplitude."""
         return 4 * self.n_lost > self.n_seeds
 

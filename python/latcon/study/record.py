@@ -26,7 +26,7 @@ from .output import csv_text
 
 
 class Printed:
-    """What this process prints to standard output, of which a log keeps a copy."""
+    """Standard output of this process, of which a log keeps a copy."""
 
     def __init__(self, is_quiet: bool) -> None:
         self.is_quiet = is_quiet
@@ -228,7 +228,7 @@ def report(_: Program, __: Printed, options: Mapping[str, Any]) -> int:
 
 
 def output_is_lost(printed: Printed) -> bool:
-    """Whether standard output is closed or full; a reader that closed its end of a pipe loses nothing."""
+    """True if standard output is closed or full; a reader that closed its end of a pipe loses nothing."""
     poll = select.poll()
     poll.register(1, 0)
     return not printed.is_complete and not any(event & select.POLLERR for _, event in poll.poll(0))
@@ -245,7 +245,7 @@ class Progress:
         self._begin = self._shown = time.monotonic()
 
     def is_due(self) -> bool:
-        """Whether it is time to show a line."""
+        """True if it is time to show a line."""
         return time.monotonic() - self._shown >= self._interval
 
     def show(self, text: str, done: float) -> None:

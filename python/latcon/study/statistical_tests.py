@@ -153,7 +153,7 @@ class OnsetFit:
 
     @property
     def is_bounded(self) -> bool:
-        """Whether the data bound the exponent on both sides."""
+        """True if the data bound the exponent on both sides."""
         return self.exponent[1] > MIN_EXPONENT and self.exponent[2] < MAX_EXPONENT
 
 

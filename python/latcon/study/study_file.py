@@ -36,7 +36,7 @@ class Rule(enum.Enum):
 
     @property
     def is_along(self) -> bool:
-        """Whether the rule is about runs along an abscissa."""
+        """True if the rule is about runs along an abscissa."""
         return self in (Rule.RISES, Rule.FALLS, Rule.BRACKET, Rule.ONSET_EXPONENT)
 
 

@@ -57,7 +57,7 @@ class RowOutcome:
 
     @property
     def is_test(self) -> bool:
-        """Whether the rule is a statistical test, whose misfit is a p-value."""
+        """True if the rule is a statistical test, whose misfit is a p-value."""
         return self.row.rule in (Rule.RISES, Rule.FALLS) or bool(self.row.bound_run) and self.row.rule is not Rule.IS_NEAR
 
     @property
@@ -69,7 +69,7 @@ class RowOutcome:
 
     @property
     def has_bound(self) -> bool:
-        """Whether the rule compares with a bound."""
+        """True if the rule compares with a bound."""
         return self.row.rule in (Rule.IS_NEAR, Rule.ABOVE, Rule.BELOW, Rule.ONSET_EXPONENT)
 
     @property
