@@ -86,7 +86,7 @@ std::vector<Line> logical_lines(const std::string &text, const std::string &name
 
 std::string trimmed(const std::string &text)
 {
-  return boost::trim_copy_if(text, boost::is_any_of(blanks));
+  return boost::trim_copy_if(text, [](char c) { return std::string_view(blanks).find(c) != std::string_view::npos; });
 }
 
 std::string comma_separated(const std::vector<std::string> &words)
