@@ -147,8 +147,8 @@ private:
   double shortness_limit_ = std::numeric_limits<double>::infinity();
   bool columns_repeat_; // periodic along the rows
   double lookahead_ = 0.;
-  // By which the first thread gets fewer than each other, negative: more, so that all end at once: others start later,
-  // and the first has work beside its rows.
+  // Rows that the first thread gets less than each other one, so that all end at once: the others start later, and the
+  // first has work beside its rows. Negative: it gets more.
   double fewer_rows_ = 0.;
 
   std::vector<Scratch> scratch_; // one a thread
